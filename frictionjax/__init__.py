@@ -1,0 +1,66 @@
+"""Directional dry friction as the limit of viscous motion over a wiggly surface.
+
+Batched convergence studies of the systems of P. Gidoni and A. DeSimone, "On the genesis
+of directional friction through bristle-like mediating elements" (2017), in JAX.
+
+Names are imported when first used, so `import frictionjax` costs nothing.
+"""
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "profiles": "profiles",
+    "bristles": "bristles",
+    "supports": "supports",
+    "loads": "loads",
+    "plot": "plot",
+    "Scene": "scene",
+    "GivenPotential": "potentials",
+    "potential": "potentials",
+    "friction": "friction_law",
+    "solve_limit": "limit_system",
+    "solve": "wiggly.trajectory",
+    "Status": "wiggly.status",
+    "certify": "certificate",
+    "sweep": "sweeps",
+    "study": "studies",
+    "load_scene": "scene_files",
+    "save_scene": "scene_files",
+}
+
+__all__ = [*_HOME, "__version__"]
+
+if TYPE_CHECKING:
+    from . import bristles as bristles
+    from . import loads as loads
+    from . import plot as plot
+    from . import profiles as profiles
+    from . import supports as supports
+    from .certificate import certify as certify
+    from .friction_law import friction as friction
+    from .limit_system import solve_limit as solve_limit
+    from .potentials import GivenPotential as GivenPotential
+    from .potentials import potential as potential
+    from .scene import Scene as Scene
+    from .scene_files import load_scene as load_scene
+    from .scene_files import save_scene as save_scene
+    from .studies import study as study
+    from .sweeps import sweep as sweep
+    from .wiggly.status import Status as Status
+    from .wiggly.trajectory import solve as solve
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'frictionjax' has no attribute {name!r}")
+    module = importlib.import_module(f".{_HOME[name]}", __name__)
+    value = module if _HOME[name] == name else getattr(module, name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__

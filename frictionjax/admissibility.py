@@ -1,0 +1,152 @@
+"""The hypotheses of the paper, checked where values are known and named where they fail."""
+
+import math
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from .arguments import Real, as_text, is_concrete, require
+from .coefficients import Coefficients, coefficients
+from .potentials import AbstractPotential, BristlePotential, smallest_stretch
+from .supports import AbstractSupport
+
+_EPS64 = float(np.finfo(np.float64).eps)
+
+
+@eqx.filter_jit
+def _bristle_facts(potential: BristlePotential):
+    zero = jnp.zeros(())
+    bounds = potential.bristle.slope_bounds()
+    energy = potential.bristle.energy
+    curvature = jax.grad(jax.grad(energy))(zero)
+    return coefficients(potential), bounds.lower, bounds.upper, energy(zero), curvature
+
+
+def require_admissible(potential: AbstractPotential) -> None:
+    """Check what Theorem 1 and Lemmas 2 and 3 ask of surface and bristle, for eps -> 0.
+
+    Raises `ValueError`: no slope of either sign, `alpha = 0`, `1 + a omega <= 0` at an
+    end, or a slope outside what the bristle's contact allows.
+    """
+    if not isinstance(potential, BristlePotential) or not is_concrete(potential):
+        return
+    found, lower, upper, energy, curvature = _bristle_facts(potential)
+    low, high = float(found.omega_minus), float(found.omega_plus)
+    slopes = f"omega_minus = {low:.6g}, omega_plus = {high:.6g}"
+    require(low < 0 < high, "profile", slopes, "omega_plus > 0 > omega_minus")
+    _require_alpha(float(found.alpha), float(energy), float(curvature))
+    _require_slopes(potential, found, float(lower), float(upper))
+
+
+def _require_alpha(alpha: float, energy: float, curvature: float) -> None:
+    # F = k/2 (d + eta)^2 near its minimum: alpha = k d is rounding where it is below
+    # an ulp of sqrt(2 k F), the size alpha would have if the energy were all in d.
+    size = math.sqrt(2 * abs(curvature) * abs(energy))
+    known = math.isfinite(alpha) and abs(alpha) > 4 * _EPS64 * size * (energy > 0)
+    needs = "alpha = F'(0) != 0 (the bristle must press on the surface)"
+    require(known and alpha != 0, "bristle: alpha", alpha, needs)
+
+
+def _require_slopes(
+    potential: BristlePotential, found: Coefficients, lower: float, upper: float
+) -> None:
+    low, high = float(found.omega_minus), float(found.omega_plus)
+    a = float(found.a)
+    _, _, lower_name, upper_name = potential.bristle.slope_bounds()
+    name, value = _culprit(potential)
+    needs = f"omega_plus < {upper_name}, but {high:.6g} >= {upper:.6g}"
+    require(high < upper, name, value, needs)
+    needs = f"omega_minus > {lower_name}, but {low:.6g} <= {lower:.6g}"
+    require(low > lower, name, value, needs)
+    for label, omega in (("omega_plus", high), ("omega_minus", low)):
+        stretch = 1 + a * omega
+        needs = f"1 + a {label} > 0, but a = {a:.6g}, {label} = {omega:.6g}"
+        require(stretch > 0, name, value, needs)
+
+
+def _culprit(potential: BristlePotential) -> tuple[str, object]:
+    """The argument to name: the bristle's angle where it has one."""
+    bristle = potential.bristle
+    if hasattr(bristle, "limit_angle"):
+        return "bristle.theta_lim", bristle.limit_angle
+    if hasattr(bristle, "angle"):
+        return "bristle.angle", bristle.angle
+    return "bristle", type(bristle).__name__
+
+
+_stretch = eqx.filter_jit(smallest_stretch)
+
+
+@eqx.filter_jit
+def _stretches(potential: AbstractPotential, eps: Real):
+    return jax.lax.map(lambda e: smallest_stretch(potential, e), eps)
+
+
+def require_reach(potential: AbstractPotential, eps: Real) -> None:
+    """Check `G = 1 + A'(eta) w' > 0` at the eps in use (eq. 3.31).
+
+    Raises `ValueError` with the eps below which it holds.
+    """
+    if not is_concrete(potential, eps):
+        return
+    sizes = np.unique(np.asarray(eps, dtype=float))
+    smallest = np.asarray(_stretches(potential, jnp.asarray(sizes)))
+    if np.all(smallest > 0):
+        return
+    worst = float(sizes[~(smallest > 0)][0])
+    limit = largest_eps(potential, worst)
+    require(False, "eps", worst, f"eps < {as_text(limit)}, where G = dz/dp > 0 fails")
+
+
+def largest_eps(potential: AbstractPotential, upper: float) -> float:
+    """Largest eps below `upper` up to which `G > 0` holds; 0.0 where there is none.
+
+    A scan over 12 decades for the first failure, then bisection in log eps.
+    """
+    grid = np.geomspace(1e-12 * upper, upper, 241)
+    fails = ~(np.asarray(_stretches(potential, jnp.asarray(grid))) > 0)
+    if not fails.any():
+        return upper
+    first = int(np.argmax(fails))
+    if first == 0:
+        return 0.0
+    low, high = float(grid[first - 1]), float(grid[first])
+    while high / low > 1 + 1e-9:
+        middle = math.sqrt(low * high)
+        if float(_stretch(potential, jnp.asarray(middle))) > 0:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@eqx.filter_jit
+def _range_and_convexity(support: AbstractSupport, low: Real, high: Real):
+    ends = jax.vmap(support.state_of)(jnp.stack([low, high]))
+    grid = ends[0] + (ends[1] - ends[0]) * jnp.linspace(0.0, 1.0, 1025)
+    return (
+        ends,
+        jnp.min(jax.vmap(support.stiffness_at)(grid)),
+        jax.vmap(support.force)(ends),
+    )
+
+
+def require_convex(support: AbstractSupport, low: Real, high: Real) -> None:
+    """Check `Phi'' > 0` on the states that forces between `low` and `high` (N) reach.
+
+    Raises `ValueError` where `Phi` is not uniformly convex there, or where `Phi'` does
+    not reach those forces at all.
+    """
+    if not is_concrete(support, low, high):
+        return
+    ends, smallest, forces = _range_and_convexity(support, low, high)
+    wanted = np.array([float(low), float(high)])
+    size = max(1e-300, float(np.max(np.abs(wanted))))
+    reached = np.all(np.abs(np.asarray(forces) - wanted) <= 1e-6 * size)
+    span = f"[{float(ends[0]):.6g}, {float(ends[1]):.6g}]"
+    needs = f"Phi' to reach the forces [{wanted[0]:.6g}, {wanted[1]:.6g}]"
+    require(np.all(np.isfinite(np.asarray(ends))) and reached, "support", span, needs)
+    needs = f"Phi uniformly convex on the range reached, z in {span}"
+    require(float(smallest) > 0, "support: min Phi''", smallest, needs)

@@ -1,0 +1,69 @@
+"""Third model of the paper: rigid rod on an angular spring (Section 3.3)."""
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from ..arguments import Real, as_real, is_concrete, require, require_real
+from .bristle import AbstractBristle, SlopeBounds
+
+
+class AngularSpring(AbstractBristle):
+    """`A = sqrt(L^2 - (h-eta)^2) - sqrt(L^2 - h^2)`, `F = k/2 (theta - theta_rest)^2`.
+
+    `stiffness` k in N m/rad, `length` L of the rod in m, `height` h of its root in m,
+    `rest_angle` theta_rest in rad; `theta = arccos((h - eta)/L)` is the rod's angle from
+    the vertical and `theta_lim = arccos(h/L)` the one on the flat surface.
+
+    Raises `ValueError` unless k > 0, L > h > 0 and theta_lim > theta_rest > -pi/2.
+    """
+
+    stiffness: Real = eqx.field(converter=as_real)
+    length: Real = eqx.field(converter=as_real)
+    height: Real = eqx.field(converter=as_real)
+    rest_angle: Real = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        for name in ("stiffness", "length", "height"):
+            value = getattr(self, name)
+            require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
+        require_real("bristle.rest_angle", self.rest_angle, "rest_angle > -pi/2")
+        if not is_concrete(self):
+            return
+        length, height = float(self.length), float(self.height)
+        rest = float(self.rest_angle)
+        require(
+            length > height, "bristle.length", length, f"length > height = {height:.6g}"
+        )
+        limit = float(self.limit_angle)
+        allowed = f"theta_lim = {limit:.6g} > rest_angle > -pi/2"
+        require(-0.5 * np.pi < rest < limit, "bristle.rest_angle", rest, allowed)
+
+    @property
+    def limit_angle(self) -> Real:
+        """`theta_lim = arccos(h/L)` in rad."""
+        return self._angle(jnp.zeros_like(self.height))
+
+    def _reach(self, eta: Real) -> Real:
+        """Horizontal extent of the rod; a product, so that L - h = 1e-9 L keeps digits."""
+        drop = self.height - eta
+        return jnp.sqrt((self.length - drop) * (self.length + drop))
+
+    def _angle(self, eta: Real) -> Real:
+        # arccos loses half the digits near theta = 0; the two sides of the rod do not.
+        return jnp.arctan2(self._reach(eta), self.height - eta)
+
+    def offset(self, eta: Real) -> Real:
+        # The difference of the two roots, multiplied out: no cancellation at small eta.
+        zero = jnp.zeros_like(eta)
+        return eta * (2 * self.height - eta) / (self._reach(eta) + self._reach(zero))
+
+    def energy(self, eta: Real) -> Real:
+        return 0.5 * self.stiffness * (self._angle(eta) - self.rest_angle) ** 2
+
+    def slope_bounds(self) -> SlopeBounds:
+        """`-tan(theta_lim) < w' < cot(theta_lim)`: no jumps, and only the tip touches."""
+        limit = self.limit_angle
+        return SlopeBounds(
+            -jnp.tan(limit), 1 / jnp.tan(limit), "-tan(theta_lim)", "cot(theta_lim)"
+        )

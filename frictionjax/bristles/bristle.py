@@ -1,0 +1,40 @@
+"""What a bristle is."""
+
+import abc
+from typing import NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..arguments import Real
+
+
+class SlopeBounds(NamedTuple):
+    """Open interval of surface slopes that the bristle's geometry allows, and its name.
+
+    The names go into error messages, after "omega_minus >" and "omega_plus <".
+    """
+
+    lower: Real | float = -jnp.inf
+    upper: Real | float = jnp.inf
+    lower_name: str = "-inf"
+    upper_name: str = "inf"
+
+
+class AbstractBristle(eqx.Module):
+    """A bristle: two scalar functions of the height `eta` of the surface under its tip.
+
+    Everything else (a, alpha, mu, rho, V_eps, the dynamics) follows by autodiff.
+    """
+
+    @abc.abstractmethod
+    def offset(self, eta: Real) -> Real:
+        """`A(eta)` in m: how far the state is ahead of the tip, `z = p + A`; A(0) = 0."""
+
+    @abc.abstractmethod
+    def energy(self, eta: Real) -> Real:
+        """`F(eta)` in J: energy stored when the tip stands at height `eta`."""
+
+    def slope_bounds(self) -> SlopeBounds:
+        """Slopes that the contact allows; without a bound of its own, any."""
+        return SlopeBounds()

@@ -1,0 +1,45 @@
+"""Bristle given by its two functions."""
+
+from collections.abc import Callable
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..arguments import Real, is_concrete, require
+from .bristle import AbstractBristle
+
+
+class Custom(AbstractBristle):
+    """The bristle with tip offset `A = offset_fn` and energy `F = energy_fn`.
+
+    `offset_fn`: C^2, `A(0) = 0`, in m. `energy_fn`: C^3, in J. Both scalar to scalar,
+    written with `jax.numpy`; an `equinox.Module` with leaves is traced like other parts.
+
+    Raises `ValueError` where `A(0) != 0`, `F'(0) = 0` or a value at 0 is not finite.
+    """
+
+    offset_fn: Callable[[Real], Real]
+    energy_fn: Callable[[Real], Real]
+
+    def __init__(self, offset: Callable[[Real], Real], energy: Callable[[Real], Real]):
+        require(callable(offset), "bristle.offset", offset, "a function A of eta")
+        require(callable(energy), "bristle.energy", energy, "a function F of eta")
+        self.offset_fn = offset
+        self.energy_fn = energy
+
+    def __check_init__(self):
+        if not is_concrete(self):
+            return
+        zero = np.float64(0.0)
+        start = float(self.offset(zero))
+        require(start == 0, "bristle.offset", start, "A(0) = 0")
+        alpha = float(jax.grad(self.energy)(zero))
+        require(np.isfinite(alpha), "bristle.energy", alpha, "a finite F'(0)")
+        require(alpha != 0, "bristle.energy", alpha, "alpha = F'(0) != 0")
+
+    def offset(self, eta: Real) -> Real:
+        return jnp.asarray(self.offset_fn(eta))
+
+    def energy(self, eta: Real) -> Real:
+        return jnp.asarray(self.energy_fn(eta))

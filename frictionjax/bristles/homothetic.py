@@ -1,0 +1,27 @@
+"""Bristle that leaves the surface's shape as it is."""
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..arguments import Real, as_real, require_real
+from .bristle import AbstractBristle
+
+
+class Homothetic(AbstractBristle):
+    """`A = 0`, `F = alpha eta`: Mielke's homothetic scaling (Prandtl-Tomlinson).
+
+    `alpha`: normal force in N, not 0.
+
+    Raises `ValueError` for alpha that is 0 or not finite.
+    """
+
+    alpha: Real = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        require_real("bristle.alpha", self.alpha, "alpha != 0", lambda v: v != 0)
+
+    def offset(self, eta: Real) -> Real:
+        return jnp.zeros_like(eta)
+
+    def energy(self, eta: Real) -> Real:
+        return self.alpha * eta

@@ -1,0 +1,45 @@
+"""Second model of the paper: slanted spring (Section 3.2)."""
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..arguments import Real, as_real, require_real
+from .bristle import AbstractBristle, SlopeBounds
+
+
+class SlantedSpring(AbstractBristle):
+    """`A = -eta tan(theta)`, `F = k/2 (L_rest - (h - eta)/cos(theta))^2`.
+
+    `stiffness` k in N/m, `rest_length` L_rest in m, `height` h of its root in m,
+    `angle` theta from the vertical in rad, in (-pi/2, pi/2); at 0 it is a vertical spring
+    and a negative angle is the mirror image. `alpha = k/cos (L_rest - h/cos)`.
+
+    Raises `ValueError` for parameters out of range.
+    """
+
+    stiffness: Real = eqx.field(converter=as_real)
+    rest_length: Real = eqx.field(converter=as_real)
+    height: Real = eqx.field(converter=as_real)
+    angle: Real = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        for name in ("stiffness", "rest_length", "height"):
+            value = getattr(self, name)
+            require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
+        allowed = "-pi/2 < angle < pi/2"
+        require_real("bristle.angle", self.angle, allowed, lambda v: abs(v) < 0.5 * jnp.pi)
+
+    def offset(self, eta: Real) -> Real:
+        return -eta * jnp.tan(self.angle)
+
+    def energy(self, eta: Real) -> Real:
+        length = (self.height - eta) / jnp.cos(self.angle)
+        return 0.5 * self.stiffness * (self.rest_length - length) ** 2
+
+    def slope_bounds(self) -> SlopeBounds:
+        """`omega_plus < cot(theta)`: the tip moves on without a jump."""
+        tangent = jnp.tan(self.angle)
+        cotangent = 1 / jnp.where(tangent == 0, 1.0, tangent)
+        lower = jnp.where(tangent < 0, cotangent, -jnp.inf)
+        upper = jnp.where(tangent > 0, cotangent, jnp.inf)
+        return SlopeBounds(lower, upper, "cot(angle)", "cot(angle)")

@@ -1,0 +1,31 @@
+"""First model of the paper: vertical spring (Section 3.1)."""
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..arguments import Real, as_real, require_real
+from .bristle import AbstractBristle
+
+
+class VerticalSpring(AbstractBristle):
+    """`A = 0`, `F = k/2 (L_rest - h + eta)^2`, so `alpha = k (L_rest - h)`.
+
+    `stiffness` k in N/m, `rest_length` L_rest in m, `height` h of its root in m.
+
+    Raises `ValueError` for a stiffness, length or height that is not positive.
+    """
+
+    stiffness: Real = eqx.field(converter=as_real)
+    rest_length: Real = eqx.field(converter=as_real)
+    height: Real = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        for name in ("stiffness", "rest_length", "height"):
+            value = getattr(self, name)
+            require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
+
+    def offset(self, eta: Real) -> Real:
+        return jnp.zeros_like(eta)
+
+    def energy(self, eta: Real) -> Real:
+        return 0.5 * self.stiffness * (self.rest_length - self.height + eta) ** 2

@@ -1,0 +1,90 @@
+"""The limit friction law: coefficients, dissipation potential, dual form."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+
+from .admissibility import require_admissible
+from .arguments import Real, require, require_x64
+from .bristles import AbstractBristle
+from .coefficients import Coefficients, coefficients_jit
+from .potentials import AbstractPotential, BristlePotential, potential
+
+
+def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> Coefficients:
+    """Friction coefficients of a scene, or of a profile and a bristle.
+
+    `friction(scene)` or `friction(profile, bristle)`; no trajectory is built. Scalars,
+    differentiable in every parameter of the parts (`jax.grad` through `rho_plus`).
+
+    Raises `ValueError` naming the hypothesis of the paper that fails: `omega_plus > 0 >
+    omega_minus`, `alpha != 0`, `1 + a omega > 0` at both ends, the bristle's own bounds.
+    """
+    if bristle is None:
+        require(
+            hasattr(scene_or_profile, "potential"),
+            "friction(...)",
+            type(scene_or_profile).__name__,
+            "a Scene, or a profile and a bristle",
+        )
+        wiggle = scene_or_profile.potential
+    else:
+        wiggle = potential(scene_or_profile, bristle)
+    require_x64(wiggle)
+    require_admissible(wiggle)
+    return coefficients_jit(wiggle)
+
+
+def dissipation_potential(rho_plus: Real, rho_minus: Real, v: Real) -> Real:
+    """`R(v)` (eq. 2.2): `rho_plus v` for v >= 0, `rho_minus v` for v <= 0."""
+    return jnp.where(v >= 0, rho_plus * v, rho_minus * v)
+
+
+def dual_dissipation(potential: AbstractPotential, xi: Real) -> Real:
+    """`K(xi) = int_0^1 |xi - W'(Y)| dY` in N (eq. 5.5), to rounding.
+
+    In the tip coordinate the integrand is `|xi (1 + a w') - alpha w'|`, whose inside is
+    the derivative of `H = xi (y + a w) - alpha w`. So K is the variation of H: summed over
+    a grid, with the few cells in which H turns split at the turning point.
+    """
+    cells = 4 * potential.points
+    if isinstance(potential, BristlePotential):
+        a, alpha, profile = potential.a(), potential.alpha(), potential.profile
+
+        def primitive(y):
+            w = profile(y)
+            return xi * (y + a * w) - alpha * w
+    else:
+
+        def primitive(y):
+            return xi * y - potential.W(y)
+
+    slope = jax.grad(primitive)
+    edges = jnp.arange(cells + 1) / cells
+    values, slopes = jax.vmap(jax.value_and_grad(primitive))(edges)
+
+    def variation(left, right, start, end, slope_start, slope_end):
+        turns = slope_start * slope_end < 0
+        share = slope_start / jnp.where(turns, slope_start - slope_end, 1.0)
+        middle = left + (right - left) * jnp.clip(share, 0.0, 1.0)
+        # H' is zero at the turn, so the secant's error enters squared; one Newton step
+        # more makes it h^8.
+        bend = jax.grad(slope)(middle)
+        newton = middle - slope(middle) / jnp.where(bend == 0, 1.0, bend)
+        turn = primitive(jnp.clip(newton, left, right))
+        split = jnp.abs(turn - start) + jnp.abs(end - turn)
+        return jnp.where(turns, split, jnp.abs(end - start))
+
+    pieces = jax.vmap(variation)(
+        edges[:-1], edges[1:], values[:-1], values[1:], slopes[:-1], slopes[1:]
+    )
+    return jnp.sum(pieces)
+
+
+def limit_dissipation(
+    potential: AbstractPotential, found: Coefficients, v: Real, xi: Real
+) -> Real:
+    """`M(v, xi) = |v| K(xi) + chi(xi)` (eq. 5.4): infinite outside [rho_minus, rho_plus]."""
+    inside = (xi >= found.rho_minus) & (xi <= found.rho_plus)
+    return jnp.where(inside, jnp.abs(v) * dual_dissipation(potential, xi), jnp.inf)

@@ -1,0 +1,115 @@
+"""The rate-independent limit system (eq. 2.3) as an associative scan of clips."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from .arguments import Real, is_concrete, require, require_x64
+from .coefficients import Coefficients, coefficients
+from .friction_law import dissipation_potential
+from .scene import Scene, require_times
+from .supports import AbstractSupport
+
+
+class LimitSolution(eqx.Module):
+    """Limit trajectory: times `ts` (s), states `z` (m), `dissipation` (J), shapes (n,).
+
+    `dissipation` is cumulative, `int_0^ts R(z')`.
+    """
+
+    ts: Float[Array, " n"]
+    z: Float[Array, " n"]
+    dissipation: Float[Array, " n"]
+
+
+def strip(support: AbstractSupport, found: Coefficients, load: Real) -> tuple[Real, Real]:
+    """States that rest under `load` (N): `[z_minus, z_plus]` in m (Section 5.1)."""
+    return (
+        support.state_of(load - found.rho_plus),
+        support.state_of(load - found.rho_minus),
+    )
+
+
+def play_step(support: AbstractSupport, found: Coefficients, z: Real, load: Real) -> Real:
+    """The limit state after a monotone change of the load to `load`, from state `z`."""
+    lower, upper = strip(support, found, load)
+    return jnp.clip(z, lower, upper)
+
+
+def _then(first, second):
+    """The clip that two clips make one after the other; associative."""
+    (a, b), (lower, upper) = first, second
+    return jnp.clip(a, lower, upper), jnp.clip(b, lower, upper)
+
+
+def limit_on_grid(
+    scene: Scene, grid: Float[Array, " m"]
+) -> tuple[Float[Array, " m"], Float[Array, " m"]]:
+    """State and cumulative dissipation on a sorted grid that holds the turning points.
+
+    Between grid points the load is monotone, so the solution is too, and a clip to the
+    strip at the grid point is exact: there is no time-stepping error.
+    """
+    found = coefficients(scene.potential)
+    loads = jax.vmap(scene.load)(grid)
+    lower, upper = jax.vmap(lambda load: strip(scene.support, found, load))(loads)
+    lower, upper = jax.lax.associative_scan(_then, (lower, upper))
+    z = jnp.clip(scene.z0, lower, upper)
+    moves = jnp.diff(z, prepend=scene.z0)
+    spent = dissipation_potential(found.rho_plus, found.rho_minus, moves)
+    return z, jnp.cumsum(spent)
+
+
+@eqx.filter_jit
+def _solve(scene: Scene, ts: Float[Array, " n"]) -> LimitSolution:
+    turns = scene.turning_points()
+    order = jnp.argsort(jnp.concatenate([ts, turns]))
+    z, dissipation = limit_on_grid(scene, jnp.concatenate([ts, turns])[order])
+    back = jnp.argsort(order)[: ts.shape[0]]
+    # Too little room for the turning points of a traced load is NaN, never a wrong number.
+    poison = jnp.where(jnp.any(jnp.isnan(turns)), jnp.nan, 0.0)
+    return LimitSolution(ts, z[back] + poison, dissipation[back] + poison)
+
+
+@eqx.filter_jit
+def _first_strip(scene: Scene) -> tuple[Real, Real]:
+    start = scene.load(jnp.zeros_like(scene.duration))
+    return strip(scene.support, coefficients(scene.potential), start)
+
+
+def require_start_in_strip(scene: Scene) -> None:
+    """Check that z0 lies in the strip at t = 0, as Theorem 1 asks (eq. 2.11)."""
+    if not is_concrete(scene):
+        return
+    lower, upper = (float(v) for v in _first_strip(scene))
+    slack = 4 * float(np.finfo(float).eps) * max(abs(lower), abs(upper))
+    z0 = float(scene.z0)
+    needs = f"z_minus(0) <= z0 <= z_plus(0), the interval [{lower:.9g}, {upper:.9g}]"
+    require(lower - slack <= z0 <= upper + slack, "scene.z0", z0, needs)
+
+
+def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
+    """Solve `0 in dR(z') + Phi'(z) - l(t)` (eq. 2.3), exactly up to rounding.
+
+    `ts`: times in s, not decreasing, in [0, duration], shape (n,); 201 evenly spaced ones
+    where None. The grid inside always holds the turning points of the load, so values do
+    not depend on which other times are asked for.
+
+    Raises `ValueError` for bad times, 32 bits, or z0 outside the strip at t = 0 (with the
+    allowed interval). Source: the play operator, see A. Mielke and T. Roubicek,
+    Rate-Independent Systems (2015).
+    """
+    require_x64(scene)
+    ts = require_times(scene, ts)
+    require_start_in_strip(scene)
+    return _solve(scene, ts)
+
+
+def dissipation_between(scene: Scene, t1: Any, t2: Any) -> Real:
+    """`int_t1^t2 R(z')` in J of the limit solution, for 0 <= t1 <= t2 <= duration."""
+    cumulative = solve_limit(scene, jnp.stack([jnp.asarray(t1), jnp.asarray(t2)]))
+    return cumulative.dissipation[1] - cumulative.dissipation[0]

@@ -1,0 +1,8 @@
+"""Loads `l(t)`: what pulls the far end of the support, as a force."""
+
+from .custom import Custom as Custom
+from .load import AbstractLoad as AbstractLoad
+from .piecewise_linear import PiecewiseLinear as PiecewiseLinear
+from .ramp import Ramp as Ramp
+from .sine import Sine as Sine
+from .triangle import Triangle as Triangle

@@ -1,0 +1,67 @@
+"""What a load is."""
+
+import abc
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..arguments import Real
+
+
+class AbstractLoad(eqx.Module):
+    """The load `l(t)` in N, continuous and piecewise C^1.
+
+    An implementer keeps three rules:
+
+    1. `__call__(t)` takes a scalar and is differentiable by `jax.jvp`; at a kink it gives
+       the slope to the right.
+    2. `turning_points(duration, count)` holds every time in (0, duration) at which `l'`
+       changes sign or jumps; between them `l` is monotone and C^1. It is traceable, sorted,
+       of shape (count,), padded with `duration`, and all NaN where `count` is too small.
+    3. `turning_count(duration)` is that number for known values, rounded up or not.
+    """
+
+    @abc.abstractmethod
+    def __call__(self, t: Real) -> Real:
+        """`l(t)` in N at time `t` in s."""
+
+    @abc.abstractmethod
+    def turning_count(self, duration: float) -> int:
+        """Number of turning points in (0, duration); needs known values."""
+
+    @abc.abstractmethod
+    def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
+        """Turning points and kinks in (0, duration), padded with `duration`."""
+
+    def slope(self, t: Real) -> Real:
+        """`l'(t)` in N/s, from the right at kinks."""
+        t = jnp.asarray(t)
+        return jax.jvp(self, (t,), (jnp.ones_like(t),))[1]
+
+
+def periodic_turning_points(
+    quarter: Real, duration: Real, count: int
+) -> Float[Array, " count"]:
+    """Odd multiples of a quarter period in (0, duration), as rule 2 wants them."""
+    times = (2 * jnp.arange(count) + 1) * quarter
+    enough = (2 * count + 1) * quarter >= duration
+    return jnp.where(enough, jnp.minimum(times, duration), jnp.nan)
+
+
+def periodic_turning_count(quarter: float, duration: float) -> int:
+    """How many odd multiples of a quarter period lie in (0, duration)."""
+    return max(0, int((duration / quarter + 1) // 2) + 1)
+
+
+def listed_turning_points(
+    listed: Float[Array, " n"], duration: Real, count: int
+) -> Float[Array, " count"]:
+    """Listed times in (0, duration), as rule 2 wants them."""
+    inside = (listed > 0) & (listed < duration)
+    times = jnp.sort(jnp.where(inside, listed, duration))
+    fill = jnp.full((max(0, count - times.shape[0]),), duration)
+    return jnp.where(
+        jnp.sum(inside) <= count, jnp.concatenate([times, fill])[:count], jnp.nan
+    )

@@ -1,0 +1,31 @@
+"""Sinusoidal load."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..arguments import Real, as_real, require_real
+from .load import AbstractLoad, periodic_turning_count, periodic_turning_points
+
+
+class Sine(AbstractLoad):
+    """`l(t) = amplitude sin(2 pi t/period)`; `amplitude` in N, `period` in s.
+
+    Raises `ValueError` for a period that is not positive or values that are not finite.
+    """
+
+    amplitude: Real = eqx.field(converter=as_real)
+    period: Real = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        require_real("load.amplitude", self.amplitude, "any amplitude")
+        require_real("load.period", self.period, "period > 0", lambda p: p > 0)
+
+    def __call__(self, t: Real) -> Real:
+        return self.amplitude * jnp.sin(2 * jnp.pi * t / self.period)
+
+    def turning_count(self, duration: float) -> int:
+        return periodic_turning_count(float(self.period) / 4, duration)
+
+    def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
+        return periodic_turning_points(self.period / 4, duration, count)

@@ -1,0 +1,31 @@
+"""Profile given as a function."""
+
+from collections.abc import Callable
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..arguments import Real, require
+from .profile import AbstractProfile, require_smooth
+
+
+class Custom(AbstractProfile):
+    """The profile `w(y) = fn(y)` for 0 <= y < 1, continued with period 1.
+
+    `fn`: scalar to scalar, written with `jax.numpy`; an `equinox.Module` with leaves is
+    traced like any other part. `points` samples a period must resolve `fn'`.
+
+    Raises `ValueError` naming the derivative that jumps where `fn` does not repeat as a
+    C^2 function (at the seam or inside), or `fn` is constant or not finite.
+    """
+
+    fn: Callable[[Real], Real]
+    points: int = eqx.field(static=True, default=4096)
+
+    def __check_init__(self):
+        require(callable(self.fn), "profile.fn", self.fn, "a function of y")
+        require(self.points >= 16, "profile.points", self.points, "points >= 16")
+        require_smooth("profile.fn", self.fn, self.points)
+
+    def __call__(self, y: Real) -> Real:
+        return self.fn(y - jnp.floor(y))

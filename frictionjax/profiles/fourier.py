@@ -1,0 +1,66 @@
+"""Finite Fourier series."""
+
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..arguments import Real, as_real, is_concrete, require
+from .heights import HeightsFit, fit_heights
+from .profile import AbstractProfile
+
+
+class Fourier(AbstractProfile):
+    """`w(y) = sum_n cos_n cos(2 pi n y) + sin_n sin(2 pi n y)`, n = 1, 2, ...
+
+    `cos`, `sin`: coefficients in periods, shape (harmonics,) each.
+
+    Raises `ValueError` where the shapes differ, a coefficient is not finite or all are 0.
+    """
+
+    cos: Float[Array, " harmonics"] = eqx.field(converter=as_real)
+    sin: Float[Array, " harmonics"] = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        if not is_concrete(self.cos, self.sin):
+            return
+        cos, sin = np.asarray(self.cos), np.asarray(self.sin)
+        flat = cos.ndim == 1 and cos.size > 0
+        require(flat, "profile.cos", cos, "one or more coefficients, shape (harmonics,)")
+        require(sin.shape == cos.shape, "profile.sin", sin, f"shape {cos.shape} of cos")
+        require(np.all(np.isfinite(cos)), "profile.cos", cos, "finite coefficients")
+        require(np.all(np.isfinite(sin)), "profile.sin", sin, "finite coefficients")
+        require(np.any(cos) or np.any(sin), "profile.cos", cos, "a coefficient != 0")
+
+    def __call__(self, y: Real) -> Real:
+        y = jnp.asarray(y)
+        phase = 2 * jnp.pi * (y - jnp.round(y))
+        phases = phase[..., None] * np.arange(1, self.cos.shape[0] + 1)
+        return jnp.cos(phases) @ self.cos + jnp.sin(phases) @ self.sin
+
+    @property
+    def points(self) -> int:
+        return 64 * max(4, self.cos.shape[0])
+
+    @classmethod
+    def from_heights(
+        cls, x: Any, heights: Any, period: float | None = None, harmonics: int = 8
+    ) -> "HeightsFit[Fourier]":
+        """Periodic profile of a measured trace.
+
+        `x`: positions in m, increasing, shape (n,). `heights`: in m, shape (n,).
+        `period`: in m; found in the data where it is None. `harmonics`: how many.
+
+        A straight trend and all harmonics are fitted together by least squares, which
+        averages over the periods in the trace. Returns `.profile`, `.period` in m and
+        `.explained`, the share of the detrended variance that the periodic profile
+        explains. `w` = height/period, so slopes are those measured.
+
+        Raises `ValueError` for wrong shapes, values that are not finite, less than
+        1.5 periods, or more harmonics than the samples can tell apart.
+        """
+        fit = fit_heights(x, heights, period, harmonics)
+        profile = cls(cos=fit.cos / fit.period, sin=fit.sin / fit.period)
+        return HeightsFit(profile, fit.period, fit.explained)

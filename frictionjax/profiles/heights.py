@@ -1,0 +1,93 @@
+"""Periodic part of a measured height trace by least squares."""
+
+from typing import Any, Generic, NamedTuple, TypeVar
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ..arguments import require
+
+_Profile = TypeVar("_Profile")
+
+
+class HeightsFit(NamedTuple, Generic[_Profile]):
+    """Result of `Fourier.from_heights`."""
+
+    profile: _Profile
+    period: float
+    explained: float
+
+
+class SeriesFit(NamedTuple):
+    """Fourier coefficients in the unit of the heights, period in that of x."""
+
+    cos: np.ndarray
+    sin: np.ndarray
+    period: float
+    explained: float
+
+
+def _design(x: np.ndarray, period: float, harmonics: int) -> np.ndarray:
+    phases = 2 * np.pi * np.outer(x / period, np.arange(1, harmonics + 1))
+    trend = np.stack([np.ones_like(x), (x - x.mean()) / np.ptp(x)], axis=1)
+    return np.concatenate([trend, np.cos(phases), np.sin(phases)], axis=1)
+
+
+def _detrended_variance(x: np.ndarray, heights: np.ndarray) -> float:
+    return float(np.var(heights - np.polyval(np.polyfit(x, heights, 1), x)))
+
+
+def _misfit(x: np.ndarray, heights: np.ndarray, period: float, harmonics: int) -> float:
+    """Squared error per sample, summed over the traces of a map (rows)."""
+    design = _design(x, period, harmonics)
+    solution = np.linalg.lstsq(design, heights.T, rcond=None)[0]
+    return float(np.mean((heights.T - design @ solution) ** 2))
+
+
+def find_period(x: np.ndarray, heights: np.ndarray, harmonics: int) -> float:
+    """Period of one trace (n,) or of the rows of a map (rows, n).
+
+    The strongest fundamental on a fine frequency grid from 1.5 periods in the trace to
+    4 samples a period, then a search with all harmonics inside that peak. (All harmonics
+    on the grid too: prefers two grooves as one period, since it always fits better.)
+    """
+    span = float(np.ptp(x))
+    spacing = span / (x.size - 1)
+    frequencies = np.arange(1.5 / span, 0.25 / spacing, 0.1 / span)
+    coarse = [_misfit(x, heights, 1 / f, 1) for f in frequencies]
+    best = float(frequencies[int(np.argmin(coarse))])
+    fits = min(harmonics, max(1, int(0.5 / (best * spacing)) - 1))
+    bounds = (1 / (best + 0.5 / span), 1 / max(best - 0.5 / span, 1.0 / span))
+    search = minimize_scalar(
+        lambda period: _misfit(x, heights, period, fits),
+        bounds=bounds,
+        method="bounded",
+        options={"xatol": 1e-9 * span},
+    )
+    return float(search.x)
+
+
+def fit_heights(x: Any, heights: Any, period: float | None, harmonics: int) -> SeriesFit:
+    """Fit trend and harmonics of `period` to a trace; see `Fourier.from_heights`."""
+    x, heights = np.asarray(x, float), np.asarray(heights, float)
+    require(x.ndim == 1 and x.size >= 8, "x", x.shape, "8 or more positions, shape (n,)")
+    require(heights.shape == x.shape, "heights", heights.shape, f"the shape {x.shape} of x")
+    require(np.all(np.isfinite(x)), "x", x, "finite positions")
+    require(np.all(np.isfinite(heights)), "heights", heights, "finite heights")
+    require(np.all(np.diff(x) > 0), "x", x, "increasing positions")
+    require(isinstance(harmonics, int) and harmonics >= 1, "harmonics", harmonics, ">= 1")
+    variance = _detrended_variance(x, heights)
+    require(variance > 0, "heights", "a straight line", "heights that vary")
+    span, spacing = float(np.ptp(x)), float(np.ptp(x)) / (x.size - 1)
+    if period is None:
+        period = find_period(x, heights, harmonics)
+    needs = f"0 < period <= {span / 1.5:.6g} (1.5 periods in the trace)"
+    require(np.isfinite(period) and 0 < period <= span / 1.5, "period", period, needs)
+    most = max(1, int(0.5 * period / spacing) - 1)
+    needs = f"harmonics <= {most} at {period / spacing:.3g} samples a period"
+    require(harmonics <= most, "harmonics", harmonics, needs)
+    design = _design(x, period, harmonics)
+    solution = np.linalg.lstsq(design, heights, rcond=None)[0]
+    left = float(np.mean((heights - design @ solution) ** 2))
+    cos, sin = np.split(solution[2:], 2)
+    return SeriesFit(cos, sin, float(period), 1.0 - left / variance)

@@ -1,0 +1,77 @@
+"""What a surface profile is, and the check that it is one."""
+
+import abc
+from collections.abc import Callable
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..arguments import Real, is_concrete, require
+
+
+class AbstractProfile(eqx.Module):
+    """The profile `w`: 1-periodic and C^2, a surface of height `eps w(x/eps)`.
+
+    An implementer keeps three rules:
+
+    1. `__call__(y)` takes arrays of any shape and reduces `y` to one period itself, so
+       that no digits are lost at y = 1e8.
+    2. It is twice differentiable by `jax.jvp` everywhere.
+    3. `points` samples a period resolve `w'`; it is static.
+    """
+
+    @abc.abstractmethod
+    def __call__(self, y: Real) -> Real:
+        """Height `w(y)` in periods, at tip coordinate `y` in periods."""
+
+    @property
+    @abc.abstractmethod
+    def points(self) -> int:
+        """How many samples a period resolve `w'`."""
+
+
+@eqx.filter_jit
+def _derivatives(fn: Callable, y):
+    first = jax.vmap(jax.grad(fn))
+    second = jax.vmap(jax.grad(jax.grad(fn)))
+    third = jax.vmap(jax.grad(jax.grad(jax.grad(fn))))
+    return jax.vmap(fn)(y), first(y), second(y), third(y)
+
+
+def require_smooth(name: str, fn: Callable[[Real], Real], points: int) -> None:
+    """Check that `fn` on [0, 1) repeats as a C^2 function (hypothesis of Section 3).
+
+    Looks at the seam from both sides and, between neighbouring samples, for jumps of
+    `w, w', w''` larger than their derivatives explain.
+
+    Raises `ValueError` naming the derivative that jumps, where, and by how much.
+    """
+    if not is_concrete(fn):
+        return
+    inside = 1e-7
+    y = jnp.asarray(np.concatenate([np.arange(points) / points, [1.0 - inside]]))
+    values = [np.asarray(v) for v in _derivatives(fn, y)]
+    for value in values[:3]:
+        require(np.all(np.isfinite(value)), name, "not finite", "finite w, w', w''")
+    sizes = [max(float(np.max(np.abs(v))), 1e-300) for v in values]
+    require(np.ptp(values[0]) > 0, name, "constant", "a profile that is not constant")
+    for order, label in enumerate(("w", "w'", "w''")):
+        value, slope, size = values[order], values[order + 1], sizes[order]
+        seam = float(abs(value[-1] + inside * slope[-1] - value[0]))
+        require(
+            seam <= 1e-6 * (size + inside * sizes[order + 1]),
+            name,
+            f"{label} jumps by {seam:.3g} at the seam y = 0",
+            "a 1-periodic C^2 function",
+        )
+        jumps = np.abs(np.diff(value[:-1]))
+        steepest = max(sizes[order + 1] if np.isfinite(sizes[order + 1]) else 0.0, 1e-300)
+        worst = int(np.argmax(jumps))
+        require(
+            jumps[worst] <= 2 * steepest / points + 1e-9 * size,
+            name,
+            f"{label} jumps by {jumps[worst]:.3g} near y = {worst / points:.4g}",
+            "a 1-periodic C^2 function",
+        )

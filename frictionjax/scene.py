@@ -1,0 +1,162 @@
+"""What is simulated, as data."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from .admissibility import require_admissible, require_convex
+from .arguments import Real, as_real, as_text, is_concrete, require, require_real
+from .bristles import AbstractBristle
+from .coefficients import coefficients_jit
+from .loads import AbstractLoad
+from .potentials import AbstractPotential, BristlePotential, potential
+from .profiles import AbstractProfile
+from .supports import AbstractSupport
+
+_TRACED_TURNS = 64  # turning points allowed for where the load's numbers are traced
+
+
+class Scene(eqx.Module):
+    """A bristle on a wiggly surface, pulled through a support by a load.
+
+    `Scene(profile, bristle, support, load, duration, z0=0.0, effects=())`, or
+    `Scene(potential=GivenPotential(W, Q), support=..., load=..., duration=...)`.
+
+    `duration` T in s, `z0` the state at t = 0 in m. `effects`: what else the scene calls
+    for; a scene without effects is the plain system of the paper.
+
+    All numbers are traced leaves. Only the room for turning points of the load is static
+    (`turns`, a power of two), so a scene of the same shape and other values compiles
+    nothing new.
+
+    Raises `ValueError` for parts of another kind, a duration that is not positive, and
+    every hypothesis of the paper that can be told without eps: see `friction`, and
+    `Phi` uniformly convex on the range that the load reaches.
+    """
+
+    potential: AbstractPotential
+    support: AbstractSupport
+    load: AbstractLoad
+    duration: Real
+    z0: Real
+    effects: tuple
+    turns: int = eqx.field(static=True)
+
+    def __init__(
+        self,
+        profile: AbstractProfile | None = None,
+        bristle: AbstractBristle | None = None,
+        support: AbstractSupport | None = None,
+        load: AbstractLoad | None = None,
+        duration: Any = None,
+        z0: Any = 0.0,
+        effects: tuple = (),
+        *,
+        potential: AbstractPotential | None = None,
+    ):
+        self.potential = _potential_of(profile, bristle, potential)
+        for name, part, kind in (
+            ("support", support, AbstractSupport),
+            ("load", load, AbstractLoad),
+        ):
+            known = isinstance(part, kind)
+            needs = f"a part of frictionjax.{name}s"
+            require(known, f"scene.{name}", type(part).__name__, needs)
+        require(duration is not None, "scene.duration", "None", "a time > 0 in s")
+        require(
+            tuple(effects) == (),
+            "scene.effects",
+            repr(effects),
+            "(): this version has no optional effects",
+        )
+        assert support is not None and load is not None
+        self.support, self.load = support, load
+        self.duration, self.z0 = as_real(duration), as_real(z0)
+        self.effects = tuple(effects)
+        require_real("scene.duration", self.duration, "duration > 0", lambda t: t > 0)
+        require_real("scene.z0", self.z0, "a position in m")
+        self.turns = _room_for_turns(self.load, self.duration)
+        _require_hypotheses(self)
+
+    @property
+    def profile(self) -> AbstractProfile | None:
+        """The surface profile; None in the abstract setting."""
+        known = isinstance(self.potential, BristlePotential)
+        return self.potential.profile if known else None  # type: ignore[attr-defined]
+
+    @property
+    def bristle(self) -> AbstractBristle | None:
+        """The bristle; None in the abstract setting."""
+        known = isinstance(self.potential, BristlePotential)
+        return self.potential.bristle if known else None  # type: ignore[attr-defined]
+
+    def turning_points(self) -> Real:
+        """Turning points of the load in (0, T), shape (turns,), padded with T."""
+        return self.load.turning_points(jnp.asarray(self.duration), self.turns)
+
+
+def _potential_of(profile, bristle, given) -> AbstractPotential:
+    if given is None:
+        return potential(profile, bristle)  # type: ignore[arg-type]
+    require(
+        profile is None, "scene.profile", type(profile).__name__, "none beside potential"
+    )
+    require(
+        bristle is None, "scene.bristle", type(bristle).__name__, "none beside potential"
+    )
+    known = isinstance(given, AbstractPotential)
+    require(known, "scene.potential", type(given).__name__, "a GivenPotential")
+    return given
+
+
+def _room_for_turns(load: AbstractLoad, duration: Any) -> int:
+    if not is_concrete(load, duration):
+        return _TRACED_TURNS
+    count = load.turning_count(float(duration))
+    return 1 << max(2, (count - 1).bit_length()) if count else 0
+
+
+def load_range(scene: Scene) -> tuple[Real, Real]:
+    """Smallest and largest load on [0, T]: it is monotone between turning points."""
+    ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
+    values = jax.vmap(scene.load)(jnp.concatenate([ends, scene.turning_points()]))
+    return jnp.min(values), jnp.max(values)
+
+
+_load_range = eqx.filter_jit(load_range)
+
+
+def _require_hypotheses(scene: Scene) -> None:
+    if not is_concrete(scene) or not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
+        return  # traced values cannot be looked at; 32 bits raise at the entry points
+    require_admissible(scene.potential)
+    found = coefficients_jit(scene.potential)
+    low, high = (float(v) for v in _load_range(scene))
+    finite = np.isfinite(low) and np.isfinite(high)
+    require(finite, "load", f"[{low:.6g}, {high:.6g}]", "finite values on [0, duration]")
+    start = float(scene.support.force(jnp.asarray(scene.z0)))
+    low = min(low - float(found.rho_plus), start)
+    high = max(high - float(found.rho_minus), start)
+    require_convex(scene.support, jnp.asarray(low), jnp.asarray(high))
+
+
+def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " n"]:
+    """Check requested times: sorted, inside [0, duration]; evenly spaced where None."""
+    duration = jnp.asarray(scene.duration)
+    if ts is None:
+        return duration * jnp.linspace(0.0, 1.0, fallback)
+    ts = jnp.asarray(ts, dtype=float)
+    if not is_concrete(ts, scene.duration):
+        return ts
+    known = np.asarray(ts)
+    require(known.ndim == 1 and known.size > 0, "ts", known, "times, shape (n,), n > 0")
+    require(np.all(np.isfinite(known)), "ts", known, "finite times")
+    require(np.all(np.diff(known) >= 0), "ts", known, "times that do not decrease")
+    end = float(duration)
+    inside = known[0] >= 0 and known[-1] <= end
+    require(inside, "ts", known[[0, -1]], f"times in [0, duration] = [0, {as_text(end)}]")
+    return ts

@@ -1,0 +1,29 @@
+"""Support given as a function."""
+
+from collections.abc import Callable
+
+import jax.numpy as jnp
+
+from ..arguments import Real, require
+from ..roots import increasing_root
+from .support import AbstractSupport
+
+
+class Convex(AbstractSupport):
+    """The support with energy `Phi = energy_fn`, C^2 and uniformly convex, in J.
+
+    `energy_fn`: scalar to scalar, written with `jax.numpy`. That `Phi'' > 0` is checked
+    by the scene, on the range of z that its load reaches.
+    """
+
+    energy_fn: Callable[[Real], Real]
+
+    def __init__(self, energy: Callable[[Real], Real]):
+        require(callable(energy), "support.energy", energy, "a function Phi of z")
+        self.energy_fn = energy
+
+    def energy(self, z: Real) -> Real:
+        return jnp.asarray(self.energy_fn(z))
+
+    def state_of(self, force: Real) -> Real:
+        return increasing_root(lambda z: self.force(z) - force, jnp.zeros_like(force))

@@ -1,0 +1,24 @@
+"""Linear horizontal spring."""
+
+import equinox as eqx
+
+from ..arguments import Real, as_real, require_real
+from .support import AbstractSupport
+
+
+class Spring(AbstractSupport):
+    """`Phi(z) = stiffness/2 z^2`; `stiffness` k_h in N/m.
+
+    Raises `ValueError` for a stiffness that is not positive.
+    """
+
+    stiffness: Real = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        require_real("support.stiffness", self.stiffness, "stiffness > 0", lambda k: k > 0)
+
+    def energy(self, z: Real) -> Real:
+        return 0.5 * self.stiffness * z**2
+
+    def state_of(self, force: Real) -> Real:
+        return force / self.stiffness

@@ -1,0 +1,28 @@
+"""What a support is."""
+
+import abc
+
+import equinox as eqx
+import jax
+
+from ..arguments import Real
+
+
+class AbstractSupport(eqx.Module):
+    """The energy `Phi(z)` of the horizontal spring, uniformly convex."""
+
+    @abc.abstractmethod
+    def energy(self, z: Real) -> Real:
+        """`Phi(z)` in J."""
+
+    @abc.abstractmethod
+    def state_of(self, force: Real) -> Real:
+        """`(Phi')^-1(force)` in m, differentiable in `force` (N) and parameters."""
+
+    def force(self, z: Real) -> Real:
+        """`Phi'(z)` in N."""
+        return jax.grad(self.energy)(z)
+
+    def stiffness_at(self, z: Real) -> Real:
+        """`Phi''(z)` in N/m."""
+        return jax.grad(jax.grad(self.energy))(z)

@@ -1,0 +1,57 @@
+"""Solvers by name."""
+
+import inspect
+
+import diffrax
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..arguments import require
+from .rosenbrock import Rodas5P
+
+OURS = ("auto", "resolved", "windowed")
+_NEWTON_SHARE = 0.03  # of the tolerance; 0.3 costs accuracy, 0.003 a fifth more iterations
+
+
+def _is_usable(candidate: object) -> bool:
+    """Whether diffrax solves a plain ODE adaptively with it, without more arguments."""
+    if not (isinstance(candidate, type) and issubclass(candidate, diffrax.AbstractSolver)):
+        return False
+    plain = getattr(candidate, "term_structure", None) in (
+        diffrax.ODETerm,
+        diffrax.AbstractTerm,
+    )
+    adaptive = issubclass(candidate, diffrax.AbstractAdaptiveSolver)
+    wrapper = issubclass(candidate, diffrax.AbstractWrappedSolver)
+    return plain and adaptive and not wrapper and not inspect.isabstract(candidate)
+
+
+def known_solvers() -> list[str]:
+    """Names of the diffrax solvers that `method` accepts."""
+    names = [name for name in dir(diffrax) if _is_usable(getattr(diffrax, name))]
+    return sorted(names)
+
+
+def solver_of(method: object) -> diffrax.AbstractSolver:
+    """The solver that `method` names: ours, a diffrax name, class or instance.
+
+    Raises `ValueError` with the names allowed.
+    """
+    if isinstance(method, diffrax.AbstractSolver):
+        return method
+    if isinstance(method, str) and method in OURS:
+        return Rodas5P()
+    candidate = getattr(diffrax, method, None) if isinstance(method, str) else method
+    allowed = f"one of {', '.join([*OURS, *known_solvers()])}, or a diffrax solver"
+    usable = _is_usable(candidate)
+    require(usable, "method", method if isinstance(method, str) else repr(method), allowed)
+    return candidate()  # type: ignore[operator]
+
+
+def with_tolerance(solver: diffrax.AbstractSolver, tolerance) -> diffrax.AbstractSolver:
+    """Give an implicit solver's Newton iteration a share of the step's tolerance."""
+    finder = getattr(solver, "root_finder", None)
+    if finder is None:
+        return solver
+    own = type(finder)(rtol=0.0, atol=_NEWTON_SHARE * jnp.asarray(tolerance))
+    return eqx.tree_at(lambda s: s.root_finder, solver, own)

@@ -1,0 +1,30 @@
+"""How a computation ended."""
+
+import enum
+
+
+class Status(enum.IntEnum):
+    """Why a result can or cannot be trusted; `message` says it for people."""
+
+    message: str
+
+    def __new__(cls, code: int, message: str):
+        member = int.__new__(cls, code)
+        member._value_ = code
+        member.message = message
+        return member
+
+    OK = 0, "every number can be trusted"
+    MAX_STEPS = 1, "the step budget ran out before the last time; raise max_steps"
+    STEP_TOO_SMALL = 2, "slips are shorter than the spacing of floats at t"
+    NOT_FINITE = 3, "the trajectory left the range of finite numbers"
+    SOLVER_FAILED = 4, "the solver gave up on a step"
+    UNBALANCED = 5, "the energy-dissipation balance does not close"
+    TOO_MANY_TURNS = 6, "the load turns more often than the scene has room for"
+
+
+FLAGS = {
+    "flag_values": [int(status) for status in Status],
+    "flag_meanings": " ".join(status.name.lower() for status in Status),
+}
+"""CF conventions for the integer status of a data set."""

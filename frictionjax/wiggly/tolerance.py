@@ -1,0 +1,134 @@
+"""From the accuracy asked for to the tolerance and the reach of a step."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from ..arguments import Real
+from ..coefficients import coefficients
+from ..extrema import periodic_extrema
+from ..potentials import AbstractPotential
+from ..scene import Scene, load_range
+
+_SAFETY = 30.0  # error over tolerance reached 14 where slips forget each other
+_LOOSEST = 1e-4  # looser ones save little (46 steps a slip for 58): guard and folds rule
+_TIGHTEST = 1e-13
+_SAMPLES = 64  # of the load's slope between two turning points
+_DOUBLE_SPACING = 2.0**-50  # shortest step over the duration: four spacings of floats
+
+
+class Plan(NamedTuple):
+    """Step control of one trajectory: tolerance and reach in periods, steps in s."""
+
+    tolerance: Real
+    reach: Real
+    first_step: Real
+    shortest_step: Real
+
+
+class Landscape(eqx.Module):
+    """What step control needs to know of the wiggly force in the tip coordinate.
+
+    `fold_curvature`: |W'''| at the sharper of the two extreme folds, in N. `steepest`: max
+    |W''| in N. `branch`: width in periods of the narrowest branch on which `W'` is
+    monotone; a tip must cross a falling one to change wells. `stretch`: largest G.
+    """
+
+    fold_curvature: Real
+    steepest: Real
+    branch: Real
+    stretch: Real
+
+
+def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
+    """Scan one period of `V_eps'` in the tip coordinate."""
+    points = potential.points
+
+    def force(y):
+        return potential.tip_force(y, eps)[0]
+
+    extrema = periodic_extrema(force, points)
+    bend = jax.grad(jax.grad(force))
+    grid = (jnp.arange(points) + 0.5) / points
+    slopes = jax.vmap(jax.grad(force))(grid)
+    stretches = jax.vmap(lambda y: potential.tip_force(y, eps)[1])(grid)
+    curvatures = jnp.abs(jnp.stack([bend(extrema.argmax), bend(extrema.argmin)]))
+    return Landscape(
+        fold_curvature=jnp.max(curvatures),
+        steepest=jnp.max(jnp.abs(slopes)),
+        branch=jnp.minimum(_narrowest_run(slopes) / points, 0.5),
+        stretch=jnp.max(stretches),
+    )
+
+
+def _narrowest_run(slopes: Float[Array, " n"]) -> Real:
+    """Samples in the shortest run of one sign of the 1-periodic `slopes`, at least 2.
+
+    Rounding noise on flat stretches counts as rising.
+    """
+    falling: Bool[Array, " twice"] = jnp.tile(slopes < -1e-9 * jnp.max(jnp.abs(slopes)), 2)
+    index = jnp.arange(falling.shape[0])
+    turns = jnp.where(falling != jnp.roll(falling, 1), index, 0)
+    before = jax.lax.cummax(turns)[:-1]
+    complete = (turns[1:] > 0) & (before > 0)
+    widths = jnp.where(complete, index[1:] - before, falling.shape[0])
+    return jnp.maximum(jnp.min(widths), 2)
+
+
+def _fastest_load(scene: Scene) -> Real:
+    """Largest |l'| on [0, T], sampled between the turning points."""
+    ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
+    edges = jnp.sort(jnp.concatenate([ends, scene.turning_points()]))
+    share = (jnp.arange(_SAMPLES) + 0.5) / _SAMPLES
+    times = edges[:-1, None] + jnp.diff(edges)[:, None] * share
+    return jnp.max(jnp.abs(jax.vmap(scene.load.slope)(times.ravel())))
+
+
+def _softest_support(scene: Scene) -> Real:
+    """Smallest Phi'' over a few states that the load reaches."""
+    found = coefficients(scene.potential)
+    low, high = load_range(scene)
+    forces = jnp.linspace(low - found.rho_plus, high - found.rho_minus, 9)
+    states = jax.vmap(scene.support.state_of)(forces)
+    return jnp.min(jax.vmap(scene.support.stiffness_at)(states))
+
+
+def remembered_slips(ground: Landscape, scene: Scene, eps: Real, gamma: Real) -> Real:
+    """How many slips back a disturbance still matters, in the scene's fastest slide.
+
+    Averaging over a well, a slide at speed v lags by a force that is quadratic in
+    eps^gamma v; its slope gives one e-fold of forgetting in
+    `4 pi^2 v^2 eps^(2 gamma - 1)/(|W_fold'''| Phi'')` wells: 40 at gamma = 1/2 on the
+    benchmark scene at any eps (a slip leaves 0.975 of a disturbance, as measured), one or
+    less at gamma = 1.
+    """
+    stiffness = _softest_support(scene)
+    speed = _fastest_load(scene) / stiffness
+    bend = jnp.maximum(ground.fold_curvature, 1e-300)
+    return 4 * jnp.pi**2 * speed**2 * eps ** (2 * gamma - 1) / (bend * stiffness)
+
+
+def plan_steps(scene: Scene, eps: Real, gamma: Real, accuracy: Real) -> Plan:
+    """Step control for an error of `accuracy` eps in z at times outside slips.
+
+    Errors of the slips remembered add up with mixed signs: as the root of their number.
+    (As the number itself: tolerances 6 times smaller at gamma = 1/2, for errors that were
+    7 times below the target already.)
+    """
+    ground = landscape(scene.potential, eps)
+    memory = remembered_slips(ground, scene, eps, gamma)
+    stretch = jnp.maximum(1.0, ground.stretch)
+    tolerance = accuracy / (_SAFETY * jnp.sqrt(1 + memory) * stretch)
+    relaxation = eps ** (gamma + 1) / ground.steepest
+    shortest = _DOUBLE_SPACING * scene.duration
+    first = jnp.clip(1e-2 * relaxation, 2 * shortest, 1e-2 * scene.duration)
+    plan = Plan(
+        tolerance=jnp.clip(tolerance, _TIGHTEST, _LOOSEST),
+        reach=0.25 * ground.branch,
+        first_step=first,
+        shortest_step=shortest,
+    )
+    return jax.lax.stop_gradient(plan)
