@@ -71,3 +71,12 @@ def require_x64(*trees: Any) -> None:
     for leaf in jax.tree_util.tree_leaves(trees):
         if eqx.is_inexact_array(leaf) and leaf.dtype != np.float64:
             raise ValueError(f"dtype = {leaf.dtype}: needs float64 leaves; {mend}")
+
+
+def require_numbers(name: str, value: Any, allowed: str, test) -> None:
+    """Check one number or an array of them."""
+    if not is_concrete(value):
+        return
+    array = np.asarray(value, dtype=float)
+    good = array.size > 0 and np.all(np.isfinite(array)) and bool(np.all(test(array)))
+    require(good, name, array, allowed)

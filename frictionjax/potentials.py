@@ -37,6 +37,10 @@ class AbstractPotential(eqx.Module):
         """`V_eps` in J at the tip coordinate `y`."""
 
     @abc.abstractmethod
+    def tip_energy_change(self, y: Real, eps: Real) -> Real:
+        """`V_eps` in J as a difference of energies: cheap, digits lost at small eps."""
+
+    @abc.abstractmethod
     def well_coordinate(self, Y: Real, eps: Real) -> Real:
         """The tip coordinate `y` that belongs to the state `Y`, both near 0."""
 
@@ -118,6 +122,10 @@ class BristlePotential(AbstractPotential):
 
     def tip_energy(self, y: Real, eps: Real) -> Real:
         return increment(self.bristle.energy, eps * self.profile(y))
+
+    def tip_energy_change(self, y: Real, eps: Real) -> Real:
+        end = self.bristle.energy(eps * self.profile(y))
+        return end - self.bristle.energy(jnp.zeros_like(y))
 
     def tip_force(self, y: Real, eps: Real) -> tuple[Real, Real]:
         # The chain rule by hand: F' and A' once each, not through `increment`.
@@ -213,6 +221,9 @@ class GivenPotential(AbstractPotential):
     def tip_energy(self, y: Real, eps: Real) -> Real:
         Y = y - jnp.floor(y)
         return eps * self.W_fn(Y) + eps**2 * self.Q_fn(eps, Y)
+
+    def tip_energy_change(self, y: Real, eps: Real) -> Real:
+        return self.tip_energy(y, eps)
 
     def well_coordinate(self, Y: Real, eps: Real) -> Real:
         return Y

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 from jaxtyping import PyTree
 
 from ..arguments import Real
-from .balance import Balance, advance, at_rest, dissipated
+from .balance import advance, at_rest, dissipated
 from .field import TipField
 
 
@@ -18,7 +18,8 @@ class AbstractWatch(eqx.Module):
     """Something that looks at every accepted step, such as a running maximum.
 
     Its memory is a pytree of floats; `look` gives the memory after a step that ended at
-    time `t` (s) in the state `z` (m), with the energy `dissipation` (J) lost since 0.
+    time `t` (s) in the state `z` (m), with the energy `dissipation` (J) lost since 0 (0
+    where no balance is integrated).
     """
 
     @abc.abstractmethod
@@ -44,17 +45,17 @@ class Recorder(eqx.Module):
         return (*balance, *watched)
 
     def record(self, memory: tuple, t0: Real, t1: Real, y0: Real, y1: Real) -> tuple:
-        if not memory:
-            return ()
-        balance = advance(self.field, memory[0], t0, t1, y0, y1)
-        if self.watch is None:
-            return (balance,)
-        spent = dissipated(self.field, balance, t1, y1, self.start_energy)
-        z = self.field.state(y1)
-        return (balance, self.watch.look(memory[1], t1, z, spent))
-
-    def balance(self, memory: tuple) -> Balance | None:
-        return memory[0] if memory else None
+        after: list = []
+        spent = jnp.zeros_like(y1)
+        if self.balanced:
+            balance = advance(self.field, memory[0], t0, t1, y0, y1)
+            after.append(balance)
+        if self.watch is not None:
+            if self.balanced:
+                spent = dissipated(self.field, balance, t1, y1, self.start_energy)
+            z = self.field.state(y1)
+            after.append(self.watch.look(memory[-1], t1, z, spent))
+        return tuple(after)
 
 
 class Observed(diffrax.AbstractAdaptiveSolver):
@@ -93,7 +94,7 @@ class Observed(diffrax.AbstractAdaptiveSolver):
         # Halving forgets: the last step before a stop may be cut short by it.
         y1 = (tip1, *memory1, jnp.maximum(t1 - t0, 0.5 * step0))
         still: Any = (error, *_zeros_like(y1[1:]))
-        return y1, still, dict(y0=y0, y1=y1), solver_state, result
+        return y1, still, {"y0": y0, "y1": y1}, solver_state, result
 
     def _tip_terms(self) -> diffrax.ODETerm:
         return diffrax.ODETerm(lambda t, y, args: self.recorder.field.velocity(t, y))

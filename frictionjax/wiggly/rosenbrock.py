@@ -124,5 +124,5 @@ class Rodas5P(diffrax.AbstractAdaptiveSolver):
             stages.append((slope + _combine(_C[i], stages) / step + forcing) * inverse)
         error = stages[-1]
         y1 = y + error
-        dense_info = dict(y0=y0, y1=y1)
+        dense_info = {"y0": y0, "y1": y1}
         return y1, error, dense_info, None, diffrax.RESULTS.successful

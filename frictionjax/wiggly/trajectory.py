@@ -6,11 +6,17 @@ import diffrax
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float, Int, PyTree
 
 from ..admissibility import require_reach
-from ..arguments import Real, as_real, is_concrete, require, require_real, require_x64
+from ..arguments import (
+    Real,
+    as_real,
+    is_concrete,
+    require_numbers,
+    require_real,
+    require_x64,
+)
 from ..coefficients import coefficients
 from ..scene import Scene, require_times
 from .balance import Balance, dissipated
@@ -32,6 +38,7 @@ class Trajectory(NamedTuple):
     dissipation: Float[Array, " n"] | None
     residual: Float[Array, " n"] | None
     final: Balance | None
+    dissipation_gap: Real | None
     watched: PyTree
     status: Int[Array, ""]
     steps: Int[Array, ""]
@@ -124,9 +131,11 @@ def integrate(
     tips, *memories = fronts.y
     blank = jnp.where(fronts.code == Status.OK, 0.0, jnp.nan)
     z = jax.vmap(field.state)(tips) + blank
-    dissipation, residual, final = None, None, None
+    dissipation, residual, final, gap = None, None, None, None
     if balanced:
         final = last.y[1]
+        spent = dissipated(field, final, last.t, last.y[0], start_energy)
+        gap = jnp.abs(final.viscous - spent)
         dissipation = blank + jax.vmap(
             lambda t, y, balance: dissipated(field, balance, t, y, start_energy)
         )(ts, tips, memories[0])
@@ -139,7 +148,8 @@ def integrate(
         dissipation=dissipation,
         residual=residual,
         final=final,
-        watched=None if watch is None else last.y[2],
+        dissipation_gap=gap,
+        watched=None if watch is None else last.y[-1],
         status=status,
         steps=last.steps,
         rejected=last.rejected,
@@ -265,20 +275,13 @@ def _solve(scene, eps, gamma, ts, accuracy, solver, balanced, max_steps, adjoint
         max_steps=max_steps,
         adjoint=adjoint,
     )
-    stats = dict(steps=found.steps, rejected=found.rejected, tolerance=plan.tolerance)
-    if found.final is not None and found.dissipation is not None:
-        gap = jnp.abs(found.final.viscous - found.dissipation[-1])
-        stats["dissipation_gap"] = gap
+    stats = {
+        "steps": found.steps,
+        "rejected": found.rejected,
+        "tolerance": plan.tolerance,
+        "dissipation_gap": found.dissipation_gap,
+    }
     return Solution(ts, found.z, found.dissipation, found.residual, found.status, stats)
-
-
-def require_numbers(name: str, value: Any, allowed: str, test) -> None:
-    """Check one number or an array of them."""
-    if not is_concrete(value):
-        return
-    array = np.asarray(value, dtype=float)
-    good = array.size > 0 and np.all(np.isfinite(array)) and bool(np.all(test(array)))
-    require(good, name, array, allowed)
 
 
 def require_accuracy(accuracy: Any) -> None:

@@ -1,0 +1,69 @@
+"""Units, meanings and origin of a data set, in its attributes."""
+
+import platform
+from importlib.metadata import version
+from typing import Any
+
+import equinox as eqx
+import jax
+import numpy as np
+import xarray as xr
+
+from . import __version__
+from .scene import Scene
+from .wiggly.status import FLAGS
+
+_PACKAGES = ("jax", "diffrax", "equinox", "numpy", "xarray")
+
+_MEANING = {
+    "eps": ("m", "period of the surface, length scale eps"),
+    "gamma": ("1", "exponent of the viscosity eps^gamma"),
+    "time": ("s", "time"),
+    "z": ("m", "state of the wiggly system, z_eps"),
+    "sup_error": ("m", "sup over [0, T] of |z_eps - z|"),
+    "strip_excess": ("m", "sup over [0, T] of the distance of z_eps from the strip"),
+    "status": (None, "how the cell ended"),
+    "steps": ("1", "steps tried"),
+    "rejected": ("1", "steps rejected"),
+    "tolerance": ("1", "tolerance of a step in periods of the surface"),
+    "dissipation": ("J", "energy dissipated since t = 0, int eps^gamma z'^2"),
+    "dissipation_error": ("J", "sup over [0, T] of |dissipation - dissipation_limit|"),
+    "dissipation_gap": ("J", "distance at T of two independent values of dissipation"),
+    "residual": ("J", "residual of the energy-dissipation balance on [0, T]"),
+    "viscosity": ("N s m-1", "viscosity eps^gamma"),
+    "z_limit": ("m", "state of the limit system"),
+    "dissipation_limit": ("J", "energy dissipated by the limit system, int R(z')"),
+    "load": ("N", "load l(t)"),
+    "z_minus": ("m", "lower edge of the strip"),
+    "z_plus": ("m", "upper edge of the strip"),
+}
+
+
+def scene_text(scene: Scene) -> str:
+    """The scene's parts and numbers, readable."""
+    numbers = jax.tree_util.tree_map(
+        lambda leaf: np.asarray(leaf).tolist() if eqx.is_array_like(leaf) else leaf, scene
+    )
+    return eqx.tree_pformat(numbers, short_arrays=False, width=88)
+
+
+def describe(data: xr.Dataset, scene: Scene, **facts: Any) -> xr.Dataset:
+    """Attach units, long names, CF flags and provenance to the data set of a sweep."""
+    for name in data.variables:
+        units, meaning = _MEANING[str(name)]
+        data[name].attrs["long_name"] = meaning
+        if units is not None:
+            data[name].attrs["units"] = units
+    data["status"].attrs["flag_values"] = np.array(FLAGS["flag_values"], dtype=np.int8)
+    data["status"].attrs["flag_meanings"] = FLAGS["flag_meanings"]
+    data.attrs = {
+        "title": "Convergence of a wiggly viscous system to directional dry friction",
+        "source": f"frictionjax {__version__}",
+        "scene": scene_text(scene),
+        "dtype": "float64",
+        "method": f"resolved: every slip, {facts.pop('solver')}",
+        "versions": ", ".join(f"{name} {version(name)}" for name in _PACKAGES),
+        "python": platform.python_version(),
+        **facts,
+    }
+    return data

@@ -1,0 +1,160 @@
+"""A convergence study: orders, constants and failures of a sweep."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from .arguments import require
+from .orders import Fit, Verdict, fit_order, local_orders
+from .wiggly.status import Status
+
+_MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
+
+
+class Study(NamedTuple):
+    """Result of `study`.
+
+    `orders`: over gamma; `local_orders`: over gamma and neighbouring pairs of eps;
+    `failed`: one dict for each cell that failed, with gamma, eps, status and message.
+    """
+
+    orders: xr.Dataset
+    local_orders: xr.Dataset
+    failed: list[dict[str, Any]]
+    dataset: xr.Dataset
+
+    def plot(self):
+        """Errors against eps with the fitted orders, as a matplotlib Figure."""
+        from .plot.convergence import draw
+
+        return draw(self.dataset, self.orders)
+
+
+def study(dataset: xr.Dataset) -> Study:
+    """Convergence orders of a data set made by `sweep`.
+
+    `.orders` holds, for each gamma: `order, order_low, order_high` of `sup_error` (95%
+    interval), the window `eps_min, eps_max, points` it rests on, how many cells were left
+    out as pre-asymptotic, near the solver's floor or failed, `constant`, `verdict` (CF
+    flags); the same with `dissipation_` in front; `beta = min(1, gamma)` of Lemmas 7 to 9
+    (the paper proves no rate for the sup error); the measured constants `C0` of Lemma 7
+    and `C` of Lemma 9, the latter a lower bound from the times in the data set.
+
+    Raises `ValueError` where the data set lacks what `sweep` puts there.
+    """
+    needed = {"sup_error", "status", "strip_excess", "z"}
+    missing = sorted(needed - set(dataset.variables))
+    require(not missing, "dataset", ", ".join(missing) or "-", "the variables of a sweep")
+    gammas = dataset.gamma.values
+    columns = _columns("", dataset, dataset.accuracy * dataset.eps)
+    if "dissipation_error" in dataset:
+        columns |= _columns("dissipation_", dataset, dataset.dissipation_gap)
+    columns["beta"] = np.minimum(1.0, gammas)
+    columns["C0"] = np.array([_lemma_7(dataset.sel(gamma=g)) for g in gammas])
+    columns["C"] = np.array([_lemma_9(dataset.sel(gamma=g)) for g in gammas])
+    orders = xr.Dataset(
+        {name: ("gamma", values) for name, values in columns.items()},
+        coords={"gamma": gammas},
+        attrs=dataset.attrs,
+    )
+    return Study(_described(orders), _local(dataset), _failed(dataset), dataset)
+
+
+_FIELDS = {"order": "order", "low": "order_low", "high": "order_high"}
+
+
+def _columns(
+    prefix: str, dataset: xr.Dataset, uncertainty: xr.DataArray
+) -> dict[str, np.ndarray]:
+    errors = dataset[f"{prefix or 'sup_'}error"]
+    good = dataset.status == int(Status.OK)
+    errors = errors.where(good).transpose("gamma", "eps").values
+    known = uncertainty.broadcast_like(dataset.sup_error).transpose("gamma", "eps").values
+    fits = [fit_order(dataset.eps.values, *row) for row in zip(errors, known, strict=True)]
+    names = {name: prefix + _FIELDS.get(name, name) for name in Fit._fields}
+    return {
+        label: np.array([getattr(fit, name) for fit in fits])
+        for name, label in names.items()
+    }
+
+
+def _lemma_7(cells: xr.Dataset) -> float:
+    """Smallest C0 with `dist(z_eps, strip) <= C0 eps^beta` in all cells of one gamma."""
+    beta = min(1.0, float(cells.gamma))
+    return float((cells.strip_excess / cells.eps**beta).max())
+
+
+def _lemma_9(cells: xr.Dataset) -> float:
+    """Smallest C with `|z(t) - z(s)| <= C (|t - s| + eps^beta)` at the times kept."""
+    beta = min(1.0, float(cells.gamma))
+    thin = cells.isel(time=slice(None, None, 1 + cells.time.size // _MOST_PAIRS))
+    gaps = np.abs(thin.time.values[:, None] - thin.time.values)
+    worst = 0.0
+    for eps in thin.eps.values:
+        z = thin.z.sel(eps=eps).values
+        ratio = np.abs(z[:, None] - z) / (gaps + eps**beta)
+        worst = max(worst, float(np.nanmax(ratio)) if np.isfinite(z).any() else 0.0)
+    return worst
+
+
+def _local(dataset: xr.Dataset) -> xr.Dataset:
+    eps = dataset.eps.values
+    good = dataset.status == int(Status.OK)
+    data = xr.Dataset(
+        coords={"gamma": dataset.gamma.values, "eps": np.sqrt(eps[1:] * eps[:-1])}
+    )
+    for label, name in (("order", "sup_error"), ("dissipation_order", "dissipation_error")):
+        if name in dataset:
+            errors = dataset[name].where(good).transpose("gamma", "eps").values
+            rows = [local_orders(eps, row) for row in errors]
+            data[label] = (("gamma", "eps"), np.array(rows))
+            data[label].attrs = {"units": "1", "long_name": f"local order of {name}"}
+    data.eps.attrs = {"units": "m", "long_name": "geometric mean of two neighbouring eps"}
+    return data
+
+
+def _failed(dataset: xr.Dataset) -> list[dict[str, Any]]:
+    codes = dataset.status.transpose("gamma", "eps").values
+    return [
+        {
+            "gamma": float(dataset.gamma[i]),
+            "eps": float(dataset.eps[j]),
+            "status": Status(int(codes[i, j])).name.lower(),
+            "message": Status(int(codes[i, j])).message,
+        }
+        for i, j in np.argwhere(codes != int(Status.OK))
+    ]
+
+
+_MEANING = {
+    "order": ("1", "order of convergence"),
+    "order_low": ("1", "lower end of its 95% interval"),
+    "order_high": ("1", "upper end of its 95% interval"),
+    "eps_min": ("m", "smallest eps of the window"),
+    "eps_max": ("m", "largest eps of the window"),
+    "points": ("1", "cells in the window"),
+    "preasymptotic": ("1", "cells left out, eps too large"),
+    "floor": ("1", "cells left out, error near the solver's own"),
+    "failed": ("1", "cells left out, failed"),
+    "beta": ("1", "exponent min(1, gamma) of Lemmas 7 to 9"),
+    "C0": (None, "smallest C0 of Lemma 7 in these cells, in m^(1-beta)"),
+    "C": (None, "smallest C of Lemma 9 in these cells"),
+    "constant": (None, "error over eps^order"),
+    "verdict": (None, "what the interval says"),
+}
+
+
+def _described(orders: xr.Dataset) -> xr.Dataset:
+    for name in map(str, orders.data_vars):
+        units, meaning = _MEANING[name.removeprefix("dissipation_")]
+        of = "dissipation_error" if name.startswith("dissipation_") else "sup_error"
+        lemma = name in ("beta", "C0", "C")
+        orders[name].attrs["long_name"] = meaning if lemma else f"{meaning} ({of})"
+        if units is not None:
+            orders[name].attrs["units"] = units
+        if name.endswith("verdict"):
+            orders[name] = orders[name].astype(np.int8)
+            orders[name].attrs["flag_values"] = np.array(list(Verdict), dtype=np.int8)
+            orders[name].attrs["flag_meanings"] = " ".join(v.name.lower() for v in Verdict)
+    return orders

@@ -1,0 +1,295 @@
+"""All cells eps x gamma of a scene, integrated in vmapped blocks, as a data set."""
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import xarray as xr
+from jaxtyping import Array, Float
+from tqdm import tqdm
+
+from .admissibility import require_reach
+from .arguments import Real, as_real, require_numbers, require_x64
+from .coefficients import Coefficients, coefficients
+from .friction_law import dissipation_potential
+from .limit_system import (
+    LimitSolution,
+    play_step,
+    require_start_in_strip,
+    solve_limit,
+    strip,
+)
+from .provenance import describe
+from .scene import Scene, require_times
+from .wiggly.methods import solver_of
+from .wiggly.observed import AbstractWatch
+from .wiggly.status import Status
+from .wiggly.tolerance import plan_steps
+from .wiggly.trajectory import integrate, require_accuracy
+
+# Lanes of one compiled block. 8 cost 1.0 us a lane and step, 32 cost 0.8, but wide blocks
+# mix cells of unequal length and each waits for its longest.
+_LANES = 8
+_WORKERS = 2  # blocks under way at once; XLA runs each on one core
+
+
+class Deviation(NamedTuple):
+    """Running comparison with the limit: its state (m), its dissipation (J), and suprema."""
+
+    z: Real
+    spent: Real
+    sup_error: Real
+    dissipation_error: Real
+    strip_excess: Real
+
+
+class LimitWatch(AbstractWatch):
+    """Follows the limit system step by step beside a wiggly one and keeps the suprema.
+
+    Steps end at the turning points of the load, so the play operator is exact at each.
+    The suprema are over all steps: the largest lag is just before a slip, where steps are
+    short.
+    """
+
+    scene: Scene
+    found: Coefficients
+
+    def start(self, z: Real) -> Deviation:
+        zero = jnp.zeros_like(z)
+        return Deviation(z, zero, zero, zero, zero)
+
+    def look(self, memory: Deviation, t: Real, z: Real, dissipation: Real) -> Deviation:
+        load = self.scene.load(t)
+        lower, upper = strip(self.scene.support, self.found, load)
+        limit = play_step(self.scene.support, self.found, memory.z, load)
+        law = self.found.rho_plus, self.found.rho_minus
+        spent = memory.spent + dissipation_potential(*law, limit - memory.z)
+        outside = jnp.maximum(lower - z, z - upper)
+        return Deviation(
+            z=limit,
+            spent=spent,
+            sup_error=jnp.maximum(memory.sup_error, jnp.abs(z - limit)),
+            dissipation_error=jnp.maximum(
+                memory.dissipation_error, jnp.abs(dissipation - spent)
+            ),
+            strip_excess=jnp.maximum(memory.strip_excess, outside),
+        )
+
+
+class Cell(NamedTuple):
+    """Result of one cell; arrays over the requested times, or scalars."""
+
+    z: Float[Array, " time"]
+    dissipation: Float[Array, " time"] | None
+    residual: Real | None
+    dissipation_gap: Real | None
+    deviation: Deviation
+    status: Array
+    steps: Array
+    rejected: Array
+    tolerance: Real
+
+
+def _cell(scene: Scene, eps: Real, gamma: Real, ts, accuracy, solver, balanced) -> Cell:
+    plan = plan_steps(scene, eps, gamma, accuracy)
+    found = integrate(
+        scene,
+        eps,
+        gamma,
+        ts,
+        plan,
+        solver,
+        until=jnp.asarray(scene.duration),
+        balanced=balanced,
+        watch=LimitWatch(scene, coefficients(scene.potential)),
+    )
+    unfinished = (found.status != Status.OK) & (found.status != Status.UNBALANCED)
+    blank = jnp.where(unfinished, jnp.nan, 0.0)
+    residual, gap = None, None
+    if found.final is not None:
+        residual = found.final.residual + blank
+        gap = found.dissipation_gap + blank
+    return Cell(
+        z=found.z,
+        dissipation=found.dissipation,
+        residual=residual,
+        dissipation_gap=gap,
+        deviation=jax.tree_util.tree_map(lambda leaf: leaf + blank, found.watched),
+        status=found.status,
+        steps=found.steps,
+        rejected=found.rejected,
+        tolerance=plan.tolerance,
+    )
+
+
+@eqx.filter_jit
+def _block(scene, eps, gamma, ts, accuracy, solver, balanced) -> Cell:
+    """One block of lanes; the only program that a sweep compiles for its trajectories."""
+
+    def lane(eps, gamma):
+        return _cell(scene, eps, gamma, ts, accuracy, solver, balanced)
+
+    return jax.vmap(lane)(eps, gamma)
+
+
+class Block(NamedTuple):
+    """Cells that run together: their numbers, and the values of all lanes."""
+
+    cells: np.ndarray
+    eps: np.ndarray
+    gamma: np.ndarray
+
+    @property
+    def cost(self) -> float:
+        """Relative: the longest lane has about 1/eps slips."""
+        return float(1 / self.eps.min())
+
+
+def _blocks(eps: np.ndarray, gamma: np.ndarray) -> list[Block]:
+    """Cut the grid into blocks of equal width and similar eps, the longest first.
+
+    Cells are numbered with gamma outside and eps inside; the last block is filled up with
+    copies of its last cell.
+    """
+    lane_gamma, lane_eps = (a.ravel() for a in np.meshgrid(gamma, eps, indexing="ij"))
+    order = np.lexsort((lane_gamma, lane_eps))
+    groups = [order[i : i + _LANES] for i in range(0, order.size, _LANES)]
+    full = [np.pad(g, (0, _LANES - g.size), mode="edge") for g in groups]
+    return [Block(g, lane_eps[f], lane_gamma[f]) for g, f in zip(groups, full, strict=True)]
+
+
+def _run(scene, blocks, ts, accuracy, solver, balanced, progress: bool) -> Cell:
+    """Run the blocks on all cores and put the cells back in order."""
+
+    def one(block: Block) -> Cell:
+        found = _block(
+            scene,
+            jnp.asarray(block.eps),
+            jnp.asarray(block.gamma),
+            ts,
+            accuracy,
+            solver,
+            balanced,
+        )
+        return jax.tree_util.tree_map(lambda a: np.asarray(a)[: block.cells.size], found)
+
+    total = sum(block.cost for block in blocks) * (1 + 1e-9)  # never above 100% by rounding
+    bar = tqdm(total=1.0, disable=not progress, bar_format=_BAR, desc="cells")
+    with bar, ThreadPoolExecutor(_WORKERS) as pool:
+        done = [one(blocks[-1])]  # the shortest compiles the program for all
+        bar.update(blocks[-1].cost / total)
+        for found, block in zip(pool.map(one, blocks[:-1]), blocks[:-1], strict=True):
+            done.append(found)
+            bar.update(block.cost / total)
+    order = np.argsort(np.concatenate([b.cells for b in [blocks[-1], *blocks[:-1]]]))
+    return jax.tree_util.tree_map(lambda *parts: np.concatenate(parts)[order], *done)
+
+
+_BAR = "{desc}: {percentage:3.0f}% |{bar}| {elapsed} so far, {remaining} to go"
+
+
+def _grid(name: str, values: Any) -> np.ndarray:
+    require_numbers(name, values, f"{name} > 0, a number or a list", lambda v: v > 0)
+    array = np.unique(np.atleast_1d(np.asarray(values, dtype=float)).ravel())
+    return array[::-1] if name == "eps" else array
+
+
+def sweep(
+    scene: Scene,
+    eps: Any,
+    gamma: Any,
+    ts: Any = None,
+    accuracy: Any = 1e-3,
+    method: Any = "auto",
+    progress: bool = False,
+    *,
+    dissipation: bool = True,
+) -> xr.Dataset:
+    """Solve all cells `eps` x `gamma` and compare each with the limit.
+
+    `eps` in m and `gamma`: numbers or lists, in any order; `ts`, `accuracy` and `method`
+    as in `solve`. `progress`: a bar on standard error. `dissipation=False` integrates no
+    energies and leaves their variables out.
+
+    Returns a data set with dims (gamma, eps, time): `z`, `dissipation`; over (gamma, eps)
+    `sup_error` = sup |z_eps - z| and `dissipation_error` over all of [0, T], `residual`
+    of the energy-dissipation balance, `strip_excess` = sup dist(z_eps, strip) (Lemma 7),
+    `dissipation_gap` (an estimate of the error of the dissipation), `viscosity`, `steps`,
+    `rejected` and `status`; over time the limit's `z_limit`, `dissipation_limit`, the
+    strip `z_minus`, `z_plus` and `load`. Units and provenance are in the attributes; it
+    goes to NetCDF and back without loss.
+
+    A cell that fails has its status and NaNs and does not disturb the others.
+
+    Raises `ValueError` for arguments out of range, z0 outside the strip at t = 0 (Theorem
+    1 does not apply), or an eps at which the bristle loses contact.
+    """
+    require_x64(scene)
+    eps, gamma = _grid("eps", eps), _grid("gamma", gamma)
+    require_accuracy(accuracy)
+    ts = require_times(scene, ts)
+    require_start_in_strip(scene)
+    require_reach(scene.potential, jnp.asarray(eps))
+    solver = solver_of(method)
+    limit = solve_limit(scene, ts)
+    cells = _run(
+        scene,
+        _blocks(eps, gamma),
+        ts,
+        jnp.asarray(as_real(accuracy)),
+        solver,
+        bool(dissipation),
+        progress,
+    )
+    data = xr.Dataset(coords={"gamma": gamma, "eps": eps, "time": np.asarray(ts)})
+    shape = (gamma.size, eps.size)
+    for name, values in _cell_values(cells).items():
+        dims = ("gamma", "eps", "time")[: values.ndim + 1]
+        data[name] = (dims, values.reshape(*shape, *values.shape[1:]))
+    data["viscosity"] = data.eps**data.gamma
+    data["viscosity"] = data.viscosity.transpose("gamma", "eps")
+    for name, values in _limit_values(scene, limit).items():
+        data[name] = (("time",), values)
+    return describe(data, scene, accuracy=float(accuracy), solver=type(solver).__name__)
+
+
+def _cell_values(cells: Cell) -> dict[str, np.ndarray]:
+    values = {
+        "z": cells.z,
+        "sup_error": cells.deviation.sup_error,
+        "strip_excess": cells.deviation.strip_excess,
+        "status": np.asarray(cells.status, dtype=np.int8),
+        "steps": cells.steps,
+        "rejected": cells.rejected,
+        "tolerance": cells.tolerance,
+    }
+    if cells.dissipation is not None:
+        values |= {
+            "dissipation": cells.dissipation,
+            "dissipation_error": cells.deviation.dissipation_error,
+            "residual": cells.residual,
+            "dissipation_gap": cells.dissipation_gap,
+        }
+    return {name: np.asarray(value) for name, value in values.items()}
+
+
+@eqx.filter_jit
+def _strips(scene: Scene, ts: Array):
+    found = coefficients(scene.potential)
+    loads = jax.vmap(scene.load)(ts)
+    return loads, *jax.vmap(lambda load: strip(scene.support, found, load))(loads)
+
+
+def _limit_values(scene: Scene, limit: LimitSolution) -> dict[str, np.ndarray]:
+    load, lower, upper = _strips(scene, limit.ts)
+    values = {
+        "z_limit": limit.z,
+        "dissipation_limit": limit.dissipation,
+        "load": load,
+        "z_minus": lower,
+        "z_plus": upper,
+    }
+    return {name: np.asarray(value) for name, value in values.items()}
