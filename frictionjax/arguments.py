@@ -1,5 +1,7 @@
 """What every entry point asks of its arguments: 64-bit, finite, in range."""
 
+import inspect
+from types import CellType
 from typing import Any
 
 import equinox as eqx
@@ -11,22 +13,45 @@ from jaxtyping import Array, Float
 Real = Float[Array, ""]
 """A traced real scalar."""
 
+_EMPTY = CellType()
+_CLOSURES = 4  # functions inside functions that are looked into for traced numbers
+
 
 def as_real(value: Any) -> Any:
     """Convert numbers to float64 and leave JAX arrays (tracers too) as they are.
 
     Where JAX runs in 32 bits the value stays a NumPy float64: a part can be built
-    before `jax_enable_x64` is set, and the entry points raise (`require_x64`).
+    before `jax_enable_x64` is set, and the entry points raise (`require_x64`). What is
+    no number stays too, for the check that knows the argument's name.
     """
     if isinstance(value, jax.Array):
+        whole = jnp.issubdtype(value.dtype, jnp.integer)
+        return value.astype(float) if whole else value
+    if not is_concrete(value):
+        return jnp.asarray(value)
+    known = known_numbers(value)
+    if not _is_numeric(known):
         return value
-    exact = np.asarray(value, dtype=np.float64)
+    exact = known.astype(np.float64)
     return jnp.asarray(exact) if jax.config.jax_enable_x64 else exact  # type: ignore[attr-defined]
+
+
+def known_numbers(value: Any) -> np.ndarray:
+    """A concrete value as an array; `None` of shape () where it holds no numbers."""
+    try:
+        array = np.asarray(value)
+    except ValueError:  # a ragged list
+        return np.asarray(None)
+    return array if _is_numeric(array) else np.asarray(None)
+
+
+def _is_numeric(array: np.ndarray) -> bool:
+    return array.dtype.kind in "biuf"
 
 
 def as_text(value: Any) -> str:
     """A value as an error message shows it: six digits, arrays shortened."""
-    if isinstance(value, str) or callable(value):
+    if value is None or isinstance(value, str) or callable(value):
         return repr(value)
     try:
         array = np.asarray(value, dtype=np.float64)
@@ -46,18 +71,40 @@ def require(condition: Any, name: str, value: Any, allowed: str) -> None:
 def is_concrete(*trees: Any) -> bool:
     """Whether all numbers are known, so that checks can look at values."""
     leaves = jax.tree_util.tree_leaves(trees)
-    return not any(isinstance(leaf, jax.core.Tracer) for leaf in leaves)
+    for _ in range(_CLOSURES):
+        if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
+            return False
+        held = [_captured(leaf) for leaf in leaves if callable(leaf)]
+        leaves = jax.tree_util.tree_leaves(held)
+    return True
+
+
+def _captured(fn: Any) -> list[Any]:
+    """What a function holds from where it was written: `lambda y: slope * sin(y)`."""
+    inner = inspect.unwrap(fn)
+    cells = getattr(inner, "__closure__", None) or ()
+    held = [cell.cell_contents for cell in cells if cell != _EMPTY]
+    return [*held, getattr(inner, "__self__", None)]
 
 
 def require_real(name: str, value: Any, allowed: str, test: Any = None) -> None:
     """Check a scalar part: shape () and finite, and `test(value)` where one is given."""
     if not is_concrete(value):
         return
-    array = np.asarray(value)
+    array = known_numbers(value)
+    require(_is_numeric(array), name, value, f"a number, {allowed}")
     require(array.ndim == 0, name, value, f"one number, {allowed}")
     require(np.isfinite(array), name, value, f"a finite number, {allowed}")
     if test is not None:
         require(test(float(array)), name, value, allowed)
+
+
+def require_function(name: str, fn: Any, what: str) -> None:
+    """Check that `fn` takes one number to one number."""
+    require(callable(fn), name, fn, what)
+    number = jax.ShapeDtypeStruct((), float)
+    shape = jax.eval_shape(lambda x: jnp.asarray(fn(x)), number).shape
+    require(shape == (), name, f"values of shape {shape}", f"{what}, one number for one")
 
 
 def require_x64(*trees: Any) -> None:

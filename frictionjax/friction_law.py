@@ -1,9 +1,11 @@
 """The limit friction law: coefficients, dissipation potential, dual form."""
 
+from collections.abc import Callable
 from typing import Any
 
 import jax
 import jax.numpy as jnp
+from jaxtyping import Array
 
 from .admissibility import require_admissible
 from .arguments import Real, require, require_x64
@@ -46,9 +48,9 @@ def dual_dissipation(potential: AbstractPotential, xi: Real) -> Real:
 
     In the tip coordinate the integrand is `|xi (1 + a w') - alpha w'|`, whose inside is
     the derivative of `H = xi (y + a w) - alpha w`. So K is the variation of H: summed over
-    a grid, with the few cells in which H turns split at the turning point.
+    a grid that holds the inflections of H, so that H turns once in a cell at most, with
+    the few cells in which it does split at the turning point.
     """
-    cells = 4 * potential.points
     if isinstance(potential, BristlePotential):
         a, alpha, profile = potential.a(), potential.alpha(), potential.profile
 
@@ -61,7 +63,7 @@ def dual_dissipation(potential: AbstractPotential, xi: Real) -> Real:
             return xi * y - potential.W(y)
 
     slope = jax.grad(primitive)
-    edges = jnp.arange(cells + 1) / cells
+    edges = _with_inflections(slope, 2 * potential.points)
     values, slopes = jax.vmap(jax.value_and_grad(primitive))(edges)
 
     def variation(left, right, start, end, slope_start, slope_end):
@@ -82,9 +84,21 @@ def dual_dissipation(potential: AbstractPotential, xi: Real) -> Real:
     return jnp.sum(pieces)
 
 
+def _with_inflections(slope: Callable[[Real], Real], cells: int) -> Array:
+    """Grid of a period, each cell halved: where `slope'` has its zero, if it has one."""
+    edges = jnp.arange(cells + 1) / cells
+    bend = jax.grad(slope)
+    bends = jax.vmap(bend)(edges)
+    turns = bends[:-1] * bends[1:] < 0
+    share = bends[:-1] / jnp.where(turns, bends[:-1] - bends[1:], 1.0)
+    middle = edges[:-1] + jnp.where(turns, share, 0.5) / cells
+    inner = jnp.stack([edges[:-1], middle], axis=1).ravel()
+    return jax.lax.stop_gradient(jnp.append(inner, 1.0))
+
+
 def limit_dissipation(
     potential: AbstractPotential, found: Coefficients, v: Real, xi: Real
 ) -> Real:
-    """`M(v, xi) = |v| K(xi) + chi(xi)` (eq. 5.4): infinite outside [rho_minus, rho_plus]."""
+    """`M(v, xi) = |v| K(xi) + chi(xi)` (eq. 5.4), infinite outside the rho interval."""
     inside = (xi >= found.rho_minus) & (xi <= found.rho_plus)
     return jnp.where(inside, jnp.abs(v) * dual_dissipation(potential, xi), jnp.inf)

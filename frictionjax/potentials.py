@@ -8,12 +8,14 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .arguments import Real, require
+from .arguments import Real, require, require_function, require_x64
 from .bristles import AbstractBristle
 from .profiles import AbstractProfile
 from .profiles.profile import require_smooth
 from .roots import bracketed_root
 from .taylor import increment, mean_slope, second_remainder
+
+_ZOOM = 256  # samples between two neighbours of a scan: its minimum to 1e-8
 
 
 def _slope(fn: Callable[[Real], Real], x: Real) -> tuple[Real, Real]:
@@ -72,25 +74,26 @@ class AbstractPotential(eqx.Module):
 
     def energy(self, z: Real, eps: Real) -> Real:
         """`V_eps(z)` in J; z in m and eps in m, any shapes that broadcast."""
-        return _elementwise(type(self)._energy, self, *_floats(z, eps))
+        return _elementwise(type(self)._energy, self, *_floats(self, z, eps))
 
     def force(self, z: Real, eps: Real) -> Real:
         """`V_eps'(z)` in N by autodiff of the exact inverse; shapes as `energy`."""
-        return _elementwise(_energy_slope, self, *_floats(z, eps))
+        return _elementwise(_energy_slope, self, *_floats(self, z, eps))
 
     def W(self, Y: Real) -> Real:
         """Leading part `W(Y)` in N (Lemma 2), any shape."""
-        return _elementwise(_leading_anywhere, self, *_floats(Y))
+        return _elementwise(_leading_anywhere, self, *_floats(self, Y))
 
     def Q(self, eps: Real, Y: Real) -> Real:
         """Rest `Q(eps; Y)` in N/m, bounded as eps -> 0; defined at eps = 0 too."""
-        return _elementwise(_rest_anywhere, self, *_floats(eps, Y))
+        return _elementwise(_rest_anywhere, self, *_floats(self, eps, Y))
 
     def _energy(self, z: Real, eps: Real) -> Real:
         return self.tip_energy(self.tip(z, eps)[1], eps)
 
 
-def _floats(*values):
+def _floats(potential: AbstractPotential, *values):
+    require_x64(potential, values)
     return tuple(jnp.asarray(value, dtype=float) for value in values)
 
 
@@ -204,9 +207,10 @@ class GivenPotential(AbstractPotential):
     points: int = eqx.field(static=True, default=4096)
 
     def __init__(self, W: Callable, Q: Callable | None = None, points: int = 4096):
-        require(callable(W), "potential.W", W, "a function of Y")
+        require_function("potential.W", W, "a function of Y")
         require(Q is None or callable(Q), "potential.Q", Q, "a function of (eps, Y)")
-        require(points >= 16, "potential.points", points, "points >= 16")
+        enough = isinstance(points, int) and points >= 16
+        require(enough, "potential.points", points, "points >= 16")
         self.W_fn = W
         self.Q_fn = _nothing if Q is None else Q
         self.points = points
@@ -251,6 +255,16 @@ def potential(profile: AbstractProfile, bristle: AbstractBristle) -> BristlePote
 def smallest_stretch(
     potential: AbstractPotential, eps: Real, points: int | None = None
 ) -> Real:
-    """Smallest `G = dz/dp` over a period, NaN where the bristle does not reach."""
-    grid = np.arange(points or potential.points) / (points or potential.points)
-    return jnp.min(jax.vmap(lambda y: potential.tip_force(y, eps)[1])(grid))
+    """Smallest `G = dz/dp` over a period, NaN where the bristle does not reach.
+
+    A scan, then a finer one around its minimum and around the ends of the offset, where
+    the bristle reaches last.
+    """
+    count = points or potential.points
+    grid = jnp.arange(count) / count
+    stretch = jax.vmap(lambda y: potential.tip_force(y, eps)[1])
+    offset = jax.vmap(lambda y: potential.offset(y, eps))(grid)
+    coarse = stretch(grid)
+    places = [jnp.argmin(coarse), jnp.argmin(offset), jnp.argmax(offset)]
+    fine = grid[jnp.stack(places)][:, None] + np.linspace(-1, 1, _ZOOM + 1) / count
+    return jnp.min(jnp.concatenate([coarse, stretch(fine.ravel())]))

@@ -30,6 +30,7 @@ def bracketed_root(fn: Callable[[Real], Real], lower: Real, upper: Real) -> Real
             newton = x - step
             inside = (slope > 0) & (newton >= low) & (newton <= high)
             new = jnp.where(inside, newton, 0.5 * (low + high))
+            new = jnp.where(jnp.isnan(value), value, new)  # no root where fn is undefined
             return low, high, new, jnp.abs(new - x), count + 1
 
         def go_on(state):

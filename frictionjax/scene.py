@@ -73,7 +73,8 @@ class Scene(eqx.Module):
             repr(effects),
             "(): this version has no optional effects",
         )
-        assert support is not None and load is not None
+        assert support is not None
+        assert load is not None
         self.support, self.load = support, load
         self.duration, self.z0 = as_real(duration), as_real(z0)
         self.effects = tuple(effects)

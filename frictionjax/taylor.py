@@ -55,6 +55,16 @@ def second_remainder(fn: Callable[[Real], Real], x: Real) -> Real:
 
 
 def mean_slope(fn: Callable[[Real], Real], start: Real, end: Real) -> Real:
-    """`(fn(end) - fn(start))/(end - start)` as int_0^1 fn'(start + s (end - start)) ds."""
-    slopes = jax.vmap(_derivative(fn))(start + (end - start) * _NODES)
-    return jnp.dot(_WEIGHTS, slopes)
+    """`(fn(end) - fn(start))/(end - start)`, which is `fn'(start)` at end = start.
+
+    The integral form int_0^1 fn'(start + s (end - start)) ds, replaced by the quotient
+    where the two differ by more than the rounding error of the quotient.
+    """
+    width = end - start
+    slopes = jax.vmap(_derivative(fn))(start + width * _NODES)
+    integral = jnp.dot(_WEIGHTS, slopes)
+    last, first = fn(end), fn(start)
+    quotient = (last - first) / jnp.where(width == 0, 1.0, width)
+    bound = _ROUNDING * (jnp.abs(last) + jnp.abs(first) + jnp.abs(integral))
+    agrees = jnp.abs((integral - quotient) * width) <= bound
+    return jnp.where(agrees, integral, quotient)

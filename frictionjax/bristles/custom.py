@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, is_concrete, require
+from ..arguments import Real, is_concrete, require, require_function
 from .bristle import AbstractBristle
 
 
@@ -23,8 +23,8 @@ class Custom(AbstractBristle):
     energy_fn: Callable[[Real], Real]
 
     def __init__(self, offset: Callable[[Real], Real], energy: Callable[[Real], Real]):
-        require(callable(offset), "bristle.offset", offset, "a function A of eta")
-        require(callable(energy), "bristle.energy", energy, "a function F of eta")
+        require_function("bristle.offset", offset, "a function A of eta")
+        require_function("bristle.energy", energy, "a function F of eta")
         self.offset_fn = offset
         self.energy_fn = energy
 

@@ -1,5 +1,6 @@
 """Load given as a function."""
 
+import itertools
 from collections.abc import Callable
 
 import jax
@@ -7,7 +8,14 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_concrete, require
+from ..arguments import (
+    Real,
+    as_real,
+    is_concrete,
+    known_numbers,
+    require,
+    require_function,
+)
 from .load import AbstractLoad, listed_turning_points
 
 _SAMPLES = 4096  # per piece between two turning points: finds a sign change that lasts
@@ -31,10 +39,10 @@ class Custom(AbstractLoad):
         self.listed = as_real(turning_points)
 
     def __check_init__(self):
-        require(callable(self.fn), "load.fn", self.fn, "a function of t")
+        require_function("load.fn", self.fn, "a function of t")
         if not is_concrete(self.listed):
             return
-        times = np.asarray(self.listed)
+        times = known_numbers(self.listed)
         require(times.ndim == 1, "load.turning_points", times, "times, shape (n,)")
         increasing = np.all(np.isfinite(times)) and np.all(np.diff(times) > 0)
         require(increasing, "load.turning_points", times, "finite, increasing times")
@@ -53,7 +61,7 @@ class Custom(AbstractLoad):
         times = np.asarray(self.listed)
         inside = times[(times > 0) & (times < duration)]
         edges = np.concatenate([[0.0], inside, [duration]])
-        for start, end in zip(edges[:-1], edges[1:], strict=True):
+        for start, end in itertools.pairwise(edges):
             t = np.linspace(start, end, _SAMPLES)
             values = np.asarray(jax.vmap(self)(jnp.asarray(t)))
             require(np.all(np.isfinite(values)), "load.fn", "not finite", "finite values")

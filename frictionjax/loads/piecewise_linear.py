@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_concrete, require
+from ..arguments import Real, as_real, is_concrete, known_numbers, require
 from .load import AbstractLoad, listed_turning_points
 
 
@@ -24,7 +24,7 @@ class PiecewiseLinear(AbstractLoad):
     def __check_init__(self):
         if not is_concrete(self.times, self.values):
             return
-        times, values = np.asarray(self.times), np.asarray(self.values)
+        times, values = known_numbers(self.times), known_numbers(self.values)
         flat = times.ndim == 1 and times.size >= 1
         require(flat, "load.times", times, "one or more times, shape (n,)")
         shape = f"the shape {times.shape} of times"

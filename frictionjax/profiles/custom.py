@@ -5,7 +5,7 @@ from collections.abc import Callable
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..arguments import Real, require
+from ..arguments import Real, require, require_function
 from .profile import AbstractProfile, require_smooth
 
 
@@ -23,8 +23,9 @@ class Custom(AbstractProfile):
     points: int = eqx.field(static=True, default=4096)
 
     def __check_init__(self):
-        require(callable(self.fn), "profile.fn", self.fn, "a function of y")
-        require(self.points >= 16, "profile.points", self.points, "points >= 16")
+        require_function("profile.fn", self.fn, "a function of y")
+        enough = isinstance(self.points, int) and self.points >= 16
+        require(enough, "profile.points", self.points, "points >= 16")
         require_smooth("profile.fn", self.fn, self.points)
 
     def __call__(self, y: Real) -> Real:

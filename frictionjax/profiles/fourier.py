@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_concrete, require
+from ..arguments import Real, as_real, is_concrete, known_numbers, require
 from .heights import HeightsFit, fit_heights
 from .profile import AbstractProfile
 
@@ -26,7 +26,7 @@ class Fourier(AbstractProfile):
     def __check_init__(self):
         if not is_concrete(self.cos, self.sin):
             return
-        cos, sin = np.asarray(self.cos), np.asarray(self.sin)
+        cos, sin = known_numbers(self.cos), known_numbers(self.sin)
         flat = cos.ndim == 1 and cos.size > 0
         require(flat, "profile.cos", cos, "one or more coefficients, shape (harmonics,)")
         require(sin.shape == cos.shape, "profile.sin", sin, f"shape {cos.shape} of cos")

@@ -5,7 +5,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from ..arguments import require
+from ..arguments import known_numbers, require
 
 _Profile = TypeVar("_Profile")
 
@@ -69,7 +69,8 @@ def find_period(x: np.ndarray, heights: np.ndarray, harmonics: int) -> float:
 
 def fit_heights(x: Any, heights: Any, period: float | None, harmonics: int) -> SeriesFit:
     """Fit trend and harmonics of `period` to a trace; see `Fourier.from_heights`."""
-    x, heights = np.asarray(x, float), np.asarray(heights, float)
+    x = known_numbers(x).astype(float)
+    heights = known_numbers(heights).astype(float)
     require(x.ndim == 1 and x.size >= 8, "x", x.shape, "8 or more positions, shape (n,)")
     require(heights.shape == x.shape, "heights", heights.shape, f"the shape {x.shape} of x")
     require(np.all(np.isfinite(x)), "x", x, "finite positions")

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_concrete, require
+from ..arguments import Real, as_real, is_concrete, known_numbers, require
 from .profile import AbstractProfile
 
 
@@ -28,7 +28,7 @@ class Spline(AbstractProfile):
     def __init__(self, heights: Any):
         heights = as_real(heights)
         if is_concrete(heights):
-            _require_heights(np.asarray(heights))
+            _require_heights(known_numbers(heights))
         # c_{k-1} + 4 c_k + c_{k+1} = 6 h_k is circulant: diagonal after an FFT.
         count = heights.shape[0]
         symbol = (4 + 2 * np.cos(2 * np.pi * np.arange(count // 2 + 1) / count)) / 6

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import jax.numpy as jnp
 
-from ..arguments import Real, require
+from ..arguments import Real, require_function
 from ..roots import increasing_root
 from .support import AbstractSupport
 
@@ -19,7 +19,7 @@ class Convex(AbstractSupport):
     energy_fn: Callable[[Real], Real]
 
     def __init__(self, energy: Callable[[Real], Real]):
-        require(callable(energy), "support.energy", energy, "a function Phi of z")
+        require_function("support.energy", energy, "a function Phi of z")
         self.energy_fn = energy
 
     def energy(self, z: Real) -> Real:
