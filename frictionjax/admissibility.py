@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .arguments import Real, as_text, is_concrete, require
-from .coefficients import Coefficients, coefficients
+from .coefficients import Coefficients, coefficients_jit
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
 from .supports import AbstractSupport
 
@@ -21,7 +21,7 @@ def _bristle_facts(potential: BristlePotential):
     curvature = jax.grad(jax.grad(potential.bristle.energy))(jnp.zeros(()))
     # Lengths cancel in alpha, for instance k (L_rest - h): this much of it is rounding.
     noise = 4 * _EPS64 * jnp.abs(curvature) * getattr(potential.bristle, "height", 0.0)
-    return coefficients(potential), bounds.lower, bounds.upper, noise
+    return bounds.lower, bounds.upper, noise
 
 
 def require_admissible(potential: AbstractPotential) -> None:
@@ -32,7 +32,8 @@ def require_admissible(potential: AbstractPotential) -> None:
     """
     if not isinstance(potential, BristlePotential) or not is_concrete(potential):
         return
-    found, lower, upper, noise = _bristle_facts(potential)
+    found = coefficients_jit(potential)
+    lower, upper, noise = _bristle_facts(potential)
     low, high = float(found.omega_minus), float(found.omega_plus)
     slopes = f"omega_minus = {low:.6g}, omega_plus = {high:.6g}"
     require(low < 0 < high, "profile", slopes, "omega_plus > 0 > omega_minus")

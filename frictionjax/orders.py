@@ -10,6 +10,7 @@ from .arguments import require
 
 _LEAST = 4  # points of a window: two parameters, two left for the scatter
 _LEVEL = 0.95
+_ROUNDING = 1e-12  # of an order, where errors follow a power to the last digit
 _ABOVE_FLOOR = 3.0  # errors below this many times their own uncertainty are left out
 
 
@@ -131,7 +132,7 @@ def _line(x: np.ndarray, y: np.ndarray, scatter: float, start: int) -> _Line:
     random = float(stats.t.ppf(0.5 + 0.5 * _LEVEL, freedom)) * sigma / spread
     move, allowance = _drift(x, y)
     order = float(slope) + move
-    half = float(np.hypot(random, allowance))
+    half = max(float(np.hypot(random, allowance)), _ROUNDING)
     return _Line(order, float(height - order * middle), half, start)
 
 

@@ -188,8 +188,10 @@ def _advance(field, plan, solver, recorder, max_steps, adjoint):
     terms = diffrax.ODETerm(observed_field(field))
 
     def advance(front: Front, stop: Real) -> Front:
-        # A front that failed stays where it is: an interval of length 0 takes no step.
-        stop = jnp.where(front.code == Status.OK, jnp.maximum(stop, front.t), front.t)
+        # A front that failed, or is a rounding away from the stop (a time asked for and a
+        # kink, written differently), stays where it is: no length, no step.
+        go_on = (front.code == Status.OK) & (stop - front.t > plan.shortest_step)
+        stop = jnp.where(go_on, stop, front.t)
         found = diffrax.diffeqsolve(
             terms,
             observed,

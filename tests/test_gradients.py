@@ -1,0 +1,77 @@
+"""Derivatives of trajectories against central differences."""
+
+import diffrax
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import frictionjax as fx
+
+EPS = 0.05
+TIMES = np.linspace(0.1, 1.4, 9)
+
+
+def scene_of(p):
+    return fx.Scene(
+        fx.profiles.Sine(p[0]),
+        fx.bristles.SlantedSpring(p[1], 2.2, 1.0, p[2]),
+        fx.supports.Spring(p[3]),
+        fx.loads.Sine(p[4], 3.0),
+        1.5,
+        p[5],
+    )
+
+
+POINT = jnp.array([0.1, 1.0, 0.4, 1.0, 1.0488, 0.01, EPS, 0.8])
+NAMES = ["slope", "stiffness", "angle", "support", "amplitude", "z0", "eps", "gamma"]
+
+
+@eqx.filter_jit
+def states(p):
+    found = fx.solve(scene_of(p), p[6], p[7], TIMES, accuracy=1e-9)
+    return jnp.concatenate([found.z, found.dissipation[-1:]])
+
+
+@pytest.fixture(scope="module")
+def jacobian():
+    return jax.jit(jax.jacrev(states))(POINT)
+
+
+@pytest.mark.parametrize("i", range(len(NAMES)), ids=NAMES)
+def test_reverse_mode_agrees_with_central_differences(jacobian, i):
+    """About 15 slips, through Rosenbrock steps and the energy balance."""
+    width = 3e-5 * max(0.1, abs(float(POINT[i])))
+    shift = jnp.zeros_like(POINT).at[i].set(width)
+    differences = (states(POINT + shift) - states(POINT - shift)) / (2 * width)
+    error = jnp.max(jnp.abs(jacobian[:, i] - differences))
+    # The differences are the less exact: width^2 times third derivatives of 15 slips.
+    assert error < 1e-4 * jnp.max(jnp.abs(differences))
+
+
+def test_forward_mode_with_the_adjoint_for_it(jacobian):
+    direction = jnp.zeros_like(POINT).at[3].set(1.0)
+
+    def run(p):
+        adjoint = diffrax.ForwardMode()
+        found = fx.solve(scene_of(p), p[6], p[7], TIMES, accuracy=1e-9, adjoint=adjoint)
+        return found.z
+
+    _, tangent = jax.jit(lambda p: jax.jvp(run, (p,), (direction,)))(POINT)
+    expected = jacobian[:-1, 3]
+    assert jnp.max(jnp.abs(tangent - expected)) < 1e-6 * jnp.max(jnp.abs(expected))
+
+
+def test_gradient_with_respect_to_a_whole_scene():
+    scene = scene_of([0.1, 1.0, 0.4, 1.0, 1.0488, 0.01])
+
+    @eqx.filter_jit
+    @eqx.filter_grad
+    def last(scene):
+        return fx.solve(scene, EPS, 0.8, [1.4], accuracy=1e-6).z[-1]
+
+    gradient = last(scene)
+    leaves = jax.tree_util.tree_leaves(gradient)
+    assert all(bool(jnp.all(jnp.isfinite(leaf))) for leaf in leaves)
+    assert abs(float(gradient.load.amplitude)) > 0.1
