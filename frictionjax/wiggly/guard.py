@@ -7,7 +7,9 @@ import jax.numpy as jnp
 from ..arguments import Real
 
 
-_NOISE = 1e-5  # of the tolerance; (1e5)^(0.7/5) is the largest growth of a step
+# Estimates below this share of the tolerance are rounding noise and must not steer;
+# (1e5)^(0.7/5) is the largest growth of a step.
+_NOISE = 1e-5
 
 
 class WellGuard(diffrax.AbstractAdaptiveStepSizeController):
@@ -51,8 +53,6 @@ class WellGuard(diffrax.AbstractAdaptiveStepSizeController):
         excess = jnp.abs(tip1 - tip0) / self.reach
         finite = jnp.isfinite(excess) & jnp.isfinite(error)
         excess = jnp.where(finite, jnp.minimum(excess, 20.0), 20.0)
-        # Estimates that are rounding noise must not steer: a batch would differ from its
-        # lanes by the noise's effect on step sizes (3e-6 eps seen on a start at rest).
         error = jnp.maximum(jnp.abs(error), _NOISE * self.atol)
         too_far = self.atol * (excess * 1.1) ** error_order
         error = jnp.where(finite, error, too_far)

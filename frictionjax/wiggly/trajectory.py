@@ -23,6 +23,7 @@ from .balance import Balance, dissipated
 from .field import TipField
 from .guard import WellGuard
 from .methods import solver_of, with_tolerance
+from .rounded import RoundedSteps
 from .observed import AbstractWatch, Observed, Recorder, observed_field
 from .status import Status
 from .tolerance import Plan, plan_steps
@@ -199,7 +200,7 @@ def _advance(field, plan, solver, recorder, max_steps, adjoint):
             stop,
             front.step,
             (*front.y, front.step),
-            stepsize_controller=WellGuard(controller, plan.reach),
+            stepsize_controller=RoundedSteps(WellGuard(controller, plan.reach)),
             saveat=diffrax.SaveAt(t1=True),
             max_steps=max_steps,
             adjoint=adjoint or diffrax.RecursiveCheckpointAdjoint(),
