@@ -168,7 +168,7 @@ class BristlePotential(AbstractPotential):
         # With eta = eps w(y), A = a eta + eta^2 C and F = F(0) + alpha eta + eta^2 B,
         # y - y_flat = -eps w^2 C/(1 + a m) and w(y) - w(y_flat) = m (y - y_flat), m the
         # mean slope of w between the two: Q = w^2 (B - alpha m C/(1 + a m)), no 1/eps.
-        safe = jnp.where(eps == 0, 1.0, eps)
+        safe = jnp.where(eps == 0, 1e-30, eps)  # any bristle reaches that far
         flat = self.flat_tip(Y)
         y = jnp.where(eps == 0, flat, self.well_coordinate(Y, safe))
         height = self.profile(y)

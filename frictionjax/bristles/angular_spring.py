@@ -45,9 +45,9 @@ class AngularSpring(AbstractBristle):
         return self._angle(jnp.zeros_like(self.height))
 
     def _reach(self, eta: Real) -> Real:
-        """Horizontal extent of the rod; a product, so that L - h = 1e-9 L keeps digits."""
-        drop = self.height - eta
-        return jnp.sqrt((self.length - drop) * (self.length + drop))
+        """Horizontal extent of the rod, all digits kept where L - h = 1e-9 L."""
+        above = self.length - self.height + eta  # in this order: the first two are exact
+        return jnp.sqrt(above * (self.length + (self.height - eta)))
 
     def _angle(self, eta: Real) -> Real:
         # arccos loses half the digits near theta = 0; the two sides of the rod do not.
