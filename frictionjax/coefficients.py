@@ -1,5 +1,7 @@
 """Friction coefficients of the limit system (Lemma 2, Lemma 3)."""
 
+from typing import Any
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -7,6 +9,10 @@ import jax.numpy as jnp
 from .arguments import Real, as_text, is_concrete
 from .extrema import periodic_extrema
 from .potentials import AbstractPotential, BristlePotential
+
+
+OfBristle = Any
+"""A traced real scalar, or None in the abstract setting, where there is no bristle."""
 
 
 class Coefficients(eqx.Module):
@@ -20,12 +26,12 @@ class Coefficients(eqx.Module):
 
     rho_plus: Real
     rho_minus: Real
-    alpha: Real | None = None
-    a: Real | None = None
-    omega_plus: Real | None = None
-    omega_minus: Real | None = None
-    mu_plus: Real | None = None
-    mu_minus: Real | None = None
+    alpha: OfBristle = None
+    a: OfBristle = None
+    omega_plus: OfBristle = None
+    omega_minus: OfBristle = None
+    mu_plus: OfBristle = None
+    mu_minus: OfBristle = None
 
     def __repr__(self) -> str:
         if not is_concrete(self):

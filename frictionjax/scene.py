@@ -102,7 +102,7 @@ class Scene(eqx.Module):
 
 def _potential_of(profile, bristle, given) -> AbstractPotential:
     if given is None:
-        return potential(profile, bristle)  # type: ignore[arg-type]
+        return potential(profile, bristle)
     require(
         profile is None, "scene.profile", type(profile).__name__, "none beside potential"
     )

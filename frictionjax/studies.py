@@ -7,7 +7,7 @@ import xarray as xr
 
 from .arguments import require
 from .orders import Fit, Verdict, fit_order, local_orders
-from .wiggly.status import Status
+from .wiggly.status import Status, status_of
 
 _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
 
@@ -67,9 +67,9 @@ _FIELDS = {"order": "order", "low": "order_low", "high": "order_high"}
 def _columns(
     prefix: str, dataset: xr.Dataset, uncertainty: xr.DataArray
 ) -> dict[str, np.ndarray]:
-    errors = dataset[f"{prefix or 'sup_'}error"]
     good = dataset.status == int(Status.OK)
-    errors = errors.where(good).transpose("gamma", "eps").values
+    measured = dataset[f"{prefix or 'sup_'}error"].where(good)
+    errors = measured.transpose("gamma", "eps").values
     known = uncertainty.broadcast_like(dataset.sup_error).transpose("gamma", "eps").values
     fits = [fit_order(dataset.eps.values, *row) for row in zip(errors, known, strict=True)]
     names = {name: prefix + _FIELDS.get(name, name) for name in Fit._fields}
@@ -120,8 +120,8 @@ def _failed(dataset: xr.Dataset) -> list[dict[str, Any]]:
         {
             "gamma": float(dataset.gamma[i]),
             "eps": float(dataset.eps[j]),
-            "status": Status(int(codes[i, j])).name.lower(),
-            "message": Status(int(codes[i, j])).message,
+            "status": status_of(int(codes[i, j])).name.lower(),
+            "message": status_of(int(codes[i, j])).message,
         }
         for i, j in np.argwhere(codes != int(Status.OK))
     ]

@@ -109,7 +109,7 @@ def _cell(scene: Scene, eps: Real, gamma: Real, ts, accuracy, solver, balanced) 
     unfinished = (found.status != Status.OK) & (found.status != Status.UNBALANCED)
     blank = jnp.where(unfinished, jnp.nan, 0.0)
     residual, gap = None, None
-    if found.final is not None:
+    if found.final is not None and found.dissipation_gap is not None:
         residual = found.final.residual + blank
         gap = found.dissipation_gap + blank
     return Cell(

@@ -62,5 +62,5 @@ class Fourier(AbstractProfile):
         1.5 periods, or more harmonics than the samples can tell apart.
         """
         fit = fit_heights(x, heights, period, harmonics)
-        profile = cls(cos=fit.cos / fit.period, sin=fit.sin / fit.period)
+        profile = cls(as_real(fit.cos / fit.period), as_real(fit.sin / fit.period))
         return HeightsFit(profile, fit.period, fit.explained)

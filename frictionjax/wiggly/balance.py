@@ -44,7 +44,7 @@ def advance(
     step, viscosity = t1 - t0, field.viscosity
     slope0, _ = _end_slope(field, t0, y0, step)
     slope1, rest = _end_slope(field, t1, y1, step)
-    work, viscous, defect = 0.0, 0.0, 0.0
+    work = viscous = defect = jnp.zeros_like(y0)
     for s in _NODES:
         y, velocity = _cubic(s, step, y0, y1, slope0, slope1)
         t = t0 + s * step

@@ -1,7 +1,6 @@
 """Step size control that cannot step over a well."""
 
 import diffrax
-import equinox as eqx
 import jax.numpy as jnp
 
 from ..arguments import Real
@@ -26,7 +25,10 @@ class WellGuard(diffrax.AbstractAdaptiveStepSizeController):
     """
 
     controller: diffrax.PIDController
-    reach: Real = eqx.field(converter=jnp.asarray)
+    reach: Real
+
+    def __init__(self, controller: diffrax.PIDController, reach: Real):
+        self.controller, self.reach = controller, reach
 
     @property
     def rtol(self):

@@ -96,8 +96,11 @@ class Observed(diffrax.AbstractAdaptiveSolver):
         still: Any = (error, *_zeros_like(y1[1:]))
         return y1, still, {"y0": y0, "y1": y1}, solver_state, result
 
+    def _velocity(self, t, y, args):
+        return self.recorder.field.velocity(t, y)
+
     def _tip_terms(self) -> diffrax.ODETerm:
-        return diffrax.ODETerm(lambda t, y, args: self.recorder.field.velocity(t, y))
+        return diffrax.ODETerm(self._velocity)
 
 
 def _zeros_like(memory: PyTree) -> PyTree:

@@ -17,6 +17,9 @@ class RoundedSteps(diffrax.AbstractAdaptiveStepSizeController):
 
     controller: diffrax.AbstractAdaptiveStepSizeController
 
+    def __init__(self, controller: diffrax.AbstractAdaptiveStepSizeController):
+        self.controller = controller
+
     @property
     def rtol(self):
         return self.controller.rtol

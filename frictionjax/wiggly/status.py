@@ -23,6 +23,14 @@ class Status(enum.IntEnum):
     TOO_MANY_TURNS = 6, "the load turns more often than the scene has room for"
 
 
+_BY_CODE = {int(status): status for status in Status}
+
+
+def status_of(code: int) -> Status:
+    """The status with this integer, as data sets hold it."""
+    return _BY_CODE[code]
+
+
 FLAGS = {
     "flag_values": [int(status) for status in Status],
     "flag_meanings": " ".join(status.name.lower() for status in Status),

@@ -25,7 +25,7 @@ from .guard import WellGuard
 from .methods import solver_of, with_tolerance
 from .rounded import RoundedSteps
 from .observed import AbstractWatch, Observed, Recorder, observed_field
-from .status import Status
+from .status import Status, status_of
 from .tolerance import Plan, plan_steps
 
 MAX_STEPS = 2**30  # a bound, not a buffer: nothing is allocated for it
@@ -85,7 +85,7 @@ class Solution(eqx.Module):
     def status(self) -> Any:
         """A `Status` with `.message` (an integer array where traced)."""
         code = self.status_code
-        return Status(int(code)) if is_concrete(code) else code
+        return status_of(int(code)) if is_concrete(code) else code
 
 
 def field_of(scene: Scene, eps: Real, gamma: Real) -> TipField:
@@ -245,13 +245,10 @@ def _code(result: diffrax.RESULTS) -> Array:
 def _status(code: Array, z: Float[Array, " n"], turns: Array) -> Array:
     known = [
         (jnp.any(jnp.isnan(turns)), Status.TOO_MANY_TURNS),
-        (code != Status.OK, code),
         (~jnp.all(jnp.isfinite(z)), Status.NOT_FINITE),
     ]
-    status = jnp.asarray(int(Status.OK))
-    for bad, found in reversed(known):
-        status = jnp.where(bad, found, status)
-    return status
+    found = _first_of(known, jnp.asarray(int(Status.OK)))
+    return jnp.where((code != Status.OK) & (found != Status.TOO_MANY_TURNS), code, found)
 
 
 def _with_balance(status: Array, scene: Scene, eps: Real, final: Balance) -> Array:
