@@ -25,6 +25,7 @@ FLOORS = [
     {"orders"},
     {"plot"},
     {"studies"},
+    {"measured"},
     {"scene_files"},
     {"report"},
     {"cli"},

@@ -1,0 +1,118 @@
+"""Errors against eps, with the fitted orders."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from .style import GUIDE, colour, marker, new_figure, styled
+
+_PANELS = (
+    ("", "sup_error", "sup$_t$ |z$_\\epsilon$ - z| (m)", "State"),
+    (
+        "dissipation_",
+        "dissipation_error",
+        "sup$_t$ |D$_\\epsilon$ - D| (J)",
+        "Dissipation",
+    ),
+)
+
+
+@styled
+def draw(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
+    """Draw the errors of a sweep against eps, log-log, one line for each gamma.
+
+    `orders`: that of `study(dataset)`. Filled points are in the window that the fitted
+    line rests on, hollow ones are outside; a cross on the axis is a failed cell. Dotted
+    guides have the slope `eps^beta` of the lemmas. A second panel shows the dissipation,
+    where the data set has it.
+    """
+    panels = [panel for panel in _PANELS if panel[1] in dataset]
+    figure, grid = new_figure(1, len(panels), 5.4 * len(panels), 5.2)
+    for axes, (prefix, name, label, title) in zip(grid[0], panels, strict=True):
+        for index, gamma in enumerate(dataset.gamma.values):
+            cells, fit = dataset.sel(gamma=gamma), orders.sel(gamma=gamma)
+            _errors(axes, cells, _fit(fit, prefix), name, index)
+            _failures(axes, cells, index)
+        axes.set(xscale="log", yscale="log", ylabel=label, title=title)
+        axes.set_xlabel("$\\epsilon$ (m)")
+        if not prefix:
+            _guides(axes, dataset)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
+    return figure
+
+
+def _fit(orders: xr.Dataset, prefix: str) -> dict[str, float]:
+    names = ("order", "order_low", "order_high", "eps_min", "eps_max", "constant")
+    return {name: float(orders.get(prefix + name, np.nan)) for name in names}
+
+
+def _good(cells: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """eps and errors of the cells that can be trusted and drawn on a log axis."""
+    errors = cells[name].values
+    known = (cells.status.values == 0) & np.isfinite(errors) & (errors > 0)
+    return cells.eps.values[known], errors[known]
+
+
+def _errors(axes: Any, cells: xr.Dataset, fit: dict[str, float], name: str, index: int):
+    eps, errors = _good(cells, name)
+    inside = (eps >= 0.999 * fit["eps_min"]) & (eps <= 1.001 * fit["eps_max"])
+    look = {"color": colour(index), "marker": marker(index), "linestyle": "none"}
+    axes.plot(eps[~inside], errors[~inside], **look, markerfacecolor="white")
+    axes.plot(eps[inside], errors[inside], **look)
+    ends = np.array([fit["eps_min"], fit["eps_max"]])
+    axes.plot(
+        ends,
+        fit["constant"] * ends ** fit["order"],
+        color=colour(index),
+        marker=marker(index),
+        markevery=[],
+        label=_legend(float(cells.gamma), fit),
+    )
+
+
+def _legend(gamma: float, fit: dict[str, float]) -> str:
+    name = f"$\\gamma$ = {gamma:.3g}:"
+    if not np.isfinite(fit["order"]):
+        return f"{name} too few points for an order"
+    low, high = fit["order_low"], fit["order_high"]
+    return f"{name} order {fit['order']:.2f}, 95% [{low:.2f}, {high:.2f}]"
+
+
+def _failures(axes: Any, cells: xr.Dataset, index: int) -> None:
+    """Crosses on the axis where cells failed: they have no error to show."""
+    bad = cells.eps.values[cells.status.values != 0]
+    if bad.size:
+        axes.plot(
+            bad,
+            np.full(bad.size, 0.02 + 0.025 * index),
+            "x",
+            color=colour(index),
+            markersize=7,
+            transform=axes.get_xaxis_transform(),
+            label=f"failed, $\\gamma$ = {float(cells.gamma):.3g}",
+        )
+
+
+def _guides(axes: Any, dataset: xr.Dataset) -> None:
+    """Slopes of the lemmas below the data, one for each different beta."""
+    betas = np.minimum(1.0, dataset.gamma.values)
+    for beta in np.unique(betas):
+        group = dataset.isel(gamma=betas == beta)
+        points = [_good(group.isel(gamma=i), "sup_error") for i in range(group.gamma.size)]
+        points = [(eps, errors) for eps, errors in points if eps.size]
+        if not points:
+            continue
+        ends = np.array([dataset.eps.values.min(), dataset.eps.values.max()])
+        below = 0.6 * min(float(np.min(errors / eps**beta)) for eps, errors in points)
+        axes.plot(ends, below * ends**beta, ":", color=GUIDE, linewidth=1, zorder=1)
+        axes.annotate(
+            f"$\\epsilon^{{{beta:.3g}}}$",
+            (ends[1], below * ends[1] ** beta),
+            xytext=(4, 0),
+            textcoords="offset points",
+            va="center",
+            color="#666666",
+            annotation_clip=False,
+        )

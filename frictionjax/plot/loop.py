@@ -1,0 +1,81 @@
+"""Friction force against displacement."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ..coefficients import Coefficients
+from ..supports import AbstractSupport
+from .style import (
+    GUIDE,
+    LIMIT,
+    choose_eps,
+    choose_gamma,
+    label_eps,
+    new_figure,
+    shades,
+    styled,
+)
+
+
+@styled
+def draw(
+    dataset: xr.Dataset,
+    support: AbstractSupport,
+    found: Coefficients,
+    gamma: float | None = None,
+    eps: Any = None,
+) -> Figure:
+    """Draw the friction force `l - Phi'(z)` in N against `z` in m, for a few eps.
+
+    `support` and `found` (of `friction`) belong to the scene of the data set. The limit's
+    loop and `rho_plus`, `rho_minus` are drawn over it.
+    """
+    gamma = choose_gamma(dataset, gamma)
+    chosen = choose_eps(dataset, gamma, eps)
+    figure, grid = new_figure(1, 1, 7.2, 4.6)
+    axes = grid[0, 0]
+    for value, shade in zip(chosen, shades(chosen.size), strict=True):
+        z = dataset.z.sel(gamma=gamma, eps=value).values
+        force = friction_force(support, dataset["load"].values, z)
+        axes.plot(z, force, color=shade, linewidth=1, label=label_eps(value))
+    z = dataset.z_limit.values
+    force = friction_force(support, dataset["load"].values, z)
+    axes.plot(z, force, "--", color=LIMIT, linewidth=1.4, label="limit")
+    _coefficients(axes, found)
+    axes.set(xlabel="z (m)", ylabel="friction force $\\ell - \\Phi'(z)$ (N)")
+    axes.set_title(f"Friction loop, $\\gamma$ = {gamma:.3g}")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return figure
+
+
+@eqx.filter_jit
+def _force(support: AbstractSupport, load, z):
+    return load - jax.vmap(support.force)(z)
+
+
+def friction_force(support: AbstractSupport, load, z) -> np.ndarray:
+    """`l - Phi'(z)` in N, shapes (time,): what friction holds against."""
+    return np.asarray(_force(support, jnp.asarray(load), jnp.asarray(z)))
+
+
+def _coefficients(axes: Any, found: Coefficients) -> None:
+    for name, value in (("\\rho_+", found.rho_plus), ("\\rho_-", found.rho_minus)):
+        level = float(value)
+        axes.axhline(level, color=GUIDE, linewidth=0.9, zorder=1)
+        axes.annotate(
+            f"${name}$ = {level:.3g} N",
+            (0.5, level),
+            xycoords=axes.get_yaxis_transform(),
+            xytext=(0, 5 if level > 0 else -5),
+            textcoords="offset points",
+            ha="center",
+            va="bottom" if level > 0 else "top",
+            color="#555555",
+        )
+    axes.margins(y=0.12)

@@ -1,0 +1,116 @@
+"""How pictures look, without touching matplotlib's global settings."""
+
+import io
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
+import matplotlib
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ..arguments import as_text, require
+
+# Okabe and Ito: told apart by colour-blind readers, in this order.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+MARKERS = ("o", "s", "^", "D", "v", "P")
+LIMIT = "#222222"
+GUIDE = "#999999"
+STRIP = "#dfe6ee"
+
+_SETTINGS: dict[str, Any] = {
+    "font.size": 10,
+    "axes.titlesize": 10.5,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "grid.color": "#e8e8e8",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.5,
+    "lines.markersize": 5,
+    "legend.frameon": False,
+    "legend.fontsize": 9,
+    "figure.dpi": 110,
+    "savefig.dpi": 160,
+}
+
+
+class Picture(Figure):
+    """A Figure that Jupyter shows by itself; pyplot, with its global state, stays out."""
+
+    def _repr_png_(self) -> bytes:
+        buffer = io.BytesIO()
+        self.savefig(buffer, format="png")
+        return buffer.getvalue()
+
+
+def styled(draw: Callable[..., Figure]) -> Callable[..., Figure]:
+    """Run a drawing function under these settings, whatever the user's own are."""
+
+    @wraps(draw)
+    def inside(*args: Any, **kwargs: Any) -> Figure:
+        with matplotlib.rc_context():
+            matplotlib.rcdefaults()
+            matplotlib.rcParams.update(_SETTINGS)
+            return draw(*args, **kwargs)
+
+    return inside
+
+
+def new_figure(rows: int, columns: int, width: float, height: float) -> tuple[Figure, Any]:
+    """A figure (inches) and its axes, an array of shape (rows, columns)."""
+    figure = Picture(figsize=(width, height), layout="constrained")
+    return figure, figure.subplots(rows, columns, squeeze=False)
+
+
+def colour(index: int) -> str:
+    """Colour of the line with this index."""
+    return COLOURS[index % len(COLOURS)]
+
+
+def marker(index: int) -> str:
+    """Marker of the line with this index; another period than the colours at 7 lines."""
+    return MARKERS[(index + index // len(COLOURS)) % len(MARKERS)]
+
+
+def shades(count: int) -> list[Any]:
+    """Colours of an ordered family, from light (coarse) to dark (fine)."""
+    return [matplotlib.colormaps["viridis_r"](v) for v in np.linspace(0.2, 0.9, count)]
+
+
+def label_eps(eps: float) -> str:
+    """`eps` for a legend."""
+    return f"$\\epsilon$ = {float(eps):.3g} m"
+
+
+def choose_gamma(dataset: xr.Dataset, gamma: float | None) -> float:
+    """The gamma to show: the nearest to the one asked for, 1 where none was.
+
+    Raises `ValueError` for a gamma that the data set does not hold.
+    """
+    known = np.asarray(dataset.gamma.values, dtype=float)
+    nearest = float(known[np.argmin(np.abs(known - (1.0 if gamma is None else gamma)))])
+    close = gamma is None or np.isclose(nearest, gamma)
+    require(close, "gamma", gamma, f"one of {', '.join(map(as_text, known))}")
+    return nearest
+
+
+def choose_eps(dataset: xr.Dataset, gamma: float, eps: Any = None, most: int = 3):
+    """The eps to show, largest first: those asked for, else spread over the good cells.
+
+    Raises `ValueError` for an eps that the data set does not hold.
+    """
+    cells = dataset.sel(gamma=gamma)
+    if eps is None:
+        good = np.sort(cells.eps.values[np.asarray(cells.status) == 0])[::-1]
+        places = np.linspace(0, good.size - 1, min(most, good.size)).round().astype(int)
+        return good[places]
+    known = np.asarray(cells.eps.values, dtype=float)
+    wanted = np.sort(np.atleast_1d(np.asarray(eps, dtype=float)))[::-1]
+    for value in wanted:
+        held = bool(np.isclose(known, value).any())
+        require(held, "eps", value, f"one of {', '.join(map(as_text, known))}")
+    return np.array([known[np.argmin(np.abs(known - value))] for value in wanted])

@@ -1,0 +1,92 @@
+"""Trajectories of the wiggly system over that of the limit."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from .style import (
+    LIMIT,
+    STRIP,
+    choose_eps,
+    choose_gamma,
+    label_eps,
+    new_figure,
+    shades,
+    styled,
+)
+
+_SLIPS = 5  # in the inset
+_RESOLVED = 8  # samples a slip, or the inset would show the sampling
+
+
+@styled
+def draw(dataset: xr.Dataset, gamma: float | None = None, eps: Any = None) -> Figure:
+    """Draw `z_eps` for a few eps of one gamma over the limit `z`, the strip shaded.
+
+    `gamma`: the nearest to 1 where None; `eps`: largest, middle and smallest where None.
+    A panel below follows a few slips of the largest eps whose slips the times resolve.
+    """
+    gamma = choose_gamma(dataset, gamma)
+    chosen = choose_eps(dataset, gamma, eps)
+    lines = dict(zip(chosen, shades(chosen.size), strict=True))
+    window = _slips(dataset, gamma, chosen)
+    figure, grid = new_figure(1, 1 if window is None else 2, 7.2 + 3.6 * bool(window), 4.6)
+    _panel(grid[0, 0], dataset, gamma, lines)
+    grid[0, 0].set_title(f"Trajectories, $\\gamma$ = {gamma:.3g}")
+    grid[0, 0].legend(loc="best")
+    if window is not None:
+        _zoom(grid[0, 0], grid[0, 1], dataset, gamma, lines, window)
+    return figure
+
+
+def _panel(axes: Any, dataset: xr.Dataset, gamma: float, lines: dict[float, Any]) -> None:
+    t = dataset.time.values
+    axes.fill_between(
+        t,
+        dataset.z_minus,
+        dataset.z_plus,
+        color=STRIP,
+        linewidth=0,
+        label="strip [z$_-$, z$_+$]",
+    )
+    for eps, shade in lines.items():
+        axes.plot(t, dataset.z.sel(gamma=gamma, eps=eps), color=shade, label=label_eps(eps))
+    axes.plot(t, dataset.z_limit, "--", color=LIMIT, linewidth=1.2, label="limit z")
+    axes.set(xlabel="t (s)", ylabel="z (m)")
+    axes.margins(x=0)
+
+
+def _slips(dataset: xr.Dataset, gamma: float, chosen) -> tuple[float, float] | None:
+    """A window of a few slips: of the largest eps that slides and is resolved by `time`."""
+    t, z = dataset.time.values, dataset.z_limit.values
+    if t.size < 3:
+        return None
+    speed = np.abs(np.gradient(z, t)) if np.all(np.diff(t) > 0) else np.zeros(t.size)
+    middle = int(np.argmax(speed))
+    for eps in chosen:
+        if speed[middle] == 0:
+            break
+        slip = eps / speed[middle]
+        half = 0.5 * _SLIPS * slip
+        fine = slip >= _RESOLVED * float(np.median(np.diff(t)))
+        if fine and 2 * half < 0.5 * (t[-1] - t[0]):
+            centre = float(np.clip(t[middle], t[0] + half, t[-1] - half))
+            return centre - half, centre + half
+    return None
+
+
+def _zoom(main: Any, axes: Any, dataset: xr.Dataset, gamma: float, lines, window) -> None:
+    inside = dataset.sel(time=slice(*window))
+    _panel(axes, inside, gamma, lines)
+    shown = [inside.z.sel(gamma=gamma, eps=eps).values for eps in lines]
+    values = np.concatenate([*shown, inside.z_limit.values])
+    pad = 0.06 * np.ptp(values)
+    low, high = float(values.min() - pad), float(values.max() + pad)
+    axes.set(xlim=window, ylim=(low, high), title="A few slips, in the frame on the left")
+    width, height = window[1] - window[0], high - low
+    frame = {"fill": False, "edgecolor": "#555555", "linewidth": 1, "zorder": 5}
+    from matplotlib.patches import Rectangle
+
+    main.add_patch(Rectangle((window[0], low), width, height, **frame))
