@@ -9,6 +9,7 @@ import numpy as np
 
 from .arguments import Real, as_text, is_concrete, require
 from .coefficients import Coefficients, coefficients_jit
+from .extrema import smallest
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
 from .supports import AbstractSupport
 
@@ -90,10 +91,10 @@ def require_reach(potential: AbstractPotential, eps: Real) -> None:
     if not is_concrete(potential, eps):
         return
     sizes = np.unique(np.asarray(eps, dtype=float))
-    smallest = np.asarray(_stretches(potential, jnp.asarray(sizes)))
-    if np.all(smallest > 0):
+    stretch = np.asarray(_stretches(potential, jnp.asarray(sizes)))
+    if np.all(stretch > 0):
         return
-    worst = float(sizes[~(smallest > 0)][0])
+    worst = float(sizes[~(stretch > 0)][0])
     limit = largest_eps(potential, worst)
     require(False, "eps", worst, f"eps < {as_text(limit)}, where G = dz/dp > 0 fails")
 
@@ -128,8 +129,8 @@ def _range_and_convexity(support: AbstractSupport, low: Real, high: Real):
     coarse = jax.vmap(support.stiffness_at)(grid)
     fine = grid[jnp.argmin(coarse)] + width * jnp.linspace(-1.0, 1.0, 1025)
     finer = jax.vmap(support.stiffness_at)(jnp.clip(fine, ends[0], ends[1]))
-    smallest = jnp.minimum(jnp.min(coarse), jnp.min(finer))
-    return ends, smallest, jnp.max(coarse), jax.vmap(support.force)(ends)
+    least = smallest(jnp.concatenate([coarse, finer]))
+    return ends, least, jnp.max(coarse), jax.vmap(support.force)(ends)
 
 
 def require_convex(support: AbstractSupport, low: Real, high: Real) -> None:
@@ -140,7 +141,7 @@ def require_convex(support: AbstractSupport, low: Real, high: Real) -> None:
     """
     if not is_concrete(support, low, high):
         return
-    ends, smallest, largest, forces = _range_and_convexity(support, low, high)
+    ends, least, largest, forces = _range_and_convexity(support, low, high)
     wanted = np.array([float(low), float(high)])
     size = max(1e-300, float(np.max(np.abs(wanted))))
     reached = np.all(np.abs(np.asarray(forces) - wanted) <= 1e-6 * size)
@@ -148,4 +149,4 @@ def require_convex(support: AbstractSupport, low: Real, high: Real) -> None:
     needs = f"Phi' to reach the forces [{wanted[0]:.6g}, {wanted[1]:.6g}]"
     require(np.all(np.isfinite(np.asarray(ends))) and reached, "support", span, needs)
     needs = f"Phi uniformly convex on the range reached, z in {span}"
-    require(float(smallest) > 1e-9 * float(largest), "support: min Phi''", smallest, needs)
+    require(float(least) > 1e-9 * float(largest), "support: min Phi''", least, needs)

@@ -67,3 +67,8 @@ def _highest(fn: Callable[[Real], Real], grid: Array, values: Array) -> Real:
     places = jax.vmap(lambda place: _summit(fn, place, width))(grid[best])
     heights = jax.lax.stop_gradient(jax.vmap(fn)(places))
     return _carry(fn, places[jnp.argmax(heights)])
+
+
+def smallest(values: Array) -> Real:
+    """The minimum, NaN where any value is: `jnp.min` loses NaNs of long arrays."""
+    return jnp.where(jnp.any(jnp.isnan(values)), jnp.nan, jnp.min(values))

@@ -13,6 +13,8 @@ from .bristles import AbstractBristle
 from .coefficients import Coefficients, coefficients_jit
 from .potentials import AbstractPotential, BristlePotential, potential
 
+_STEPS = 6  # of Newton: H' is a parabola at worst, where xi is close to rho
+
 
 def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> Coefficients:
     """Friction coefficients of a scene, or of a profile and a bristle.
@@ -69,12 +71,15 @@ def dual_dissipation(potential: AbstractPotential, xi: Real) -> Real:
     def variation(left, right, start, end, slope_start, slope_end):
         turns = slope_start * slope_end < 0
         share = slope_start / jnp.where(turns, slope_start - slope_end, 1.0)
-        middle = left + (right - left) * jnp.clip(share, 0.0, 1.0)
-        # H' is zero at the turn, so the secant's error enters squared; one Newton step
-        # more makes it h^8.
-        bend = jax.grad(slope)(middle)
-        newton = middle - slope(middle) / jnp.where(bend == 0, 1.0, bend)
-        turn = primitive(jnp.clip(newton, left, right))
+        secant = left + (right - left) * jnp.clip(share, 0.0, 1.0)
+
+        def newton(_, y):
+            value, bend = jax.jvp(slope, (y,), (jnp.ones_like(y),))
+            return jnp.clip(y - value / jnp.where(bend == 0, 1.0, bend), left, right)
+
+        # H' is zero at the turn, so what is left of its place enters squared.
+        place = jax.lax.stop_gradient(jax.lax.fori_loop(0, _STEPS, newton, secant))
+        turn = primitive(place)
         split = jnp.abs(turn - start) + jnp.abs(end - turn)
         return jnp.where(turns, split, jnp.abs(end - start))
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from .arguments import Real, require, require_function, require_x64
 from .bristles import AbstractBristle
+from .extrema import smallest
 from .profiles import AbstractProfile
 from .profiles.profile import require_smooth
 from .roots import bracketed_root
@@ -267,4 +268,4 @@ def smallest_stretch(
     coarse = stretch(grid)
     places = [jnp.argmin(coarse), jnp.argmin(offset), jnp.argmax(offset)]
     fine = grid[jnp.stack(places)][:, None] + np.linspace(-1, 1, _ZOOM + 1) / count
-    return jnp.min(jnp.concatenate([coarse, stretch(fine.ravel())]))
+    return smallest(jnp.concatenate([coarse, stretch(fine.ravel())]))

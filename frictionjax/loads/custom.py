@@ -43,7 +43,7 @@ class Custom(AbstractLoad):
         if not is_concrete(self.listed):
             return
         times = known_numbers(self.listed)
-        require(times.ndim == 1, "load.turning_points", times, "times, shape (n,)")
+        require(times.ndim == 1, "load.turning_points", self.listed, "times, shape (n,)")
         increasing = np.all(np.isfinite(times)) and np.all(np.diff(times) > 0)
         require(increasing, "load.turning_points", times, "finite, increasing times")
 

@@ -26,9 +26,9 @@ class PiecewiseLinear(AbstractLoad):
             return
         times, values = known_numbers(self.times), known_numbers(self.values)
         flat = times.ndim == 1 and times.size >= 1
-        require(flat, "load.times", times, "one or more times, shape (n,)")
+        require(flat, "load.times", self.times, "one or more times, shape (n,)")
         shape = f"the shape {times.shape} of times"
-        require(values.shape == times.shape, "load.values", values, shape)
+        require(values.shape == times.shape, "load.values", self.values, shape)
         require(np.all(np.isfinite(times)), "load.times", times, "finite times")
         require(np.all(np.isfinite(values)), "load.values", values, "finite values")
         require(np.all(np.diff(times) > 0), "load.times", times, "increasing times")

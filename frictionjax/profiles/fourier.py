@@ -28,8 +28,9 @@ class Fourier(AbstractProfile):
             return
         cos, sin = known_numbers(self.cos), known_numbers(self.sin)
         flat = cos.ndim == 1 and cos.size > 0
-        require(flat, "profile.cos", cos, "one or more coefficients, shape (harmonics,)")
-        require(sin.shape == cos.shape, "profile.sin", sin, f"shape {cos.shape} of cos")
+        require(flat, "profile.cos", self.cos, "coefficients, shape (harmonics,)")
+        same = sin.shape == cos.shape
+        require(same, "profile.sin", self.sin, f"shape {cos.shape} of cos")
         require(np.all(np.isfinite(cos)), "profile.cos", cos, "finite coefficients")
         require(np.all(np.isfinite(sin)), "profile.sin", sin, "finite coefficients")
         require(np.any(cos) or np.any(sin), "profile.cos", cos, "a coefficient != 0")

@@ -28,7 +28,7 @@ class Spline(AbstractProfile):
     def __init__(self, heights: Any):
         heights = as_real(heights)
         if is_concrete(heights):
-            _require_heights(known_numbers(heights))
+            _require_heights(heights)
         # c_{k-1} + 4 c_k + c_{k+1} = 6 h_k is circulant: diagonal after an FFT.
         count = heights.shape[0]
         symbol = (4 + 2 * np.cos(2 * np.pi * np.arange(count // 2 + 1) / count)) / 6
@@ -64,8 +64,9 @@ class Spline(AbstractProfile):
         return 16 * max(16, self.coefficients.shape[0])
 
 
-def _require_heights(heights: np.ndarray) -> None:
+def _require_heights(given: Any) -> None:
+    heights = known_numbers(given)
     enough = heights.ndim == 1 and heights.size >= 4
-    require(enough, "profile.heights", heights, "4 or more heights, shape (n,)")
+    require(enough, "profile.heights", given, "4 or more heights, shape (n,)")
     require(np.all(np.isfinite(heights)), "profile.heights", heights, "finite heights")
     require(np.ptp(heights) > 0, "profile.heights", heights, "heights that vary")

@@ -1,0 +1,200 @@
+"""Every hypothesis of the paper is checked by name, and none raises a false alarm."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from samples import BRISTLES, pair
+
+import frictionjax as fx
+from frictionjax.admissibility import largest_eps, require_reach
+
+SINE = fx.profiles.Sine(0.5)
+NEARLY = 1.2 * (1 + 2e-16)  # a rest length of 1.2 but for rounding
+
+
+@pytest.mark.parametrize(
+    "bristle",
+    [
+        fx.bristles.VerticalSpring(1.0, 1.2, 1.2),
+        fx.bristles.VerticalSpring(3.0, NEARLY, 1.2),
+        fx.bristles.SlantedSpring(1.0, 1.2 / np.cos(0.7), 1.2, 0.7),
+        fx.bristles.SlantedSpring(2.0, 1.2 / np.cos(0.3) * (1 + 2e-16), 1.2, 0.3),
+        fx.bristles.AngularSpring(1.0, 1.5, 1.2, np.arccos(0.8) * (1 - 2e-16)),
+    ],
+)
+def test_alpha_zero_is_named(bristle):
+    with pytest.raises(ValueError, match=r"alpha = .*needs alpha = F'\(0\) != 0"):
+        fx.friction(fx.profiles.Sine(0.1), bristle)
+
+
+CASES = {
+    "slanted, forward": (SINE, fx.bristles.SlantedSpring(1.0, 9.0, 1.0, 1.2)),
+    "slanted, mirrored": (SINE, fx.bristles.SlantedSpring(1.0, 9.0, 1.0, -1.2)),
+    "angular, the tip jumps": (SINE, fx.bristles.AngularSpring(1.0, 1.05, 1.0, 0.0)),
+    "angular, the rod touches": (SINE, fx.bristles.AngularSpring(1.0, 3.0, 1.0, 0.0)),
+    "custom, a > 0": (SINE, fx.bristles.Custom(lambda e: 2.1 * e, lambda e: e)),
+    "custom, a < 0": (SINE, fx.bristles.Custom(lambda e: -2.1 * e, lambda e: e)),
+}
+NAMES = {
+    "slanted, forward": r"bristle.angle = 1.2: needs omega_plus < cot\(angle\)",
+    "slanted, mirrored": r"bristle.angle = -1.2: needs omega_minus > cot\(angle\)",
+    "angular, the tip jumps": r"theta_lim = .*omega_minus > -tan\(theta_lim\)",
+    "angular, the rod touches": r"theta_lim = .*omega_plus < cot\(theta_lim\)",
+    "custom, a > 0": r"bristle = .*1 \+ a omega_minus > 0",
+    "custom, a < 0": r"bristle = .*1 \+ a omega_plus > 0",
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_slopes_beyond_the_bristle_are_named(case):
+    with pytest.raises(ValueError, match=NAMES[case]):
+        fx.friction(*CASES[case])
+
+
+def test_bounds_are_sharp():
+    for share, fails in ((1 - 1e-9, False), (1 + 1e-9, True)):
+        surface = fx.profiles.Sine(share / np.tan(1.2))
+        spring = fx.bristles.SlantedSpring(1.0, 9.0, 1.0, 1.2)
+        if fails:
+            with pytest.raises(ValueError, match="omega_plus"):
+                fx.friction(surface, spring)
+        else:
+            fx.friction(surface, spring)
+
+
+@pytest.mark.parametrize("kind", BRISTLES)
+def test_no_false_alarm_on_random_parts(kind):
+    for seed in range(20, 26):
+        surface, bristle = pair("sine", kind, 1, seed)
+        fx.friction(surface, bristle)
+    orders = np.arange(1, 65)
+    cos, sin = np.random.default_rng(1).normal(size=(2, 64)) / orders / 2000
+    found = fx.friction(fx.profiles.Fourier(cos, sin), bristle)
+    assert found.rho_plus > 0 > found.rho_minus
+
+
+def brute_largest_eps(offset_slope, height, slope, upper):
+    """By bisection on a grid of 2e5 heights and slopes."""
+    low, high = 0.0, upper
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            smallest = np.min(np.asarray(1 + offset_slope(middle * height) * slope))
+        low, high = (middle, high) if smallest > 0 else (low, middle)
+    return low
+
+
+REACH = {
+    "angular": (fx.bristles.AngularSpring(1.0, 1.05, 1.0, -0.1), 0.2),
+    "angular, short": (fx.bristles.AngularSpring(1.0, 1.0001, 1.0, -0.1), 0.01),
+    "custom": (fx.bristles.Custom(lambda e: e + 4 * e**2, lambda e: e), 0.3),
+}
+
+
+@pytest.mark.parametrize("case", REACH)
+def test_largest_eps_against_brute_force(case):
+    bristle, size = REACH[case]
+    surface = fx.profiles.Fourier([0.0, size / 40], [size / 7, 0.0])
+    y = jnp.arange(200_000) / 200_000
+    height, slope = np.asarray(surface(y)), np.asarray(jax.vmap(jax.grad(surface))(y))
+
+    def offset_slope(eta):
+        if case == "custom":
+            return 1 + 8 * eta
+        drop = bristle.height - eta
+        return drop / np.sqrt(bristle.length**2 - drop**2)
+
+    potential = fx.potential(surface, bristle)
+    expected = brute_largest_eps(offset_slope, height, slope, 50.0)
+    found = largest_eps(potential, 50.0)
+    assert found == pytest.approx(expected, rel=1e-6)
+    require_reach(potential, np.array([0.5, 1 - 1e-6]) * found)
+    with pytest.raises(ValueError, match=f"eps = .*needs eps < {found:.6g}, where G"):
+        require_reach(potential, np.array([0.5, 1 + 1e-6]) * found)
+
+
+def test_reach_is_seen_on_a_long_grid():
+    # Minima of more than about 4000 values once hid the NaN beyond the rod's reach.
+    surface = fx.profiles.Custom(lambda y: 0.02 * jnp.cos(2 * jnp.pi * y), points=8192)
+    rod = fx.bristles.AngularSpring(1.0, 1.05, 1.0, -0.1)
+    limit = largest_eps(fx.potential(surface, rod), 50.0)
+    coarse = fx.profiles.Fourier([0.02], [0.0])
+    assert limit == pytest.approx(largest_eps(fx.potential(coarse, rod), 50.0), rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("energy", "message"),
+    [
+        (
+            lambda z: z**2 / 2 - 0.2 * jnp.cos(6 * z),
+            "uniformly convex on the range reached",
+        ),
+        (lambda z: z**4 / 4, "uniformly convex"),
+        (lambda z: jnp.log(jnp.cosh(z)), "Phi' to reach the forces"),
+        (lambda z: -(z**2), "Phi"),
+    ],
+)
+def test_a_support_that_is_not_convex_is_named(energy, message):
+    with pytest.raises(ValueError, match=f"support.*{message}"):
+        fx.Scene(
+            SINE,
+            fx.bristles.Homothetic(0.3),
+            fx.supports.Convex(energy),
+            fx.loads.Sine(2.0, 1.0),
+            duration=1.0,
+        )
+
+
+def test_convexity_is_asked_for_where_the_load_reaches():
+    def build(amplitude):
+        dip = fx.supports.Convex(lambda z: z**2 / 2 + 2 * jnp.exp(-4 * (z - 5) ** 2))
+        load = fx.loads.Sine(amplitude, 1.0)
+        return fx.Scene(SINE, fx.bristles.Homothetic(0.3), dip, load, duration=1.0)
+
+    build(2.0)
+    with pytest.raises(ValueError, match="support"):
+        build(6.0)
+
+
+def scene(**change):
+    parts = {
+        "profile": SINE,
+        "bristle": fx.bristles.Homothetic(1.0),
+        "support": fx.supports.Spring(1.0),
+        "load": fx.loads.Ramp(1.0),
+        "duration": 1.0,
+    }
+    return fx.Scene(**{**parts, **change})
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"profile": 0.1}, "profile = 'float'"),
+        ({"bristle": SINE}, "bristle = 'Sine'"),
+        ({"support": 1.0}, "scene.support = 'float'"),
+        ({"load": jnp.sin}, "scene.load = "),
+        ({"duration": 0.0}, "scene.duration = 0: needs duration > 0"),
+        ({"duration": None}, "scene.duration = 'None'"),
+        ({"duration": "long"}, "scene.duration = 'long'"),
+        ({"z0": np.nan}, "scene.z0 = nan"),
+        ({"z0": [0.0, 1.0]}, "scene.z0 = .*one number"),
+        ({"effects": ("inertia",)}, "scene.effects = "),
+        (
+            {"potential": fx.GivenPotential(lambda Y: jnp.sin(2 * jnp.pi * Y))},
+            "scene.profile",
+        ),
+    ],
+)
+def test_wrong_parts_of_a_scene_are_named(change, message):
+    with pytest.raises(ValueError, match=message):
+        scene(**change)
+
+
+def test_wrong_supports_are_named():
+    for value in (0.0, -1.0, np.nan, "stiff"):
+        with pytest.raises(ValueError, match=r"support.stiffness = .*stiffness > 0"):
+            fx.supports.Spring(value)
+    with pytest.raises(ValueError, match=r"support.energy = 3"):
+        fx.supports.Convex(3.0)

@@ -1,0 +1,95 @@
+"""The two functions of every bristle, against the paper's geometry."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from samples import BRISTLES, bristle, central
+
+import frictionjax as fx
+
+ETA = jnp.asarray([-0.05, -1e-3, 0.0, 1e-6, 0.03])
+
+
+@pytest.mark.parametrize("kind", BRISTLES)
+def test_offset_vanishes_on_the_flat_and_both_are_smooth(kind):
+    part = bristle(kind, np.random.default_rng(0), 1)
+    assert part.offset(jnp.zeros(())) == 0
+    for fn in (part.offset, part.energy):
+        slopes = jax.vmap(jax.grad(fn))(ETA)
+        np.testing.assert_allclose(slopes, central(jax.vmap(fn), ETA, 1e-3), atol=1e-11)
+
+
+def test_slanted_spring_is_a_spring_along_its_line():
+    part = fx.bristles.SlantedSpring(2.0, 1.5, 1.0, 0.4)
+    root, direction = np.array([0.0, 1.0]), np.array([np.sin(0.4), -np.cos(0.4)])
+    length = (1.0 - ETA) / np.cos(0.4)
+    tips = root + length[:, None] * direction
+    np.testing.assert_allclose(tips[:, 1], ETA, atol=1e-15)
+    flat = np.tan(0.4)  # of the tip at eta = 0, ahead of the root
+    np.testing.assert_allclose(part.offset(ETA), flat - (2 * flat - tips[:, 0]), atol=1e-15)
+    np.testing.assert_allclose(part.energy(ETA), (1.5 - length) ** 2, rtol=1e-14)
+
+
+def test_angular_spring_is_a_rod_of_fixed_length():
+    part = fx.bristles.AngularSpring(2.0, 1.25, 1.0, 0.1)
+    reach = np.sqrt(1.25**2 - (1 - ETA) ** 2)
+    np.testing.assert_allclose(part.offset(ETA), reach - 0.75, atol=2e-16)
+    angle = np.arccos((1 - ETA) / 1.25)
+    np.testing.assert_allclose(part.energy(ETA), (angle - 0.1) ** 2, rtol=1e-14)
+    assert float(part.limit_angle) == pytest.approx(np.arccos(0.8), rel=1e-15)
+    lower, upper, *_ = part.slope_bounds()
+    np.testing.assert_allclose([lower, upper], [-0.75, 4 / 3], rtol=1e-15)
+
+
+def test_angular_spring_nearly_upright_in_exact_arithmetic():
+    from decimal import Decimal, getcontext
+
+    getcontext().prec = 60
+    L, h = Decimal(1), Decimal(1.0 - 1e-9)
+    part = fx.bristles.AngularSpring(1.0, 1.0, 1.0 - 1e-9, -0.3)
+    for eta in (1e-9, -5e-10, 1e-14, 1e-20):
+        drop = h - Decimal(eta)
+        exact = (L * L - drop * drop).sqrt() - (L * L - h * h).sqrt()
+        assert float(part.offset(jnp.asarray(eta))) == pytest.approx(
+            float(exact), rel=1e-14
+        )
+
+
+def test_vertical_and_homothetic_do_not_lean():
+    for part in (fx.bristles.VerticalSpring(1.0, 1.2, 1.0), fx.bristles.Homothetic(-2.0)):
+        assert not np.any(part.offset(ETA))
+    np.testing.assert_allclose(fx.bristles.Homothetic(-2.0).energy(ETA), -2 * ETA)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: fx.bristles.Homothetic(0.0), "bristle.alpha = 0: needs alpha != 0"),
+        (lambda: fx.bristles.Homothetic(np.nan), "bristle.alpha = nan"),
+        (lambda: fx.bristles.Homothetic("1"), "bristle.alpha = '1': needs a number"),
+        (lambda: fx.bristles.Homothetic([1.0, 2.0]), "bristle.alpha = .*one number"),
+        (lambda: fx.bristles.VerticalSpring(-1, 1, 1), "bristle.stiffness = -1"),
+        (lambda: fx.bristles.VerticalSpring(1, 0, 1), "bristle.rest_length = 0"),
+        (lambda: fx.bristles.VerticalSpring(1, 1, None), "bristle.height = None"),
+        (lambda: fx.bristles.SlantedSpring(1, 1, 1, 1.6), "bristle.angle = 1.6: .*pi/2"),
+        (lambda: fx.bristles.SlantedSpring(1, 1, np.inf, 0), "bristle.height = inf"),
+        (lambda: fx.bristles.AngularSpring(1, 1, 2, 0), "bristle.length = 1: .*height = 2"),
+        (lambda: fx.bristles.AngularSpring(1, 1, 1, 0), "bristle.length = 1"),
+        (
+            lambda: fx.bristles.AngularSpring(1, 2, 1, 1.1),
+            "bristle.rest_angle = 1.1: needs",
+        ),
+        (lambda: fx.bristles.AngularSpring(1, 2, 1, -1.6), "bristle.rest_angle = -1.6"),
+        (lambda: fx.bristles.AngularSpring(0, 2, 1, 0), "bristle.stiffness = 0"),
+        (lambda: fx.bristles.Custom(1.0, jnp.sin), "bristle.offset = 1"),
+        (lambda: fx.bristles.Custom(jnp.sin, None), "bristle.energy = None"),
+        (lambda: fx.bristles.Custom(jnp.cos, jnp.sin), "bristle.offset = 1: .*A.0. = 0"),
+        (lambda: fx.bristles.Custom(jnp.sin, jnp.cos), "bristle.energy = .*alpha"),
+        (lambda: fx.bristles.Custom(jnp.sin, jnp.sqrt), "bristle.energy = inf"),
+        (lambda: fx.bristles.Custom(jnp.sin, lambda e: e * jnp.ones(2)), r"shape \(2,\)"),
+    ],
+)
+def test_wrong_parameters_are_named(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()
