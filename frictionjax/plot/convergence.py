@@ -9,14 +9,16 @@ from matplotlib.figure import Figure
 from .style import GUIDE, colour, marker, new_figure, styled
 
 _PANELS = (
-    ("", "sup_error", "sup$_t$ |z$_\\epsilon$ - z| (m)", "State"),
+    ("", "sup_error", "sup$_t$ |z$_\\epsilon$ - z| (m)", "State: distance from the limit"),
     (
         "dissipation_",
         "dissipation_error",
         "sup$_t$ |D$_\\epsilon$ - D| (J)",
-        "Dissipation",
+        "Dissipated energy: distance from the limit",
     ),
 )
+
+_KEY = "filled: in the window of the fit; hollow: left out; dotted: slope of the lemmas"
 
 
 @styled
@@ -40,6 +42,7 @@ def draw(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
         if not prefix:
             _guides(axes, dataset)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
+    figure.supxlabel(_KEY, fontsize=9, color="#666666")
     return figure
 
 
@@ -108,7 +111,7 @@ def _guides(axes: Any, dataset: xr.Dataset) -> None:
         below = 0.6 * min(float(np.min(errors / eps**beta)) for eps, errors in points)
         axes.plot(ends, below * ends**beta, ":", color=GUIDE, linewidth=1, zorder=1)
         axes.annotate(
-            f"$\\epsilon^{{{beta:.3g}}}$",
+            "$\\epsilon$" if beta == 1 else f"$\\epsilon^{{{beta:.3g}}}$",
             (ends[1], below * ends[1] ** beta),
             xytext=(4, 0),
             textcoords="offset points",

@@ -70,12 +70,12 @@ def _coefficients(axes: Any, found: Coefficients) -> None:
         axes.axhline(level, color=GUIDE, linewidth=0.9, zorder=1)
         axes.annotate(
             f"${name}$ = {level:.3g} N",
-            (0.5, level),
+            (0.3, level),
             xycoords=axes.get_yaxis_transform(),
-            xytext=(0, 5 if level > 0 else -5),
+            xytext=(0, -6 if level > 0 else 6),
             textcoords="offset points",
             ha="center",
-            va="bottom" if level > 0 else "top",
+            va="top" if level > 0 else "bottom",
             color="#555555",
         )
     axes.margins(y=0.12)

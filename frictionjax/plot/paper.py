@@ -51,7 +51,7 @@ def draw_mu_slanted() -> Figure:
     found = _over(angles, slanted)
     figure, axes = _mu(angles, found, "Slanted spring", "bristle angle $\\theta$ (rad)")
     axes.set_ylim(-0.15, 0.5)
-    _edge(axes, _STEEPEST, "arccot 0.1", "right")
+    _edge(axes, _STEEPEST, "only up to arccot 0.1", "right")
     return figure
 
 
@@ -63,8 +63,8 @@ def draw_mu_angular() -> Figure:
     label = "limit angle $\\theta^{lim}$ (rad)"
     figure, axes = _mu(angles, found, "Angular spring", label)
     axes.set_ylim(-0.5, 0.15)
-    _edge(axes, _FLATTEST, "arctan 0.1", "left")
-    _edge(axes, _STEEPEST, "arccot 0.1", "right")
+    _edge(axes, _FLATTEST, "only from arctan 0.1", "left")
+    _edge(axes, _STEEPEST, "only up to arccot 0.1", "right")
     return figure
 
 
@@ -81,9 +81,9 @@ def draw_nap() -> Figure:
     axes.set(xlabel="limit angle $\\theta^{lim}$ (rad)", ylabel="friction $\\rho_+$ (N)")
     axes.set_title("With and against the nap: k = 1 N m/rad, h = 1 m, $\\omega$ = 0.1")
     axes.set(xlim=(0, 0.5 * np.pi), ylim=(0, None))
-    axes.legend(loc="upper right")
-    _edge(axes, _NAP, "$\\theta_{with}$", "left")
-    _edge(axes, _STEEPEST, "arccot 0.1", "right")
+    axes.legend(loc="upper right", bbox_to_anchor=(0.93, 1.0))
+    _edge(axes, _NAP, "not beyond the rest angle", "left")
+    _edge(axes, _STEEPEST, "only up to arccot 0.1", "right")
     return figure
 
 
@@ -106,12 +106,10 @@ def _edge(axes: Any, angle: float, name: str, side: str) -> None:
     axes.axvline(angle, color=GUIDE, linewidth=0.9, linestyle="--")
     axes.annotate(
         name,
-        (angle, 0.03),
+        (0.5 * sum(beyond), 0.5),
         xycoords=axes.get_xaxis_transform(),
-        xytext=(-4 if side == "right" else 4, 0),
-        textcoords="offset points",
         rotation=90,
-        ha="right" if side == "right" else "left",
-        va="bottom",
+        ha="center",
+        va="center",
         color="#666666",
     )

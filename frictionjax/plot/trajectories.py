@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from .style import (
     LIMIT,
@@ -85,8 +86,7 @@ def _zoom(main: Any, axes: Any, dataset: xr.Dataset, gamma: float, lines, window
     pad = 0.06 * np.ptp(values)
     low, high = float(values.min() - pad), float(values.max() + pad)
     axes.set(xlim=window, ylim=(low, high), title="A few slips, in the frame on the left")
+    axes.locator_params(axis="x", nbins=5)
     width, height = window[1] - window[0], high - low
     frame = {"fill": False, "edgecolor": "#555555", "linewidth": 1, "zorder": 5}
-    from matplotlib.patches import Rectangle
-
     main.add_patch(Rectangle((window[0], low), width, height, **frame))

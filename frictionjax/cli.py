@@ -1,0 +1,178 @@
+"""The command line. Only click is imported here: `--help` must not wait for JAX."""
+
+import json
+import os
+import sys
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+
+class OneLineErrors(click.Group):
+    """A group whose commands end with one line on standard error, or in silence.
+
+    Exit status 2 for what the user can mend, 130 for Ctrl-C.
+    """
+
+    def main(self, *args: Any, **kwargs: Any) -> Any:
+        """Run the command line and exit."""
+        kwargs["standalone_mode"] = False
+        try:
+            sys.exit(super().main(*args, **kwargs))
+        except click.Abort:
+            sys.exit(130)
+        except click.ClickException as error:
+            message = error.format_message()
+        except (ValueError, OSError) as error:
+            message = str(error)
+        click.echo(f"Error: {' '.join(message.split())}", err=True)
+        sys.exit(2)
+
+
+def _options(*options: Callable) -> Callable:
+    def decorate(command: Callable) -> Callable:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return decorate
+
+
+_scene = click.argument("scene", required=False, metavar="[SCENE.toml]")
+_surface = _options(
+    click.option(
+        "--bristle",
+        type=click.Choice(["slanted", "angular"]),
+        help="Another bristle than the scene's: slanted (k 1, rest length 2.4, "
+        "height 1, angle 1) or angular (k 1, length 1.414, height 1, rest angle 0.3).",
+    ),
+    click.option("--heights", metavar="FILE", help="Measured trace or map as the surface."),
+    click.option("--harmonics", type=click.IntRange(1), help="Of its periodic part. [8]"),
+    click.option("--period", type=float, help="In m; found in the data otherwise."),
+    click.option("--pixel", type=float, help="Distance of samples in m."),
+    click.option("--height-scale", type=float, help="m per unit of the file."),
+    click.option(
+        "--row",
+        type=click.IntRange(0),
+        help="Row of a map. [mean over the rows, moved into phase]",
+    ),
+)
+
+
+@click.group(cls=OneLineErrors, invoke_without_command=True)
+@click.version_option(package_name="frictionjax")
+@click.pass_context
+def main(context: click.Context) -> None:
+    """Directional dry friction as the limit of viscous motion over a wiggly surface.
+
+    Commands use an embedded scene where no SCENE.toml is named.
+    """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
+
+
+def _start() -> None:
+    import jax
+    import matplotlib
+
+    jax.config.update("jax_enable_x64", True)
+    matplotlib.use("Agg")
+
+
+def _interruptible(work: Callable[[], Any]) -> Any:
+    """Run `work` in a thread, so that Ctrl-C is heard while compiled code runs."""
+    result: dict[str, Any] = {}
+
+    def run() -> None:
+        try:
+            result["value"] = work()
+        except BaseException as error:  # raised again below, in the main thread
+            result["error"] = error
+
+    thread = threading.Thread(target=run, daemon=True)
+    thread.start()
+    try:
+        thread.join()
+    except KeyboardInterrupt:
+        os._exit(130)  # compiled code cannot be stopped, only left
+    if "error" in result:
+        raise result["error"]
+    return result["value"]
+
+
+@main.command()
+@_scene
+@_surface
+@click.option("--json", "as_json", is_flag=True, help="Numbers as JSON.")
+def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
+    """Friction coefficients of a scene, in each direction."""
+    _start()
+    from .friction_law import friction as friction_of
+    from .report.job import joined, read_job
+    from .report.tables import coefficient_table, coefficients_of, row_table
+
+    job = read_job(scene, **surface)
+    law = friction_of(job.scene)
+    if as_json:
+        numbers: dict[str, Any] = coefficients_of(law)
+        if job.rows is not None:
+            numbers["rows"] = {"mean": job.rows.mean, "std": job.rows.std}
+        click.echo(json.dumps(numbers, indent=2))
+        return
+    sections = [("", line) for line in job.notes]
+    sections.append(("Friction coefficients", coefficient_table(law)))
+    if job.rows is not None:
+        sections.append(("Over the rows of the map", row_table(job.rows)))
+    click.echo(joined(sections))
+
+
+@main.command()
+@_scene
+@_surface
+@click.option("--eps", help="In m: a list 0.1,0.05 or START:STOP:N (equal ratios).")
+@click.option("--gamma", help="A list or START:STOP:N.")
+@click.option("--accuracy", type=float, help="Wanted error of z in units of eps.")
+@click.option("--method", default="auto", show_default=True, help="Solver.")
+@click.option("--out", default="frictionjax-study", show_default=True, metavar="DIR")
+@click.option("--progress/--no-progress", default=True, help="A bar on standard error.")
+def study(
+    scene: str | None,
+    eps: str | None,
+    gamma: str | None,
+    accuracy: float | None,
+    method: str,
+    out: str,
+    progress: bool,
+    **surface: Any,
+) -> None:
+    """Convergence to the limit: tables, NetCDF data and pictures in a folder."""
+    _start()
+    from .report.folder import require_folder
+    from .report.job import number_list, read_job
+    from .report.study import run_study
+
+    folder = require_folder(out)
+    given = {"eps": eps, "gamma": gamma}
+    wanted = {k: number_list(k, v) for k, v in given.items() if v is not None}
+    if accuracy is not None:
+        wanted["accuracy"] = accuracy
+    job = read_job(scene, **surface)
+    job = job._replace(study=job.study | wanted)
+    text = _interruptible(lambda: run_study(job, folder, method, progress))
+    click.echo(text)
+    click.echo(f"\nWritten to {folder}")
+
+
+@main.command()
+@click.option("--out", default="frictionjax-figures", show_default=True, metavar="DIR")
+def figures(out: str) -> None:
+    """Figures of the paper: coefficients against the angle of the bristle."""
+    _start()
+    from .report.folder import paper_figures, require_folder, write_figures
+
+    folder = require_folder(out)
+    for path in write_figures(folder, paper_figures()):
+        click.echo(path.name)
+    click.echo(f"Written to {folder}")

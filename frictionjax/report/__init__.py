@@ -1,0 +1,1 @@
+"""Reports: plain-text tables and the folder that a study leaves behind."""

@@ -1,0 +1,70 @@
+"""The folder that a study leaves behind."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from .. import plot
+from ..arguments import require
+from ..coefficients import Coefficients
+from ..scene import Scene
+from ..studies import Study
+
+
+def require_folder(path: Any) -> Path:
+    """Check that a folder is there or can be made; nothing is made yet.
+
+    Raises `ValueError` where a file is in the way or its parent cannot be written to.
+    """
+    folder = Path(path)
+    parent = folder
+    while not parent.exists() and parent != parent.parent:
+        parent = parent.parent
+    require(parent.is_dir(), "out", str(folder), f"a folder, but {parent} is a file")
+    require(os.access(parent, os.W_OK), "out", str(folder), f"leave to write in {parent}")
+    return folder
+
+
+def study_figures(
+    found: Study, scene: Scene, law: Coefficients
+) -> Iterator[tuple[str, Figure]]:
+    """The pictures of a study by file name, those that its data allow."""
+    data = found.dataset
+    yield "convergence", plot.draw_convergence(data, found.orders)
+    if bool((data.status == 0).any()):
+        yield "trajectories", plot.draw_trajectories(data)
+        yield "loop", plot.draw_loop(data, scene.support, law)
+        if "dissipation" in data:
+            yield "dissipation", plot.draw_dissipation(data)
+
+
+def paper_figures() -> Iterator[tuple[str, Figure]]:
+    """The paper's figures of coefficients by file name."""
+    yield "mu_slanted", plot.draw_mu_slanted()
+    yield "mu_angular", plot.draw_mu_angular()
+    yield "nap", plot.draw_nap()
+
+
+def write_figures(folder: Path, figures: Iterator[tuple[str, Figure]]) -> list[Path]:
+    """Save pictures as PNG in `folder`, made where it is not there."""
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for name, figure in figures:
+        paths.append(folder / f"{name}.png")
+        figure.savefig(paths[-1])
+    return paths
+
+
+def write_study(
+    folder: Path, found: Study, scene: Scene, law: Coefficients, toml: str, text: str
+) -> None:
+    """Write data, orders, tables, scene and pictures of a study into `folder`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    found.dataset.to_netcdf(folder / "study.nc", engine="h5netcdf")
+    found.orders.to_netcdf(folder / "orders.nc", engine="h5netcdf")
+    (folder / "tables.txt").write_text(text + "\n", encoding="utf-8")
+    (folder / "scene.toml").write_text(toml, encoding="utf-8")
+    write_figures(folder, study_figures(found, scene, law))

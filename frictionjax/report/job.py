@@ -1,0 +1,128 @@
+"""What a command was asked to do: its scene, its surface, its numbers, checked."""
+
+import math
+import re
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arguments import require
+from ..bristles import AbstractBristle, AngularSpring, SlantedSpring
+from ..measured import (
+    Measured,
+    RowCoefficients,
+    fit_profile,
+    read_heights,
+    row_coefficients,
+)
+from ..scene import Scene
+from ..scene_files import SceneFile, default_study, load_study
+
+_FEW_PERIODS = 3.0
+
+
+def named_bristle(name: str) -> AbstractBristle:
+    """The bristle of the command line with this name; admissible on slopes below 0.6."""
+    if name == "slanted":
+        return SlantedSpring(stiffness=1.0, rest_length=2.4, height=1.0, angle=1.0)
+    return AngularSpring(stiffness=1.0, length=2**0.5, height=1.0, rest_angle=0.3)
+
+
+class Job(NamedTuple):
+    """A scene, its file, and what is known of the measured surface, where there is one."""
+
+    scene: Scene
+    study: dict[str, Any]
+    notes: list[str]
+    rows: RowCoefficients | None
+
+
+def read_job(
+    path: str | None,
+    bristle: str | None = None,
+    heights: str | None = None,
+    pixel: float | None = None,
+    height_scale: float | None = None,
+    **fit: Any,
+) -> Job:
+    """The scene of a file (None: the embedded one), its bristle and surface exchanged.
+
+    `fit`: `period`, `harmonics`, `row` of the measured surface. Raises `ValueError`, one
+    line, for whatever is wrong.
+    """
+    file = default_study() if path is None else load_study(path)
+    study = {**default_study().study, **file.study}
+    chosen = file.scene.bristle if bristle is None else named_bristle(bristle)
+    assert chosen is not None
+    if heights is None:
+        given = {"pixel": pixel, "height_scale": height_scale, **fit}
+        for name, value in given.items():
+            require(value is None, name, value, "--heights FILE beside it")
+        return Job(_exchanged(file, file.scene.profile, chosen), study, [], None)
+    measured = read_heights(heights, pixel, height_scale)
+    harmonics = 8 if fit["harmonics"] is None else fit["harmonics"]
+    row, period = fit["row"], fit["period"]
+    found = fit_profile(measured, period, harmonics, row)
+    scene = _exchanged(file, found.profile, chosen)
+    notes = _notes(heights, measured, found, row)
+    rows = None
+    if measured.heights.shape[0] > 1:
+        rows = row_coefficients(measured, chosen, harmonics, found.period)
+    return Job(scene, study, notes, rows)
+
+
+def _exchanged(file: SceneFile, profile: Any, bristle: AbstractBristle) -> Scene:
+    old = file.scene
+    return Scene(profile, bristle, old.support, old.load, old.duration, old.z0)
+
+
+def _notes(path: str, measured: Measured, found: Any, row: int | None) -> list[str]:
+    rows, count = measured.heights.shape
+    which = "rows moved into phase, their mean" if row is None else f"row {row}"
+    size = f"{rows} rows of {count}, {which}" if rows > 1 else f"{count} heights"
+    lines = [
+        f"{path}: {size}; period {found.period:.4g} m, the surface's real eps, "
+        f"explains {found.explained:.0%} of the variance"
+    ]
+    periods = float(np.ptp(measured.x)) / found.period
+    if periods < _FEW_PERIODS or found.explained < 0.5:
+        lines.append(
+            f"Note: {periods:.2g} periods in a trace, {found.explained:.0%} explained: "
+            "the surface is hardly periodic, its friction says little"
+        )
+    return lines
+
+
+def number_list(name: str, text: str) -> list[float]:
+    """`0.1,0.05` or `START:STOP:N`, N values with equal ratios, both ends included.
+
+    Raises `ValueError` for what is neither.
+    """
+    allowed = "numbers > 0, as 0.1,0.05,0.02 or START:STOP:N (equal ratios)"
+    ranged = text.split(":")
+    try:
+        if len(ranged) == 3 and re.fullmatch(r"\s*\d+\s*", ranged[2]):
+            values = _geometric(float(ranged[0]), float(ranged[1]), int(ranged[2]))
+        else:
+            values = [float(item) for item in text.split(",")]
+    except ValueError:
+        values = []
+    good = bool(values) and all(math.isfinite(v) and v > 0 for v in values)
+    require(good, name, text, allowed)
+    return values
+
+
+def _geometric(start: float, stop: float, count: int) -> list[float]:
+    inside = 0 < start < math.inf and 0 < stop < math.inf and 0 < count <= 10_000
+    return np.geomspace(start, stop, count).tolist() if inside else []
+
+
+def one_line(error: BaseException) -> str:
+    """The message of an error on one line."""
+    return " ".join(str(error).split())
+
+
+def joined(sections: Sequence[tuple[str, str]]) -> str:
+    """Tables under their titles."""
+    return "\n\n".join(f"{title}\n{text}" if title else text for title, text in sections)

@@ -1,0 +1,200 @@
+"""Plain-text tables with aligned columns."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..coefficients import Coefficients
+from ..measured import RowCoefficients
+
+_LAW = (
+    ("rho_plus", "N", "friction against motion to the right"),
+    ("rho_minus", "N", "friction against motion to the left"),
+    ("ratio", "", "-rho_plus/rho_minus"),
+    ("alpha", "N", "normal force"),
+    ("a", "", "lean of the bristle, A'(0)"),
+    ("mu_plus", "", "largest slope that the bristle sees"),
+    ("mu_minus", "", "smallest slope that the bristle sees"),
+    ("omega_plus", "", "largest slope of the surface"),
+    ("omega_minus", "", "smallest slope of the surface"),
+)
+_FITTED = ("explained", "", "share of the variance that is periodic")
+
+
+def table(header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 0) -> str:
+    """Columns under a header, set flush right but for the first `left` and the last text.
+
+    Lines carry no trailing blanks.
+    """
+    cells = [list(header), *(list(row) for row in rows)]
+    widths = [max(len(row[i]) for row in cells) for i in range(len(header))]
+    lines = []
+    for row in cells:
+        texts = [
+            text.ljust(width) if i < left else text.rjust(width)
+            for i, (text, width) in enumerate(zip(row, widths, strict=True))
+        ]
+        lines.append("  ".join(texts).rstrip())
+    return "\n".join(lines)
+
+
+def coefficients_of(found: Coefficients) -> dict[str, float]:
+    """Numbers of a friction law by name, `ratio` = -rho_plus/rho_minus added.
+
+    Only those that exist: the abstract setting has no bristle's.
+    """
+    numbers = {"ratio": -float(found.rho_plus) / float(found.rho_minus)}
+    for name, _, _ in _LAW:
+        value = getattr(found, name, None)
+        if value is not None:
+            numbers[name] = float(value)
+    return {name: numbers[name] for name, _, _ in _LAW if name in numbers}
+
+
+def coefficient_table(found: Coefficients) -> str:
+    """Friction coefficients with their units and meanings."""
+    numbers = coefficients_of(found)
+    rows = [
+        (name, _signed(numbers[name]), unit.ljust(4), meaning)
+        for name, unit, meaning in _LAW
+        if name in numbers
+    ]
+    return _with_meanings(("coefficient", "value", "unit", "meaning"), rows)
+
+
+def row_table(rows: RowCoefficients) -> str:
+    """Friction over the rows of a map: mean and standard deviation of a row."""
+    mean, std = rows.mean, rows.std
+    lines = [
+        (name, _signed(mean[name]), f"{std[name]:.2g}", unit.ljust(4), meaning)
+        for name, unit, meaning in (*_LAW, _FITTED)
+    ]
+    header = ("coefficient", "mean", "std", "unit", "meaning")
+    count = f"{len(rows.used)} rows, period {rows.period:.4g} m"
+    text = [f"{count}\n{_with_meanings(header, lines)}"]
+    if rows.refused:
+        text.append(f"{len(rows.refused)} rows left out, not admissible for the bristle:")
+        text += [f"  row {index}: {why}" for index, why in rows.refused.items()]
+    return "\n".join(text)
+
+
+def _with_meanings(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Names and meanings flush left, numbers between them flush right."""
+    width = max(len(row[-1]) for row in (header, *rows))
+    padded = [(*row[:-1], row[-1].ljust(width)) for row in (header, *rows)]
+    return table(padded[0], padded[1:], left=1)
+
+
+def sweep_table(dataset: xr.Dataset) -> str:
+    """One line a cell: errors, residual, steps, status."""
+    names = _flag_names(dataset.status)
+    rows = []
+    for gamma in dataset.gamma.values:
+        for eps in dataset.eps.values:
+            cell = dataset.sel(gamma=gamma, eps=eps)
+            error = float(cell.sup_error)
+            rows.append(
+                (
+                    f"{gamma:.4g}",
+                    f"{eps:.4g}",
+                    _number(error),
+                    _number(error / eps),
+                    _number(_value(cell, "dissipation_error")),
+                    _number(_value(cell, "residual")),
+                    f"{int(cell.steps)}",
+                    names[int(cell.status)],
+                )
+            )
+    header = (
+        "gamma",
+        "eps/m",
+        "sup error/m",
+        "in eps",
+        "dissipation error/J",
+        "residual/J",
+        "steps",
+        "status",
+    )
+    return table(header, rows)
+
+
+def order_table(orders: xr.Dataset) -> str:
+    """One line a gamma: orders with intervals, window, constants of the lemmas."""
+    rows = []
+    for gamma in orders.gamma.values:
+        line = orders.sel(gamma=gamma)
+        rows.append(
+            (
+                f"{gamma:.4g}",
+                _interval(line, ""),
+                f"{float(line.beta):.3g}",
+                _window(line),
+                f"{int(line.points)}",
+                _number(float(line.C0)),
+                _number(float(line.C)),
+                _interval(line, "dissipation_"),
+                _verdict(orders, line),
+            )
+        )
+    header = (
+        "gamma",
+        "order [95%]",
+        "beta",
+        "eps window/m",
+        "points",
+        "C0",
+        "C",
+        "dissipation order [95%]",
+        "verdict",
+    )
+    return table(header, rows)
+
+
+def failed_table(failed: Sequence[dict[str, Any]]) -> str:
+    """One line a failed cell with the reason; says so where none failed."""
+    if not failed:
+        return "no cell failed"
+    rows = [
+        (f"{cell['gamma']:.4g}", f"{cell['eps']:.4g}", cell["status"], cell["message"])
+        for cell in failed
+    ]
+    return _with_meanings(("gamma", "eps/m", "status", "why"), rows)
+
+
+def _flag_names(variable: xr.DataArray) -> dict[int, str]:
+    values = np.atleast_1d(variable.attrs["flag_values"])
+    names = variable.attrs["flag_meanings"].split()
+    return {int(value): name for value, name in zip(values, names, strict=True)}
+
+
+def _verdict(orders: xr.Dataset, line: xr.Dataset) -> str:
+    if "verdict" not in orders:
+        return ""
+    return _flag_names(orders.verdict)[int(line.verdict)].replace("_", " ")
+
+
+def _value(cell: xr.Dataset, name: str) -> float:
+    return float(cell[name]) if name in cell else float("nan")
+
+
+def _number(value: float) -> str:
+    return f"{value:.3g}" if np.isfinite(value) else "-"
+
+
+def _signed(value: float) -> str:
+    return f"{value:.6g}"
+
+
+def _interval(line: xr.Dataset, prefix: str) -> str:
+    order = _value(line, prefix + "order")
+    if not np.isfinite(order):
+        return "-"
+    low, high = (_value(line, f"{prefix}order_{end}") for end in ("low", "high"))
+    return f"{order:.3f} [{low:.3f}, {high:.3f}]"
+
+
+def _window(line: xr.Dataset) -> str:
+    low, high = float(line.eps_min), float(line.eps_max)
+    return f"{low:.3g} to {high:.3g}" if np.isfinite(low) else "-"
