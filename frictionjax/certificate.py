@@ -94,7 +94,8 @@ def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
     require_real("gamma", gamma, "gamma > 0", lambda g: g > 0)
     ts, z = _require_curve(scene, ts, z)
     require_reach(scene.potential, jnp.asarray(as_real(eps)))
-    eps, viscosity = float(eps), float(eps) ** float(gamma)
+    eps = float(eps)
+    viscosity = eps ** float(gamma)
     law = coefficients_jit(scene.potential)
     scale = eps * float(law.rho_plus - law.rho_minus)
     if not np.all(np.isfinite(z)):

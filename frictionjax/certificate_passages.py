@@ -10,7 +10,7 @@ import numpy as np
 from .certificate_curve import Force, Intervals, Samples
 from .extrema import Extrema, periodic_extrema
 
-_FOLD = 0.03  # periods around a fold within which noise may cross it
+_FOLD = 0.015  # periods around a fold: noise of eps/100 makes no passage
 _FAST = 0.25  # periods around the fastest place of a slip that count as the slip
 
 
@@ -95,14 +95,15 @@ def _missing(force: Force, folds: Folds, at: Samples, sign: int) -> np.ndarray:
 def _pull(force: Force, well: np.ndarray, place: float) -> tuple[np.ndarray, np.ndarray]:
     """`Phi'` and `Phi''` with the tip at well + place; padded, to compile for few sizes."""
     room = (1 << max(10, int(well.size).bit_length())) - well.size
-    pulls = _pulls(force, jnp.asarray(np.pad(well.astype(float), (0, room))), place)
+    wells = np.pad(well.astype(float), (0, room))
+    pulls = _pulls(force, jnp.asarray(wells), jnp.asarray(place))
     pull, stiffness = (np.asarray(v)[: well.size] for v in pulls)
     return pull, stiffness
 
 
 @eqx.filter_jit
 def _pulls(force: Force, well, place):
-    z = jax.vmap(lambda n: force.state(n, jnp.asarray(place)))(well)
+    z = jax.vmap(lambda n: force.state(n, place))(well)
     return jax.vmap(force.support.force)(z), jax.vmap(force.support.stiffness_at)(z)
 
 
