@@ -25,7 +25,9 @@ class OneLineErrors(click.Group):
             sys.exit(130)
         except click.ClickException as error:
             message = error.format_message()
-        except (ValueError, OSError) as error:
+        except OSError as error:
+            message = f"{error.filename}: {error.strerror}"
+        except ValueError as error:
             message = str(error)
         click.echo(f"Error: {' '.join(message.split())}", err=True)
         sys.exit(2)

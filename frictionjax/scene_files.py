@@ -94,17 +94,17 @@ def _scene_of(document: dict[str, Any], folder: Path) -> Scene:
     parts = {table: _part_of(table, document[table], folder) for table in _PARTS}
     top = {key: document.get(key, 0.0) for key in _TOP}
     for key, value in top.items():
-        require(not isinstance(value, list), key, repr(value), "a number")
+        _need(not isinstance(value, list), f"{key} = {value!r}", "a number")
     return Scene(**parts, **{key: _numbers(key, value) for key, value in top.items()})
 
 
 def _part_of(table: str, entries: Any, folder: Path) -> Any:
-    require(isinstance(entries, dict), f"[{table}]", repr(entries), "a table")
+    _need(isinstance(entries, dict), f"{table} = {entries!r}", f"a table [{table}]")
     module, kinds = _PARTS[table]
     kind = entries.get("kind")
-    allowed = f"kind, one of {', '.join(kinds)}"
     known = isinstance(kind, str) and kind in kinds
-    require(known, f"[{table}] kind", "missing" if kind is None else kind, allowed)
+    said = "no kind" if kind is None else f"kind = {kind!r}"
+    _need(known, f"[{table}] {said}", f"a kind that is one of {', '.join(kinds)}")
     build = getattr(module, kind)
     given = {key: value for key, value in entries.items() if key != "kind"}
     if kind == "Fourier" and "heights" in given:
@@ -119,7 +119,8 @@ def _part_of(table: str, entries: Any, folder: Path) -> Any:
 def _measured_profile(given: dict[str, Any], folder: Path) -> profiles.Fourier:
     _require_keys("[profile] ", given, ("heights", *_FIT, *_READING), ())
     name = given["heights"]
-    require(isinstance(name, str), "[profile] heights", repr(name), "the name of a file")
+    text = isinstance(name, str)
+    _need(text, f"[profile] heights = {name!r}", "the name of a file")
     options = {key: _option(key, given[key]) for key in given if key != "heights"}
     reading = {key: options.pop(key) for key in _READING if key in options}
     return fit_profile(read_heights(folder / name, **reading), **options).profile
@@ -127,39 +128,46 @@ def _measured_profile(given: dict[str, Any], folder: Path) -> profiles.Fourier:
 
 def _option(key: str, value: Any) -> Any:
     whole = isinstance(value, int) and not isinstance(value, bool)
-    require(whole or key not in _WHOLE, f"[profile] {key}", repr(value), "a whole number")
-    require(not isinstance(value, list), f"[profile] {key}", repr(value), "a number")
+    said = f"[profile] {key} = {value!r}"
+    _need(whole or key not in _WHOLE, said, "a whole number")
+    _need(not isinstance(value, list), said, "a number")
     return value if key in _WHOLE else _numbers(f"[profile] {key}", value)
 
 
 def _require_keys(where: str, entries: dict, known, needed) -> None:
     for key in entries:
-        require(key in known, f"{where}{key}", "unknown", f"one of {', '.join(known)}")
+        _need(key in known, f"{where}{key} is unknown", f"one of {', '.join(known)}")
     for key in needed:
-        require(key in entries, f"{where}{key}", "missing", "a value")
+        _need(key in entries, f"{where}{key} is missing", f"all of {', '.join(needed)}")
+
+
+def _need(condition: Any, said: str, allowed: str) -> None:
+    """Like `require`, in the words of the file rather than of a constructor."""
+    if not condition:
+        raise ValueError(f"{said}: needs {allowed}")
 
 
 def _numbers(name: str, value: Any) -> Any:
     """A number or a list of them, as floats."""
     rows = value if isinstance(value, list) else [value]
     plain = all(isinstance(v, int | float) and not isinstance(v, bool) for v in rows)
-    require(plain, name, repr(value), "a number or a list of numbers")
+    _need(plain, f"{name} = {value!r}", "a number or a list of numbers")
     try:
         numbers = [float(v) for v in rows]
     except OverflowError:
-        raise ValueError(f"{name}: needs 64-bit numbers, one is too large") from None
+        raise ValueError(f"{name}: needs 64-bit numbers, one is larger") from None
     return numbers if isinstance(value, list) else numbers[0]
 
 
 def _study_of(entries: Any) -> dict[str, Any]:
-    require(isinstance(entries, dict), "[study]", repr(entries), "a table")
+    _need(isinstance(entries, dict), f"study = {entries!r}", "a table [study]")
     _require_keys("[study] ", entries, _STUDY, ())
     study = {key: _numbers(f"[study] {key}", value) for key, value in entries.items()}
     for key, value in study.items():
         good = np.size(value) > 0 and np.all(np.isfinite(value)) and np.min(value) > 0
         single = key != "accuracy" or np.ndim(value) == 0
         needs = "a number > 0" if key == "accuracy" else "one or more numbers > 0"
-        require(good and single, f"[study] {key}", repr(value), needs)
+        _need(good and single, f"[study] {key} = {value!r}", needs)
     return study
 
 

@@ -19,7 +19,7 @@ from ..measured import (
 from ..scene import Scene
 from ..scene_files import SceneFile, default_study, load_study
 
-_FEW_PERIODS = 3.0
+_FEW_PERIODS = 2.0
 
 
 def named_bristle(name: str) -> AbstractBristle:
@@ -116,11 +116,6 @@ def number_list(name: str, text: str) -> list[float]:
 def _geometric(start: float, stop: float, count: int) -> list[float]:
     inside = 0 < start < math.inf and 0 < stop < math.inf and 0 < count <= 10_000
     return np.geomspace(start, stop, count).tolist() if inside else []
-
-
-def one_line(error: BaseException) -> str:
-    """The message of an error on one line."""
-    return " ".join(str(error).split())
 
 
 def joined(sections: Sequence[tuple[str, str]]) -> str:

@@ -20,6 +20,10 @@ _LAW = (
     ("omega_plus", "", "largest slope of the surface"),
     ("omega_minus", "", "smallest slope of the surface"),
 )
+_NOISE = (
+    "(std: of a single row. Noise adds to the extreme slopes of each row, so their mean "
+    "lies above\nthe friction of the mean profile.)"
+)
 _FITTED = ("explained", "", "share of the variance that is periodic")
 
 
@@ -70,10 +74,11 @@ def row_table(rows: RowCoefficients) -> str:
     lines = [
         (name, _signed(mean[name]), f"{std[name]:.2g}", unit.ljust(4), meaning)
         for name, unit, meaning in (*_LAW, _FITTED)
+        if name not in ("alpha", "a")  # the bristle's own, the same in every row
     ]
     header = ("coefficient", "mean", "std", "unit", "meaning")
     count = f"{len(rows.used)} rows, period {rows.period:.4g} m"
-    text = [f"{count}\n{_with_meanings(header, lines)}"]
+    text = [f"{count}\n{_with_meanings(header, lines)}", _NOISE]
     if rows.refused:
         text.append(f"{len(rows.refused)} rows left out, not admissible for the bristle:")
         text += [f"  row {index}: {why}" for index, why in rows.refused.items()]
