@@ -94,3 +94,13 @@ def test_bad_arguments_are_named():
         fit_order(np.array([0.1, 0.2]), np.array([1.0]), np.zeros(2))
     with pytest.raises(ValueError, match="eps = .*distinct"):
         fit(np.array([0.1, 0.1]), np.ones(2))
+
+
+def test_a_window_must_foretell_its_smallest_eps():
+    """Errors that fall fast and then stop falling: no narrow interval around the fall."""
+    eps = np.geomspace(1e-1, 3e-3, 12)
+    errors = 30 * eps**1.9
+    errors[-2:] = errors[-3], 1.5 * errors[-3]
+    found = fit(eps, errors)
+    assert found.verdict is Verdict.UNDECIDED
+    assert not found.low > 1.0
