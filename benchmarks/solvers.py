@@ -107,6 +107,25 @@ def scipy_solvers(eps: float, gamma: float):
             )
 
 
+def cvode(eps: float, gamma: float):
+    """CVODE's BDF through scikit-sundae, where it is installed."""
+    try:
+        from sksundae.cvode import CVODE
+    except ImportError:
+        return
+    fn = rates(eps, gamma)
+
+    def right_hand_side(t, y, yp):
+        yp[:] = fn(t, y)
+
+    for tolerance in (1e-4, 1e-6):
+        solver = CVODE(right_hand_side, rtol=1e-13, atol=tolerance, max_num_steps=10**9)
+        yield (
+            f"CVODE BDF, tolerance {tolerance:g}",
+            lambda s=solver: eps * s.solve(TIMES, np.zeros(1)).y[:, 0],
+        )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--eps", type=float, default=1e-2)
@@ -116,7 +135,8 @@ def main() -> None:
     truth, counted = outside_slips(eps, gamma)
     print(f"eps = {eps:g}, gamma = {gamma:g}, {counted.sum()} of 61 times counted")
     print(f"{'method':44s} {'error/eps':>10s} {'run s':>9s} {'compile s':>10s}")
-    for name, run in [*jax_solvers(eps, gamma), *scipy_solvers(eps, gamma)]:
+    peers = [*scipy_solvers(eps, gamma), *cvode(eps, gamma)]
+    for name, run in [*jax_solvers(eps, gamma), *peers]:
         compile_time, warm, z = timed(run)
         error = np.abs(z - truth)[counted].max() / eps
         shown = compile_time if name.startswith("frictionjax") else 0.0
