@@ -157,7 +157,9 @@ def study(
 
     folder = require_folder(out)
     given = {"eps": eps, "gamma": gamma}
-    wanted = {k: number_list(k, v) for k, v in given.items() if v is not None}
+    wanted: dict[str, Any] = {
+        k: number_list(k, v) for k, v in given.items() if v is not None
+    }
     if accuracy is not None:
         wanted["accuracy"] = accuracy
     job = read_job(scene, **surface)

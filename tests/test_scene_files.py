@@ -105,7 +105,11 @@ def test_given_potential_cannot_be_saved():
 
 TEXT = scene_document(*default_study())
 MISTAKES = [
-    ('kind = "SlantedSpring"', 'kind = "Slanted"', r"\[bristle\] kind = 'Slanted'.*Angular"),
+    (
+        'kind = "SlantedSpring"',
+        'kind = "Slanted"',
+        r"\[bristle\] kind = 'Slanted'.*Angular",
+    ),
     ('kind = "SlantedSpring"', "", r"\[bristle\] no kind: needs .*SlantedSpring"),
     ('kind = "SlantedSpring"', "kind = 3", r"\[bristle\] kind = 3: needs .*SlantedSpring"),
     ("angle = 1.0", "angel = 1.0", r"\[bristle\] angel is unknown: .*height, angle"),
@@ -141,7 +145,7 @@ def test_mistakes_are_named_on_one_line(old, new, message, tmp_path):
 
 def test_a_missing_table_is_named():
     start, _, rest = TEXT.partition("[support]")
-    with pytest.raises(ValueError, match="mine: support is missing: needs all of .*load"):
+    with pytest.raises(ValueError, match=r"mine: support is missing: needs all of .*load"):
         parse_scene(start + rest[rest.index("[load]") :], "mine")
 
 

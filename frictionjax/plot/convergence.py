@@ -37,6 +37,8 @@ def draw(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
             cells, fit = dataset.sel(gamma=gamma), orders.sel(gamma=gamma)
             _errors(axes, cells, _fit(fit, prefix), name, index)
             _failures(axes, cells, index)
+        if not any(_good(dataset.sel(gamma=g), name)[0].size for g in dataset.gamma):
+            axes.set_ylim(0.1, 1.0)  # a log axis without data has no range of its own
         axes.set(xscale="log", yscale="log", ylabel=label, title=title)
         axes.set_xlabel("$\\epsilon$ (m)")
         if not prefix:

@@ -22,7 +22,7 @@ _HEIGHT, _NAP = 1.0, 0.3  # m, rad
 
 def _over(angles: np.ndarray, bristle_of: Callable[[Any], AbstractBristle]) -> Coefficients:
     """Coefficients of the sine at each angle, shape (n,) each."""
-    profile = Sine(_OMEGA)
+    profile = Sine(jnp.asarray(_OMEGA))
     law = jax.jit(jax.vmap(lambda angle: friction(profile, bristle_of(angle))))
     return law(jnp.asarray(angles))
 
@@ -35,13 +35,14 @@ def _inside(low: float, high: float) -> np.ndarray:
 
 def slanted(angle: Any) -> SlantedSpring:
     """The second model at this angle (rad), pressed so that alpha = 1 N."""
-    rest = _HEIGHT / jnp.cos(angle) + jnp.cos(angle)
-    return SlantedSpring(1.0, rest, _HEIGHT, angle)
+    stiffness, height = jnp.ones(()), jnp.asarray(_HEIGHT)
+    return SlantedSpring(stiffness, height / jnp.cos(angle) + jnp.cos(angle), height, angle)
 
 
 def angular(limit: Any, rest: float) -> AngularSpring:
     """The third model at theta_lim = `limit` (rad) over a root of fixed height."""
-    return AngularSpring(1.0, _HEIGHT / jnp.cos(limit), _HEIGHT, rest)
+    stiffness, height = jnp.ones(()), jnp.asarray(_HEIGHT)
+    return AngularSpring(stiffness, height / jnp.cos(limit), height, jnp.asarray(rest))
 
 
 @styled
@@ -82,7 +83,7 @@ def draw_nap() -> Figure:
     axes.set_title("With and against the nap: k = 1 N m/rad, h = 1 m, $\\omega$ = 0.1")
     axes.set(xlim=(0, 0.5 * np.pi), ylim=(0, None))
     axes.legend(loc="upper right", bbox_to_anchor=(0.93, 1.0))
-    _edge(axes, _NAP, "not beyond the rest angle", "left")
+    _edge(axes, _NAP, "only above $\\theta_{with}$", "left")
     _edge(axes, _STEEPEST, "only up to arccot 0.1", "right")
     return figure
 

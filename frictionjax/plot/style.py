@@ -1,7 +1,8 @@
 """How pictures look, without touching matplotlib's global settings."""
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import wraps
 from typing import Any
 
@@ -19,7 +20,7 @@ LIMIT = "#222222"
 GUIDE = "#999999"
 STRIP = "#dfe6ee"
 
-_SETTINGS: dict[str, Any] = {
+_SETTINGS: Any = {
     "font.size": 10,
     "axes.titlesize": 10.5,
     "axes.titlelocation": "left",
@@ -33,13 +34,25 @@ _SETTINGS: dict[str, Any] = {
     "lines.markersize": 5,
     "legend.frameon": False,
     "legend.fontsize": 9,
-    "figure.dpi": 110,
-    "savefig.dpi": 160,
+    "figure.dpi": 130,
 }
+
+
+@contextmanager
+def settings() -> Iterator[None]:
+    """These settings, whatever the user's own are, which come back afterwards."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_SETTINGS)
+        yield
 
 
 class Picture(Figure):
     """A Figure that Jupyter shows by itself; pyplot, with its global state, stays out."""
+
+    def draw(self, renderer: Any) -> None:
+        with settings():  # ticks are made when they are drawn
+            super().draw(renderer)
 
     def _repr_png_(self) -> bytes:
         buffer = io.BytesIO()
@@ -48,13 +61,11 @@ class Picture(Figure):
 
 
 def styled(draw: Callable[..., Figure]) -> Callable[..., Figure]:
-    """Run a drawing function under these settings, whatever the user's own are."""
+    """Run a drawing function under these settings."""
 
     @wraps(draw)
     def inside(*args: Any, **kwargs: Any) -> Figure:
-        with matplotlib.rc_context():
-            matplotlib.rcdefaults()
-            matplotlib.rcParams.update(_SETTINGS)
+        with settings():
             return draw(*args, **kwargs)
 
     return inside

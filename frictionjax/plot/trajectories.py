@@ -88,5 +88,6 @@ def _zoom(main: Any, axes: Any, dataset: xr.Dataset, gamma: float, lines, window
     axes.set(xlim=window, ylim=(low, high), title="A few slips, in the frame on the left")
     axes.locator_params(axis="x", nbins=5)
     width, height = window[1] - window[0], high - low
-    frame = {"fill": False, "edgecolor": "#555555", "linewidth": 1, "zorder": 5}
-    main.add_patch(Rectangle((window[0], low), width, height, **frame))
+    frame = Rectangle((window[0], low), width, height, fill=False, zorder=5)
+    frame.set(edgecolor="#555555", linewidth=1)
+    main.add_patch(frame)

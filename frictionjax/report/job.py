@@ -20,13 +20,22 @@ from ..scene import Scene
 from ..scene_files import SceneFile, default_study, load_study
 
 _FEW_PERIODS = 2.0
+_BRISTLES: dict[str, tuple[Any, dict[str, float]]] = {  # as the command line names them
+    "slanted": (
+        SlantedSpring,
+        {"stiffness": 1.0, "rest_length": 2.4, "height": 1.0, "angle": 1.0},
+    ),
+    "angular": (
+        AngularSpring,
+        {"stiffness": 1.0, "length": 2**0.5, "height": 1.0, "rest_angle": 0.3},
+    ),
+}
 
 
 def named_bristle(name: str) -> AbstractBristle:
-    """The bristle of the command line with this name; admissible on slopes below 0.6."""
-    if name == "slanted":
-        return SlantedSpring(stiffness=1.0, rest_length=2.4, height=1.0, angle=1.0)
-    return AngularSpring(stiffness=1.0, length=2**0.5, height=1.0, rest_angle=0.3)
+    """The bristle that the command line calls by this name."""
+    kind, numbers = _BRISTLES[name]
+    return kind(**numbers)
 
 
 class Job(NamedTuple):

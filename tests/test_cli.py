@@ -1,0 +1,208 @@
+"""The command line: what it prints, what it writes, how it fails."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+import frictionjax as fx
+from frictionjax.cli import main
+from frictionjax.scene_files import default_study, scene_document
+
+SMALL = ["--eps", "0.097:0.031:4", "--gamma", "1,2", "--no-progress"]
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, list(map(str, arguments)))
+
+
+def error_line(result):
+    """The one line of a failed command."""
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr.startswith("Error: ")
+    assert result.stderr.count("\n") == 1
+    return result.stderr
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study") / "made" / "here"
+    return folder, run("study", *SMALL, "--out", folder)
+
+
+def test_study_prints_its_tables(study):
+    folder, result = study
+    assert result.exit_code == 0, result.stderr
+    for title in ("Friction coefficients", "Cells", "Orders of convergence"):
+        assert title in result.stdout
+    assert "no cell failed" in result.stdout
+    assert result.stdout.endswith(f"Written to {folder}\n")
+    assert result.stderr == ""
+
+
+def test_study_writes_a_folder(study):
+    folder, result = study
+    names = {path.name for path in folder.iterdir()}
+    pictures = {"convergence.png", "trajectories.png", "loop.png", "dissipation.png"}
+    assert names == pictures | {"study.nc", "orders.nc", "tables.txt", "scene.toml"}
+    for picture in pictures:
+        assert (folder / picture).read_bytes().startswith(b"\x89PNG")
+    assert (folder / "tables.txt").read_text() in result.stdout
+
+
+def test_study_data_are_those_asked_for(study):
+    folder, _ = study
+    data = xr.load_dataset(folder / "study.nc", engine="h5netcdf")
+    assert data.eps.values == pytest.approx(np.geomspace(0.097, 0.031, 4))
+    assert data.gamma.values.tolist() == [1.0, 2.0]
+    orders = xr.load_dataset(folder / "orders.nc", engine="h5netcdf")
+    assert orders.order.values == pytest.approx(fx.study(data).orders.order.values)
+
+
+def test_the_scene_written_gives_the_same_study(study):
+    folder, _ = study
+    again = fx.load_scene(folder / "scene.toml")
+    data = xr.load_dataset(folder / "study.nc", engine="h5netcdf")
+    assert data.z_limit.values == pytest.approx(fx.solve_limit(again, data.time.values).z)
+
+
+def test_friction():
+    result = run("friction")
+    assert result.exit_code == 0
+    assert "rho_plus" in result.stdout
+    numbers = json.loads(run("friction", "--json").stdout)
+    law = fx.friction(fx.profiles.Sine(0.1), fx.bristles.SlantedSpring(1, 2.4, 1, 1.0))
+    assert numbers["rho_plus"] == pytest.approx(float(law.rho_plus), rel=1e-12)
+    assert numbers["ratio"] == pytest.approx(float(-law.rho_plus / law.rho_minus))
+
+
+def test_friction_of_a_scene_file(tmp_path):
+    parts = fx.supports.Spring(1.0), fx.loads.Ramp(1.0), 1.0
+    scene = fx.Scene(fx.profiles.Sine(0.2), fx.bristles.Homothetic(3.0), *parts)
+    fx.save_scene(scene, tmp_path / "mine.toml")
+    numbers = json.loads(run("friction", tmp_path / "mine.toml", "--json").stdout)
+    assert numbers["rho_plus"] == pytest.approx(0.6)
+    angular = run("friction", tmp_path / "mine.toml", "--json", "--bristle", "angular")
+    assert json.loads(angular.stdout)["a"] == pytest.approx(1.0)
+
+
+def grooves(folder):
+    """A map of grooves that lean: two harmonics, three rows, period 9e-6 m."""
+    phase = 2 * np.pi * np.arange(120) * 3e-7 / 9e-6
+    rows = [a * np.sin(phase) + 0.2 * np.cos(2 * phase) for a in (0.9, 1.0, 1.1)]
+    text = "\n".join(" ".join(f"{v:.9g}" for v in row) for row in rows)
+    path = folder / "map.txt"
+    path.write_text(f"pixel size=3e-7 m\nheight conversion factor (-> m)=1e-7\n{text}\n")
+    return path
+
+
+def test_friction_of_a_measured_map(tmp_path):
+    options = ["--heights", grooves(tmp_path), "--harmonics", "2"]
+    result = run("friction", *options)
+    assert result.exit_code == 0, result.stderr
+    assert "period 9e-06 m" in result.stdout
+    assert "3 rows, period" in result.stdout
+    numbers = json.loads(run("friction", *options, "--json").stdout)
+    assert numbers["rows"]["std"]["rho_plus"] > 0
+    one = json.loads(run("friction", *options, "--json", "--row", "2").stdout)
+    assert one["rho_plus"] > numbers["rho_plus"]
+    longer = ["--pixel", "6e-7", "--height-scale", "2e-7", "--json"]
+    scaled = json.loads(run("friction", *options, *longer).stdout)
+    assert scaled["rho_plus"] == pytest.approx(numbers["rho_plus"], rel=1e-6)
+
+
+def test_study_of_a_measured_map(tmp_path):
+    folder = tmp_path / "out"
+    options = ["--heights", grooves(tmp_path), "--harmonics", "2", "--out", folder]
+    result = run("study", *SMALL, "--gamma", "1", *options)
+    assert result.exit_code == 0, result.stderr
+    assert "Friction over the rows of the map" in result.stdout
+    profile = fx.load_scene(folder / "scene.toml").profile
+    assert isinstance(profile, fx.profiles.Fourier)
+
+
+def test_figures(tmp_path):
+    result = run("figures", "--out", tmp_path / "figures")
+    assert result.exit_code == 0, result.stderr
+    names = {path.name for path in (tmp_path / "figures").iterdir()}
+    assert names == {"mu_slanted.png", "mu_angular.png", "nap.png"}
+
+
+def test_help_without_a_command():
+    result = run()
+    assert result.exit_code == 0
+    for command in ("study", "friction", "figures"):
+        assert command in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["nope"], "No such command 'nope'"),
+        (["study", "--nope"], "No such option '--nope'"),
+        (["study", "--eps", "0.1,x"], "eps = '0.1,x': needs numbers > 0"),
+        (["study", "--gamma", "0"], "gamma = '0': needs numbers > 0"),
+        (["study", "--accuracy", "0"], "accuracy = 0: needs"),
+        (["study", "--accuracy", "high"], "'high' is not a valid float"),
+        (["study", "--method", "magic"], "method = 'magic': needs one of auto"),
+        (["study", "none.toml"], "none.toml: cannot be read (No such file"),
+        (["study", "--heights", "none.txt"], "none.txt: No such file"),
+        (["study", "--row", "1"], "row = 1: needs --heights FILE"),
+        (["friction", "--bristle", "soft"], "'soft' is not one of 'slanted', 'angular'"),
+        (["friction", "a", "b"], "unexpected extra argument (b)"),
+    ],
+)
+def test_bad_arguments_are_one_line_and_write_nothing(
+    arguments, message, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    assert message in error_line(run(*arguments))
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_start_outside_the_strip_is_one_line(tmp_path):
+    text = scene_document(*default_study()).replace("z0 = 0.0", "z0 = 5.0")
+    (tmp_path / "mine.toml").write_text(text)
+    out = tmp_path / "out"
+    line = error_line(run("study", tmp_path / "mine.toml", "--out", out, *SMALL))
+    assert "scene.z0 = 5: needs z_minus(0) <= z0 <= z_plus(0)" in line
+    assert not out.exists()
+
+
+def test_a_file_in_the_way_is_named_before_anything_runs(tmp_path):
+    (tmp_path / "out").touch()
+    line = error_line(run("study", "--out", tmp_path / "out"))
+    assert "needs a folder" in line
+
+
+def test_help_waits_for_no_library():
+    code = (
+        "import sys, frictionjax.cli\n"
+        "heavy = {'jax', 'matplotlib', 'xarray', 'numpy'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_ctrl_c_is_quiet(tmp_path):
+    command = [sys.executable, "-c", "from frictionjax.cli import main; main()", "study"]
+    options = ["--eps", "1e-4", "--out", str(tmp_path / "out"), "--no-progress"]
+    process = subprocess.Popen(
+        command + options, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    time.sleep(6.0)  # JAX is loaded and the sweep under way
+    assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=10)
+    assert process.returncode == 130
+    assert out == b""
+    assert b"Traceback" not in err
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,129 @@
+"""Tables: every number in its column, nothing dropped."""
+
+import numpy as np
+import pytest
+from sweep_like import EPS, sweep_like
+
+import frictionjax as fx
+from frictionjax.measured import RowCoefficients
+from frictionjax.report.folder import require_folder
+from frictionjax.report.job import number_list, read_job
+from frictionjax.report.tables import (
+    coefficient_table,
+    coefficients_of,
+    failed_table,
+    order_table,
+    row_table,
+    sweep_table,
+    table,
+)
+
+LAW = fx.friction(fx.profiles.Sine(0.1), fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0))
+
+
+def test_columns_line_up():
+    text = table(("name", "x"), [("a", "1.5"), ("long", "-20")], left=1)
+    assert text.splitlines() == ["name    x", "a     1.5", "long  -20"]
+
+
+def test_coefficients():
+    lines = {
+        line.split()[0]: line.split()[1:] for line in coefficient_table(LAW).splitlines()
+    }
+    assert float(lines["rho_plus"][0]) == pytest.approx(float(LAW.rho_plus), rel=1e-5)
+    assert lines["rho_plus"][1] == "N"
+    assert float(lines["ratio"][0]) == pytest.approx(
+        float(-LAW.rho_plus / LAW.rho_minus), rel=1e-5
+    )
+    assert len(lines) == 10
+
+
+def test_the_abstract_setting_has_two_coefficients():
+    bare = coefficients_of(type(LAW)(rho_plus=LAW.rho_plus, rho_minus=LAW.rho_minus))
+    assert list(bare) == ["rho_plus", "rho_minus", "ratio"]
+
+
+def test_sweep_table_has_every_cell():
+    lines = [line.split() for line in sweep_table(sweep_like()).splitlines()[1:]]
+    assert len(lines) == 12
+    first, failed = lines[0], lines[-1]
+    assert [float(v) for v in first[:3]] == pytest.approx(
+        [0.5, EPS[0], EPS[0] ** 0.5], 1e-2
+    )
+    assert float(first[3]) == pytest.approx(EPS[0] ** -0.5, rel=1e-2)
+    assert first[-2:] == ["1234", "ok"]
+    assert failed[2] == "-"
+    assert failed[-1] == "max_steps"
+
+
+def test_without_dissipation_its_columns_are_empty():
+    text = sweep_table(sweep_like(dissipation=False))
+    assert text.splitlines()[1].split()[4:6] == ["-", "-"]
+
+
+def test_order_table():
+    orders = fx.study(sweep_like()).orders
+    lines = order_table(orders).splitlines()
+    assert len(lines) == 3
+    assert lines[1].split()[1] == "0.500"
+    assert lines[1].endswith("converges")
+    assert "0.01 to 0.1" in lines[1]
+
+
+def test_an_order_from_too_few_points_is_a_dash():
+    orders = fx.study(sweep_like().isel(eps=[0, 1])).orders
+    line = order_table(orders).splitlines()[1]
+    assert line.split()[1] == "-"
+    assert line.endswith("too few points")
+
+
+def test_failed_cells_are_listed():
+    text = failed_table(fx.study(sweep_like()).failed)
+    assert text.splitlines()[1].split()[:3] == ["1", "0.01", "max_steps"]
+    assert "raise max_steps" in text
+    assert failed_table([]) == "no cell failed"
+
+
+def test_rows_of_a_map():
+    names = ("rho_plus", "rho_minus", "ratio", "mu_plus", "mu_minus", "omega_plus")
+    values = {n: np.array([1.0, 3.0]) for n in (*names, "omega_minus", "explained")}
+    text = row_table(RowCoefficients(values, 9e-6, [0, 2], {1: "too steep"}))
+    assert text.startswith("2 rows, period 9e-06 m")
+    assert text.splitlines()[2].split()[:4] == ["rho_plus", "2", "1.4", "N"]
+    assert text.splitlines()[-2:] == [
+        "1 rows left out, not admissible for the bristle:",
+        "  row 1: too steep",
+    ]
+
+
+def test_number_lists():
+    assert number_list("eps", "0.1,0.05") == [0.1, 0.05]
+    assert number_list("eps", "0.1:0.001:3") == pytest.approx([0.1, 0.01, 0.001])
+    assert number_list("eps", "0.1") == [0.1]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "a", "0.1,", "0.1:0.2", "0.1:0.2:0", "0:1:3", "-1", "inf", "1:2:2.5", "0.1 0.2"],
+)
+def test_bad_number_lists(text):
+    with pytest.raises(ValueError, match=r"eps = .*: needs numbers > 0, as 0\.1,0\.05"):
+        number_list("eps", text)
+
+
+def test_a_folder_is_checked_but_not_made(tmp_path):
+    assert require_folder(tmp_path / "a" / "b") == tmp_path / "a" / "b"
+    assert not (tmp_path / "a").exists()
+    (tmp_path / "file").touch()
+    for path in (tmp_path / "file", tmp_path / "file" / "b"):
+        with pytest.raises(ValueError, match=r"needs a folder, but .*file is a file"):
+            require_folder(path)
+
+
+def test_a_named_bristle_takes_the_place_of_the_scenes():
+    fit = {"period": None, "harmonics": None, "row": None}
+    job = read_job(None, bristle="angular", **fit)
+    assert isinstance(job.scene.bristle, fx.bristles.AngularSpring)
+    assert isinstance(job.scene.profile, fx.profiles.Sine)
+    with pytest.raises(ValueError, match="row = 2: needs --heights FILE"):
+        read_job(None, **(fit | {"row": 2}))
