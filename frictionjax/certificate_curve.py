@@ -1,6 +1,6 @@
 """Forces along a sampled curve, and what they integrate to between its samples."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -19,18 +19,22 @@ _NODES = np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])  # Gauss on [0, 1]
 _WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18
 
 
+Column = Any
+"""An array over samples or intervals: traced inside, NumPy outside."""
+
+
 class Samples(NamedTuple):
     """At the samples, shapes (n,): the tip y = well + inside in periods, `f` in N with its
     derivatives by z, the load and `V_eps'` in N.
     """
 
-    well: np.ndarray
-    inside: np.ndarray
-    force: np.ndarray
-    slope: np.ndarray
-    bend: np.ndarray
-    load: np.ndarray
-    wiggle: np.ndarray
+    well: Column
+    inside: Column
+    force: Column
+    slope: Column
+    bend: Column
+    load: Column
+    wiggle: Column
 
 
 class Intervals(NamedTuple):
@@ -38,11 +42,11 @@ class Intervals(NamedTuple):
     it, in N s; `f` and `f_z` in the middle; the residual of the balance in J.
     """
 
-    impulse: np.ndarray
-    doubt: np.ndarray
-    middle: np.ndarray
-    middle_slope: np.ndarray
-    residual: np.ndarray
+    impulse: Column
+    doubt: Column
+    middle: Column
+    middle_slope: Column
+    residual: Column
 
 
 class Force(eqx.Module):

@@ -10,7 +10,6 @@ from .arguments import Real, as_text, is_concrete
 from .extrema import periodic_extrema
 from .potentials import AbstractPotential, BristlePotential
 
-
 OfBristle = Any
 """A traced real scalar, or None in the abstract setting, where there is no bristle."""
 

@@ -109,7 +109,7 @@ def _verdict(low: float, high: float) -> Verdict:
 
 
 def _best_window(x: np.ndarray, y: np.ndarray) -> _Line:
-    """The window x[start:] (x falls) with the narrowest interval; ties go to the longest."""
+    """The window x[start:] (x falls) with the narrowest interval, the longest of equals."""
     least = max(_LEAST, x.size // 2)
     scatter = _scatter(x, y)
     starts = [i for i in range(x.size - least + 1) if _foretells_its_end(x[i:], y[i:])]

@@ -8,16 +8,15 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import xarray as xr
-from jaxtyping import Array, Float
+from jaxtyping import Array
 from tqdm import tqdm
 
 from .admissibility import require_reach
-from .arguments import Real, as_real, require_numbers, require_x64
-from .coefficients import Coefficients, coefficients
-from .friction_law import dissipation_potential
+from .arguments import as_real, require_numbers, require_x64
+from .cells import Cell, run_block
+from .coefficients import coefficients
 from .limit_system import (
     LimitSolution,
-    play_step,
     require_start_in_strip,
     solve_limit,
     strip,
@@ -25,114 +24,12 @@ from .limit_system import (
 from .provenance import describe
 from .scene import Scene, require_times
 from .wiggly.methods import solver_of
-from .wiggly.observed import AbstractWatch
-from .wiggly.status import Status
-from .wiggly.tolerance import plan_steps
-from .wiggly.trajectory import integrate, require_accuracy
+from .wiggly.trajectory import require_accuracy
 
 # Lanes of one compiled block. 8 cost 1.0 us a lane and step, 32 cost 0.8, but wide blocks
 # mix cells of unequal length and each waits for its longest.
 _LANES = 8
 _WORKERS = 2  # blocks under way at once; XLA runs each on one core
-
-
-class Deviation(NamedTuple):
-    """Running comparison with the limit: its state (m), its dissipation (J), and suprema."""
-
-    z: Real
-    spent: Real
-    sup_error: Real
-    dissipation_error: Real
-    strip_excess: Real
-
-
-class LimitWatch(AbstractWatch):
-    """Follows the limit system step by step beside a wiggly one and keeps the suprema.
-
-    Steps end at the turning points of the load, so the play operator is exact at each.
-    The suprema are over all steps: the largest lag is just before a slip, where steps are
-    short.
-    """
-
-    scene: Scene
-    found: Coefficients
-
-    def start(self, z: Real) -> Deviation:
-        zero = jnp.zeros_like(z)
-        return Deviation(z, zero, zero, zero, zero)
-
-    def look(self, memory: Deviation, t: Real, z: Real, dissipation: Real) -> Deviation:
-        load = self.scene.load(t)
-        lower, upper = strip(self.scene.support, self.found, load)
-        limit = play_step(self.scene.support, self.found, memory.z, load)
-        law = self.found.rho_plus, self.found.rho_minus
-        spent = memory.spent + dissipation_potential(*law, limit - memory.z)
-        outside = jnp.maximum(lower - z, z - upper)
-        return Deviation(
-            z=limit,
-            spent=spent,
-            sup_error=jnp.maximum(memory.sup_error, jnp.abs(z - limit)),
-            dissipation_error=jnp.maximum(
-                memory.dissipation_error, jnp.abs(dissipation - spent)
-            ),
-            strip_excess=jnp.maximum(memory.strip_excess, outside),
-        )
-
-
-class Cell(NamedTuple):
-    """Result of one cell; arrays over the requested times, or scalars."""
-
-    z: Float[Array, " time"]
-    dissipation: Float[Array, " time"] | None
-    residual: Real | None
-    dissipation_gap: Real | None
-    deviation: Deviation
-    status: Array
-    steps: Array
-    rejected: Array
-    tolerance: Real
-
-
-def _cell(scene: Scene, eps: Real, gamma: Real, ts, accuracy, solver, balanced) -> Cell:
-    plan = plan_steps(scene, eps, gamma, accuracy)
-    found = integrate(
-        scene,
-        eps,
-        gamma,
-        ts,
-        plan,
-        solver,
-        until=jnp.asarray(scene.duration),
-        balanced=balanced,
-        watch=LimitWatch(scene, coefficients(scene.potential)),
-    )
-    unfinished = (found.status != Status.OK) & (found.status != Status.UNBALANCED)
-    blank = jnp.where(unfinished, jnp.nan, 0.0)
-    residual, gap = None, None
-    if found.final is not None and found.dissipation_gap is not None:
-        residual = found.final.residual + blank
-        gap = found.dissipation_gap + blank
-    return Cell(
-        z=found.z,
-        dissipation=found.dissipation,
-        residual=residual,
-        dissipation_gap=gap,
-        deviation=jax.tree_util.tree_map(lambda leaf: leaf + blank, found.watched),
-        status=found.status,
-        steps=found.steps,
-        rejected=found.rejected,
-        tolerance=plan.tolerance,
-    )
-
-
-@eqx.filter_jit
-def _block(scene, eps, gamma, ts, accuracy, solver, balanced) -> Cell:
-    """One block of lanes; the only program that a sweep compiles for its trajectories."""
-
-    def lane(eps, gamma):
-        return _cell(scene, eps, gamma, ts, accuracy, solver, balanced)
-
-    return jax.vmap(lane)(eps, gamma)
 
 
 class Block(NamedTuple):
@@ -165,7 +62,7 @@ def _run(scene, blocks, ts, accuracy, solver, balanced, progress: bool) -> Cell:
     """Run the blocks on all cores and put the cells back in order."""
 
     def one(block: Block) -> Cell:
-        found = _block(
+        found = run_block(
             scene,
             jnp.asarray(block.eps),
             jnp.asarray(block.gamma),

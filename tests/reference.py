@@ -5,6 +5,7 @@ duration of a slip, at tolerance 1e-11. Against the library at accuracy 1e-9 it 
 1e-6 eps at eps = 1e-3 (8e-7), and within 2e-7 eps at eps = 1e-2.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -102,7 +103,7 @@ def solve(system: System, eps: float, gamma: float, z0: float, ts) -> Reference:
     rates = _right_hand_side(system, eps, gamma)
     edges = [0.0, *system.kinks, system.duration]
     state, found = [_tip(system, eps, z0), 0.0], {0.0: (z0, 0.0)}
-    for start, end in zip(edges[:-1], edges[1:], strict=True):
+    for start, end in itertools.pairwise(edges):
         inside = wanted[(wanted > start) & (wanted <= end)]
         times = np.union1d(inside, [end])
         piece = solve_ivp(

@@ -1,5 +1,9 @@
 """Random admissible surfaces and bristles, and a derivative that knows no autodiff."""
 
+from collections.abc import Callable
+
+import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -20,7 +24,30 @@ def profile(kind, rng, size=0.2):
     if kind == "spline":
         return fx.profiles.Spline(size / 20 * rng.normal(size=6))
     tilt, shift = rng.uniform(0.2, 0.8), rng.uniform()
-    return fx.profiles.Custom(lambda y: exponential(y + shift, size / 6, tilt), points=512)
+    numbers = jnp.asarray([shift, size / 6, tilt])
+    return fx.profiles.Custom(Formula(_shifted, numbers), points=512)
+
+
+class Formula(eqx.Module):
+    """A function with its numbers as leaves: other numbers compile nothing new."""
+
+    fn: Callable = eqx.field(static=True)
+    numbers: jax.Array
+
+    def __call__(self, x):
+        return self.fn(x, *self.numbers)
+
+
+def _shifted(y, shift, size, tilt):
+    return exponential(y + shift, size, tilt)
+
+
+def _leaning(eta, lean, bend):
+    return lean * jnp.sin(eta) + bend * eta**2
+
+
+def _pressing(eta, alpha):
+    return 3.0 + alpha * jnp.sinh(eta) + 0.3 * eta**2
 
 
 def exponential(y, size, tilt):
@@ -46,8 +73,8 @@ def bristle(kind, rng, sign):
         return fx.bristles.AngularSpring(stiffness, 1 / np.cos(limit), 1.0, rest)
     lean, bend, alpha = rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5), sign * stiffness
     return fx.bristles.Custom(
-        lambda eta: lean * jnp.sin(eta) + bend * eta**2,
-        lambda eta: 3.0 + alpha * jnp.sinh(eta) + 0.3 * eta**2,
+        Formula(_leaning, jnp.asarray([lean, bend])),
+        Formula(_pressing, jnp.asarray([alpha])),
     )
 
 

@@ -8,6 +8,7 @@ from samples import BRISTLES, pair
 
 import frictionjax as fx
 from frictionjax.admissibility import largest_eps, require_reach
+from frictionjax.extrema import smallest
 
 SINE = fx.profiles.Sine(0.5)
 NEARLY = 1.2 * (1 + 2e-16)  # a rest length of 1.2 but for rounding
@@ -116,6 +117,7 @@ def test_largest_eps_against_brute_force(case):
 
 def test_reach_is_seen_on_a_long_grid():
     # Minima of more than about 4000 values once hid the NaN beyond the rod's reach.
+    assert np.isnan(smallest(jnp.ones(10_000).at[5].set(jnp.nan)))
     surface = fx.profiles.Custom(lambda y: 0.02 * jnp.cos(2 * jnp.pi * y), points=8192)
     rod = fx.bristles.AngularSpring(1.0, 1.05, 1.0, -0.1)
     limit = largest_eps(fx.potential(surface, rod), 50.0)

@@ -23,6 +23,7 @@ FLOORS = [
     {"certificate_passages", "certificate_tube"},
     {"limit_system", "wiggly", "certificate"},
     {"provenance"},
+    {"cells"},
     {"sweeps"},
     {"orders"},
     {"plot"},

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import pytest
 
 import frictionjax as fx
-from frictionjax.wiggly import observed, trajectory
+from frictionjax.wiggly import integration, observed, tolerance
 from frictionjax.wiggly.field import TipField
 from frictionjax.wiggly.rosenbrock import Rodas5P
 
@@ -44,8 +44,8 @@ def traced(fn, scene) -> list[str]:
 def trajectory_of(scene, balanced):
     one = jnp.asarray(1.0)
     ts = jnp.linspace(0, 3, 5)
-    plan = trajectory.plan_steps(scene, 0.05 * one, one, 1e-3 * one)
-    return trajectory.integrate(
+    plan = tolerance.plan_steps(scene, 0.05 * one, one, 1e-3 * one)
+    return integration.integrate(
         scene, 0.05 * one, one, ts, plan, Rodas5P(), until=ts[-1], balanced=balanced
     ).z
 

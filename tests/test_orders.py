@@ -92,7 +92,7 @@ def test_failures_and_too_few_points():
 def test_bad_arguments_are_named():
     with pytest.raises(ValueError, match="errors = "):
         fit_order(np.array([0.1, 0.2]), np.array([1.0]), np.zeros(2))
-    with pytest.raises(ValueError, match="eps = .*distinct"):
+    with pytest.raises(ValueError, match=r"eps = .*distinct"):
         fit(np.array([0.1, 0.1]), np.ones(2))
 
 

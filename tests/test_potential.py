@@ -11,6 +11,7 @@ from samples import BRISTLES, central, pair
 
 import frictionjax as fx
 from frictionjax.admissibility import largest_eps
+from frictionjax.roots import bracketed_root
 
 SIZES = 10.0 ** -np.arange(1, 9)
 GRID = jnp.linspace(0, 1, 65)[:-1] + 0.003
@@ -160,6 +161,7 @@ def test_a_rod_nearly_upright_keeps_its_digits():
 
 
 def test_beyond_reach_is_nan_and_never_a_number():
+    assert np.isnan(bracketed_root(lambda x: jnp.sqrt(x - 2), 0.0, 1.0))
     rod = fx.bristles.AngularSpring(1.0, 1.0, 0.999, 0.0)
     potential = fx.potential(fx.profiles.Sine(0.02), rod)
     assert not np.all(np.isfinite(potential.energy(2 * GRID, 2.0)))

@@ -26,7 +26,8 @@ assert not jax.config.jax_enable_x64
 
 ENTRIES = """
 import frictionjax as fx, jax.numpy as jnp
-surface, part = fx.profiles.Spline([0.0, 0.02, 0.0, -0.01]), fx.bristles.Homothetic(1.0)
+fx.profiles.Spline([0.0, 0.02, 0.0, -0.01])
+surface, part = fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0)  # NumPy leaves
 fx.profiles.Custom(lambda y: jnp.sin(2 * jnp.pi * y))
 spring, load = fx.supports.Spring(1.0), fx.loads.Sine(1.0, 3.0)
 scene = fx.Scene(surface, part, spring, load, duration=3.0)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.wiggly.integration import integrate
 from frictionjax.wiggly.rosenbrock import Rodas5P
 from frictionjax.wiggly.tolerance import Plan, landscape, plan_steps
-from frictionjax.wiggly.trajectory import integrate
 
 EPS = 0.02
 

@@ -5,7 +5,6 @@ import jax.numpy as jnp
 
 from ..arguments import Real
 
-
 # Estimates below this share of the tolerance are rounding noise and must not steer;
 # (1e5)^(0.7/5) is the largest growth of a step.
 _NOISE = 1e-5

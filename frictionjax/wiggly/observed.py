@@ -108,7 +108,7 @@ def _zeros_like(memory: PyTree) -> PyTree:
 
 
 def observed_field(field: TipField):
-    """Vector field of (y, *memory, step), for diffrax's own checks; the memory stands still."""
+    """Vector field of (y, *memory, step), as diffrax wants it: only y moves."""
 
     def vector_field(t, state, args):
         tip, *rest = state
