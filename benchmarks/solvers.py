@@ -83,9 +83,9 @@ def jax_solvers(eps: float, gamma: float):
         for accuracy in ACCURACIES:
             yield (
                 f"frictionjax {method}, accuracy {accuracy:g}",
-                lambda m=method, a=accuracy: fx.solve(
-                    one, eps, gamma, TIMES, a, m, dissipation=False
-                ).z,
+                lambda m=method, a=accuracy: (
+                    fx.solve(one, eps, gamma, TIMES, a, m, dissipation=False).z
+                ),
             )
 
 
@@ -94,16 +94,18 @@ def scipy_solvers(eps: float, gamma: float):
         for tolerance in (1e-4, 1e-6):
             yield (
                 f"SciPy {method}, tolerance {tolerance:g}",
-                lambda m=method, a=tolerance: eps
-                * solve_ivp(
-                    rates(eps, gamma),
-                    (0, PERIOD),
-                    [0.0],
-                    m,
-                    t_eval=TIMES,
-                    rtol=1e-13 if m == "LSODA" else 1e-12,
-                    atol=a,
-                ).y[0],
+                lambda m=method, a=tolerance: (
+                    eps
+                    * solve_ivp(
+                        rates(eps, gamma),
+                        (0, PERIOD),
+                        [0.0],
+                        m,
+                        t_eval=TIMES,
+                        rtol=1e-13 if m == "LSODA" else 1e-12,
+                        atol=a,
+                    ).y[0]
+                ),
             )
 
 

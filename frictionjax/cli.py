@@ -120,11 +120,12 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
     if as_json:
         numbers: dict[str, Any] = coefficients_of(law)
         if job.rows is not None:
+            numbers["error"] = job.error
             numbers["rows"] = {"mean": job.rows.mean, "std": job.rows.std}
         click.echo(json.dumps(numbers, indent=2))
         return
     sections = [("", line) for line in job.notes]
-    sections.append(("Friction coefficients", coefficient_table(law)))
+    sections.append(("Friction coefficients", coefficient_table(law, job.error)))
     if job.rows is not None:
         sections.append(("Over the rows of the map", row_table(job.rows)))
     click.echo(joined(sections))

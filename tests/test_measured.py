@@ -89,13 +89,13 @@ def test_a_missing_file_is_named(tmp_path):
         read_heights(tmp_path / "none.txt")
 
 
-def grooves(rows=6, noise=0.0, drift=0.1):
+def grooves(rows=6, noise=0.0, drift=0.1, seed=1):
     """A map of asymmetric grooves of period 1e-5 that cross the rows at an angle."""
     x = np.linspace(0.0, 4.2e-5, 240)
     shift = drift * np.arange(rows)[:, None]
     phase = 2 * np.pi * (x / 1e-5 + shift)
     heights = 1e-5 * (0.02 * np.sin(phase) + 0.004 * np.cos(2 * phase))
-    scatter = 1e-7 * noise * np.random.default_rng(1).normal(size=heights.shape)
+    scatter = 1e-7 * noise * np.random.default_rng(seed).normal(size=heights.shape)
     return Measured(x, heights + scatter + 1e-3 * x)
 
 
@@ -129,6 +129,14 @@ def test_coefficients_over_rows():
     assert found.mean["rho_plus"] == pytest.approx(rho.mean())
     assert found.std["rho_plus"] == pytest.approx(rho.std(ddof=1))
     assert 0 < found.std["rho_plus"] < 0.2 * found.mean["rho_plus"]
+
+
+def test_error_of_the_mean_profile_is_what_fresh_noise_shows():
+    maps = [grooves(20, noise=0.3, seed=seed) for seed in range(30)]
+    laws = [fx.friction(fit_profile(m, 1e-5, 2).profile, BRISTLE) for m in maps]
+    scatter = np.std([float(law.rho_plus) for law in laws])
+    found = [row_coefficients(m, BRISTLE, 2, 1e-5).error["rho_plus"] for m in maps[:4]]
+    assert np.mean(found) == pytest.approx(scatter, rel=0.4)
 
 
 def test_rows_that_the_bristle_does_not_admit_are_listed():

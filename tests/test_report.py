@@ -38,6 +38,13 @@ def test_coefficients():
     assert len(lines) == 10
 
 
+def test_coefficients_with_errors():
+    text = coefficient_table(LAW, dict.fromkeys(coefficients_of(LAW), 0.0123))
+    lines = {line.split()[0]: line.split()[1:] for line in text.splitlines()}
+    assert lines["rho_plus"][1:3] == ["0.012", "N"]
+    assert lines["alpha"][1] == "N"  # the bristle's own
+
+
 def test_the_abstract_setting_has_two_coefficients():
     bare = coefficients_of(type(LAW)(rho_plus=LAW.rho_plus, rho_minus=LAW.rho_minus))
     assert list(bare) == ["rho_plus", "rho_minus", "ratio"]
@@ -87,7 +94,7 @@ def test_failed_cells_are_listed():
 def test_rows_of_a_map():
     names = ("rho_plus", "rho_minus", "ratio", "mu_plus", "mu_minus", "omega_plus")
     values = {n: np.array([1.0, 3.0]) for n in (*names, "omega_minus", "explained")}
-    text = row_table(RowCoefficients(values, 9e-6, [0, 2], {1: "too steep"}))
+    text = row_table(RowCoefficients(values, 9e-6, [0, 2], {1: "too steep"}, {}))
     assert text.startswith("2 rows, period 9e-06 m")
     assert text.splitlines()[2].split()[:4] == ["rho_plus", "2", "1.4", "N"]
     assert text.splitlines()[-2:] == [

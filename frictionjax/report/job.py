@@ -45,6 +45,12 @@ class Job(NamedTuple):
     study: dict[str, Any]
     notes: list[str]
     rows: RowCoefficients | None
+    row: int | None = None
+
+    @property
+    def error(self) -> dict[str, float]:
+        """Standard errors of the friction of the scene's profile, where they are known."""
+        return self.rows.error if self.rows is not None and self.row is None else {}
 
 
 def read_job(
@@ -78,7 +84,7 @@ def read_job(
     rows = None
     if measured.heights.shape[0] > 1:
         rows = row_coefficients(measured, chosen, harmonics, found.period)
-    return Job(scene, study, notes, rows)
+    return Job(scene, study, notes, rows, row)
 
 
 def _exchanged(file: SceneFile, profile: Any, bristle: AbstractBristle) -> Scene:

@@ -26,7 +26,7 @@ def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
     data = sweep(scene, ts=ts, method=method, progress=progress, **job.study)
     found = study(data)
     sections = [("", line) for line in job.notes]
-    sections.append(("Friction coefficients", coefficient_table(law)))
+    sections.append(("Friction coefficients", coefficient_table(law, job.error)))
     if job.rows is not None:
         sections.append(("Friction over the rows of the map", row_table(job.rows)))
     sections += [

@@ -21,9 +21,10 @@ _LAW = (
     ("omega_minus", "", "smallest slope of the surface"),
 )
 _NOISE = (
-    "(std: of a single row. Noise adds to the extreme slopes of each row, so their mean "
-    "lies above\nthe friction of the mean profile.)"
+    "(std: of a single row. Noise adds to the extreme slopes of a row, so the mean over\n"
+    "rows lies above the friction of the mean profile, which is the one above.)"
 )
+_BRISTLE = ("alpha", "a")  # the bristle's own, the same on every surface
 _FITTED = ("explained", "", "share of the variance that is periodic")
 
 
@@ -57,15 +58,22 @@ def coefficients_of(found: Coefficients) -> dict[str, float]:
     return {name: numbers[name] for name, _, _ in _LAW if name in numbers}
 
 
-def coefficient_table(found: Coefficients) -> str:
-    """Friction coefficients with their units and meanings."""
+def coefficient_table(found: Coefficients, error: dict[str, float] | None = None) -> str:
+    """Friction coefficients with their units and meanings, standard errors if known."""
     numbers = coefficients_of(found)
     rows = [
-        (name, _signed(numbers[name]), unit.ljust(4), meaning)
+        (name, _signed(numbers[name]), *_plus_minus(name, error), unit.ljust(4), meaning)
         for name, unit, meaning in _LAW
         if name in numbers
     ]
-    return _with_meanings(("coefficient", "value", "unit", "meaning"), rows)
+    added = ("+-",) if error else ()
+    return _with_meanings(("coefficient", "value", *added, "unit", "meaning"), rows)
+
+
+def _plus_minus(name: str, error: dict[str, float] | None) -> tuple[str, ...]:
+    if not error:
+        return ()
+    return ("" if name in _BRISTLE else f"{error[name]:.2g}",)
 
 
 def row_table(rows: RowCoefficients) -> str:
@@ -74,7 +82,7 @@ def row_table(rows: RowCoefficients) -> str:
     lines = [
         (name, _signed(mean[name]), f"{std[name]:.2g}", unit.ljust(4), meaning)
         for name, unit, meaning in (*_LAW, _FITTED)
-        if name not in ("alpha", "a")  # the bristle's own, the same in every row
+        if name not in _BRISTLE
     ]
     header = ("coefficient", "mean", "std", "unit", "meaning")
     count = f"{len(rows.used)} rows, period {rows.period:.4g} m"

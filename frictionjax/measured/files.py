@@ -1,31 +1,16 @@
-"""Measured surfaces: height traces and maps from instruments, and their friction."""
+"""Text files of instruments: height traces and maps."""
 
 import re
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import jax
 import numpy as np
 
-from .arguments import require
-from .bristles import AbstractBristle
-from .friction_law import friction
-from .profiles import Fourier
-from .profiles.heights import HeightsFit, find_period
+from ..arguments import require
 
 _PIXEL = "pixel size"
 _FACTOR = "height conversion factor"
 _COMMENTS = ("#", "%", ";", "//")
-_LAW = (
-    "rho_plus",
-    "rho_minus",
-    "mu_plus",
-    "mu_minus",
-    "omega_plus",
-    "omega_minus",
-    "alpha",
-    "a",
-)
 
 
 class Measured(NamedTuple):
@@ -33,32 +18,6 @@ class Measured(NamedTuple):
 
     x: np.ndarray
     heights: np.ndarray
-
-
-class RowCoefficients(NamedTuple):
-    """Friction of each row of a map, by name: arrays over the rows used.
-
-    `period` in m, one for all rows. `used`: indices of the rows used. `refused`: index
-    and reason of the rows whose fit the bristle does not admit.
-    """
-
-    values: dict[str, np.ndarray]
-    period: float
-    used: list[int]
-    refused: dict[int, str]
-
-    @property
-    def mean(self) -> dict[str, float]:
-        """Mean over rows, by name."""
-        return {name: float(np.mean(v)) for name, v in self.values.items()}
-
-    @property
-    def std(self) -> dict[str, float]:
-        """Standard deviation of a row, by name; NaN for a single row."""
-        return {
-            name: float(np.std(v, ddof=1)) if v.size > 1 else float("nan")
-            for name, v in self.values.items()
-        }
 
 
 def read_heights(
@@ -161,82 +120,3 @@ def _require_shape(header: dict[str, str], heights: np.ndarray) -> None:
     for key, size in zip("hw", heights.shape, strict=True):
         said = int(header.get(key, size))
         require(said == size, key, said, f"{size}, the size of the block of numbers")
-
-
-def common_period(measured: Measured, harmonics: int) -> float:
-    """The period in m that fits all rows together best."""
-    return find_period(measured.x, measured.heights, harmonics)
-
-
-def fit_profile(
-    measured: Measured,
-    period: float | None = None,
-    harmonics: int = 8,
-    row: int | None = None,
-) -> HeightsFit[Fourier]:
-    """One periodic profile of a measured surface, with `.period` and `.explained`.
-
-    `row`: which row, from 0; None: the mean over all rows, each moved so that its
-    fundamental is in phase first, since grooves cross the rows of a map at an angle.
-
-    Raises `ValueError` as `Fourier.from_heights`, and for a row that is not there.
-    """
-    x, heights = measured
-    rows = heights.shape[0]
-    if row is not None:
-        require(0 <= row < rows, "row", row, f"0 <= row <= {rows - 1}")
-        return Fourier.from_heights(x, heights[row], period, harmonics)
-    if rows == 1:
-        return Fourier.from_heights(x, heights[0], period, harmonics)
-    fits = _row_fits(measured, period, harmonics)
-    waves = np.array([_in_phase(fit.profile) for fit in fits])
-    mean = waves.mean(axis=0)
-    explained = float(np.mean([fit.explained for fit in fits]))
-    return HeightsFit(Fourier(mean.real, -mean.imag), fits[0].period, explained)
-
-
-def _row_fits(measured, period, harmonics) -> list[HeightsFit[Fourier]]:
-    if period is None:
-        period = common_period(measured, harmonics)
-    return [
-        Fourier.from_heights(measured.x, row, period, harmonics) for row in measured.heights
-    ]
-
-
-def _in_phase(profile: Fourier) -> np.ndarray:
-    """Coefficients of `sum_n c_n exp(2 pi i n y)`, moved so that `c_1` is positive."""
-    waves = np.asarray(profile.cos) - 1j * np.asarray(profile.sin)
-    turn = np.exp(-1j * np.angle(waves[0]))
-    return waves * turn ** np.arange(1, waves.size + 1)
-
-
-def row_coefficients(
-    measured: Measured,
-    bristle: AbstractBristle,
-    harmonics: int = 8,
-    period: float | None = None,
-) -> RowCoefficients:
-    """Friction coefficients of every row of a map, fitted with one period for all.
-
-    Besides the numbers of `friction`, `ratio` = -rho_plus/rho_minus and `explained`, the
-    share of a row's variance that its periodic profile explains.
-
-    Raises `ValueError` where the heights have no period, or no row is admissible.
-    """
-    fits = _row_fits(measured, period, harmonics)
-    found: list[tuple[float, ...]] = []
-    used: list[int] = []
-    refused: dict[int, str] = {}
-    for index, fit in enumerate(fits):
-        try:
-            law = jax.device_get(friction(fit.profile, bristle))
-        except ValueError as error:
-            refused[index] = str(error)
-            continue
-        used.append(index)
-        found.append((*(float(getattr(law, name)) for name in _LAW), fit.explained))
-    first = next(iter(refused.values()), "")
-    require(bool(found), "rows", "none admissible", f"one that is; row 0: {first}")
-    values = dict(zip((*_LAW, "explained"), np.array(found).T, strict=True))
-    values["ratio"] = -values["rho_plus"] / values["rho_minus"]
-    return RowCoefficients(values, fits[0].period, used, refused)
