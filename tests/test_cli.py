@@ -96,7 +96,7 @@ def test_friction_of_a_scene_file(tmp_path):
 def grooves(folder):
     """A map of grooves that lean: two harmonics, three rows, period 9e-6 m."""
     phase = 2 * np.pi * np.arange(120) * 3e-7 / 9e-6
-    rows = [a * np.sin(phase) + 0.2 * np.cos(2 * phase) for a in (0.9, 1.0, 1.1)]
+    rows = [a * np.sin(phase) + 0.2 * np.sin(2 * phase) for a in (0.9, 1.0, 1.1)]
     text = "\n".join(" ".join(f"{v:.9g}" for v in row) for row in rows)
     path = folder / "map.txt"
     path.write_text(f"pixel size=3e-7 m\nheight conversion factor (-> m)=1e-7\n{text}\n")

@@ -94,7 +94,7 @@ def grooves(rows=6, noise=0.0, drift=0.1, seed=1):
     x = np.linspace(0.0, 4.2e-5, 240)
     shift = drift * np.arange(rows)[:, None]
     phase = 2 * np.pi * (x / 1e-5 + shift)
-    heights = 1e-5 * (0.02 * np.sin(phase) + 0.004 * np.cos(2 * phase))
+    heights = 1e-5 * (0.02 * np.sin(phase) + 0.004 * np.sin(2 * phase))
     scatter = 1e-7 * noise * np.random.default_rng(seed).normal(size=heights.shape)
     return Measured(x, heights + scatter + 1e-3 * x)
 
@@ -102,7 +102,7 @@ def grooves(rows=6, noise=0.0, drift=0.1, seed=1):
 def test_rows_are_moved_into_phase_before_their_mean():
     found = fit_profile(grooves(), harmonics=3)
     assert found.period == pytest.approx(1e-5, rel=1e-4)
-    exact = fx.profiles.Fourier([0.0, 0.004], [0.02, 0.0])
+    exact = fx.profiles.Fourier([0.0, 0.0], [0.02, 0.004])  # steep climbs, gentle falls
     ours, theirs = (fx.friction(p, BRISTLE) for p in (found.profile, exact))
     assert ours.rho_plus == pytest.approx(float(theirs.rho_plus), rel=1e-3)
     assert ours.rho_minus == pytest.approx(float(theirs.rho_minus), rel=1e-3)
@@ -128,7 +128,7 @@ def test_coefficients_over_rows():
     rho = found.values["rho_plus"]
     assert found.mean["rho_plus"] == pytest.approx(rho.mean())
     assert found.std["rho_plus"] == pytest.approx(rho.std(ddof=1))
-    assert 0 < found.std["rho_plus"] < 0.2 * found.mean["rho_plus"]
+    assert 0 < found.std["rho_plus"] < 0.3 * found.mean["rho_plus"]
 
 
 def test_error_of_the_mean_profile_is_what_fresh_noise_shows():

@@ -181,5 +181,6 @@ def test_global_settings_and_pyplot_stay_untouched():
         axes = drawn(figure)[0]
         assert dict(mpl.rcParams) == before
     assert axes.xaxis.label.get_fontsize() < 12
+    assert {text.get_fontsize() for text in axes.get_xticklabels()} == {10.0}
     assert axes.xaxis.get_gridlines()[0].get_visible()
     assert figure._repr_png_().startswith(b"\x89PNG")
