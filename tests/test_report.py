@@ -73,7 +73,7 @@ def test_order_table():
     lines = order_table(orders).splitlines()
     assert len(lines) == 3
     assert lines[1].split()[1] == "0.500"
-    assert lines[1].endswith("converges")
+    assert lines[1].endswith("converges / converges")
     assert "0.01 to 0.1" in lines[1]
 
 

@@ -91,10 +91,11 @@ def _failures(axes: Any, cells: xr.Dataset, index: int) -> None:
     if bad.size:
         axes.plot(
             bad,
-            np.full(bad.size, 0.02 + 0.025 * index),
+            np.full(bad.size, 0.025 * index),
             "x",
             color=colour(index),
             markersize=7,
+            clip_on=False,
             transform=axes.get_xaxis_transform(),
             label=f"failed, $\\gamma$ = {float(cells.gamma):.3g}",
         )

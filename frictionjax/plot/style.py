@@ -1,8 +1,7 @@
 """How pictures look, without touching matplotlib's global settings."""
 
 import io
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
@@ -38,21 +37,8 @@ _SETTINGS: Any = {
 }
 
 
-@contextmanager
-def settings() -> Iterator[None]:
-    """These settings, whatever the user's own are, which come back afterwards."""
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_SETTINGS)
-        yield
-
-
 class Picture(Figure):
     """A Figure that Jupyter shows by itself; pyplot, with its global state, stays out."""
-
-    def draw(self, renderer: Any) -> None:
-        with settings():  # ticks are made when they are drawn
-            super().draw(renderer)
 
     def _repr_png_(self) -> bytes:
         buffer = io.BytesIO()
@@ -61,11 +47,13 @@ class Picture(Figure):
 
 
 def styled(draw: Callable[..., Figure]) -> Callable[..., Figure]:
-    """Run a drawing function under these settings."""
+    """Run a drawing function under these settings, whatever the user's own are."""
 
     @wraps(draw)
     def inside(*args: Any, **kwargs: Any) -> Figure:
-        with settings():
+        with matplotlib.rc_context():
+            matplotlib.rcdefaults()
+            matplotlib.rcParams.update(_SETTINGS)
             return draw(*args, **kwargs)
 
     return inside

@@ -160,7 +160,7 @@ def order_table(orders: xr.Dataset) -> str:
         "C0",
         "C",
         "dissipation order [95%]",
-        "verdict",
+        "state / dissipation",
     )
     return table(header, rows)
 
@@ -183,9 +183,9 @@ def _flag_names(variable: xr.DataArray) -> dict[int, str]:
 
 
 def _verdict(orders: xr.Dataset, line: xr.Dataset) -> str:
-    if "verdict" not in orders:
-        return ""
-    return _flag_names(orders.verdict)[int(line.verdict)].replace("_", " ")
+    known = [name for name in ("verdict", "dissipation_verdict") if name in orders]
+    words = [_flag_names(orders[name])[int(line[name])] for name in known]
+    return " / ".join(words).replace("_", " ")
 
 
 def _value(cell: xr.Dataset, name: str) -> float:
