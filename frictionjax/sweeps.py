@@ -81,6 +81,7 @@ def _run(scene, blocks, ts, accuracy, solver, balanced, progress: bool) -> Cell:
         for found, block in zip(pool.map(one, blocks[:-1]), blocks[:-1], strict=True):
             done.append(found)
             bar.update(block.cost / total)
+        bar.update(bar.total - bar.n)
     order = np.argsort(np.concatenate([b.cells for b in [blocks[-1], *blocks[:-1]]]))
     return jax.tree_util.tree_map(lambda *parts: np.concatenate(parts)[order], *done)
 
@@ -116,8 +117,8 @@ def sweep(
     of the energy-dissipation balance, `strip_excess` = sup dist(z_eps, strip) (Lemma 7),
     `dissipation_gap` (an estimate of the error of the dissipation), `viscosity`, `steps`,
     `rejected` and `status`; over time the limit's `z_limit`, `dissipation_limit`, the
-    strip `z_minus`, `z_plus` and `load`. Units and provenance are in the attributes; it
-    goes to NetCDF and back without loss.
+    strip `z_minus`, `z_plus` and the load, `data["load"]`. Units and provenance are in the
+    attributes; it goes to NetCDF and back without loss.
 
     A cell that fails has its status and NaNs and does not disturb the others.
 
