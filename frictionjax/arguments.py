@@ -17,6 +17,11 @@ _EMPTY = CellType()
 _CLOSURES = 4  # functions inside functions that are looked into for traced numbers
 
 
+def in_64_bits() -> bool:
+    """Whether JAX keeps 64-bit floats."""
+    return jnp.result_type(float) == np.float64
+
+
 def as_real(value: Any) -> Any:
     """Convert numbers to float64 and leave JAX arrays (tracers too) as they are.
 
@@ -33,7 +38,7 @@ def as_real(value: Any) -> Any:
     if not _is_numeric(known):
         return value
     exact = known.astype(np.float64)
-    return jnp.asarray(exact) if jax.config.jax_enable_x64 else exact  # type: ignore[attr-defined]
+    return jnp.asarray(exact) if in_64_bits() else exact
 
 
 def known_numbers(value: Any) -> np.ndarray:
@@ -113,7 +118,7 @@ def require_x64(*trees: Any) -> None:
     A well at eps = 1e-4 has 3 digits left in 32 bits: nothing here can be trusted then.
     """
     mend = 'run `jax.config.update("jax_enable_x64", True)` before building the scene'
-    if not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
+    if not in_64_bits():
         raise ValueError(f"jax_enable_x64 = False: needs 64-bit floats; {mend}")
     for leaf in jax.tree_util.tree_leaves(trees):
         if eqx.is_inexact_array(leaf) and leaf.dtype != np.float64:

@@ -1,6 +1,5 @@
 """Whether a sampled curve solves the wiggly system, from the scene alone."""
 
-import enum
 import math
 from typing import Any, NamedTuple
 
@@ -13,6 +12,7 @@ from .certificate_curve import Force, along_curve, force_of
 from .certificate_passages import folds_of, missing_forces, viscosity_ratio
 from .certificate_tube import distance
 from .coefficients import coefficients_jit
+from .outcomes import Outcome
 from .scene import Scene, require_times
 
 # Measured at eps 1e-3 to 0.3, gamma 0.5 to 2, every bristle: true curves with and without
@@ -25,16 +25,8 @@ _MISSING = 0.02
 _VISCOSITY = 0.1  # noise 0.02; a gamma off by 0.1 is 0.13 at eps = 0.3 and grows below
 
 
-class Verdict(enum.IntEnum):
+class Verdict(Outcome):
     """Why a curve is or is not accepted; `message` says it for people."""
-
-    message: str
-
-    def __new__(cls, code: int, message: str):
-        member = int.__new__(cls, code)
-        member._value_ = code
-        member.message = message
-        return member
 
     OK = 0, "the curve solves the wiggly system"
     NOT_FINITE = 1, "the curve holds values that are not finite"

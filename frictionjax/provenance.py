@@ -9,7 +9,6 @@ import jax
 import numpy as np
 import xarray as xr
 
-from . import __version__
 from .scene import Scene
 from .wiggly.status import FLAGS
 
@@ -58,7 +57,7 @@ def describe(data: xr.Dataset, scene: Scene, **facts: Any) -> xr.Dataset:
     data["status"].attrs["flag_meanings"] = FLAGS["flag_meanings"]
     data.attrs = {
         "title": "Convergence of a wiggly viscous system to directional dry friction",
-        "source": f"frictionjax {__version__}",
+        "source": f"frictionjax {version('frictionjax')}",
         "scene": scene_text(scene),
         "dtype": "float64",
         "method": f"resolved: every slip, {facts.pop('solver')}",

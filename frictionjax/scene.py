@@ -9,7 +9,15 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .admissibility import require_admissible, require_convex
-from .arguments import Real, as_real, as_text, is_concrete, require, require_real
+from .arguments import (
+    Real,
+    as_real,
+    as_text,
+    in_64_bits,
+    is_concrete,
+    require,
+    require_real,
+)
 from .bristles import AbstractBristle
 from .coefficients import coefficients_jit
 from .loads import AbstractLoad
@@ -86,14 +94,16 @@ class Scene(eqx.Module):
     @property
     def profile(self) -> AbstractProfile | None:
         """The surface profile; None in the abstract setting."""
-        known = isinstance(self.potential, BristlePotential)
-        return self.potential.profile if known else None  # type: ignore[attr-defined]
+        if isinstance(self.potential, BristlePotential):
+            return self.potential.profile
+        return None
 
     @property
     def bristle(self) -> AbstractBristle | None:
         """The bristle; None in the abstract setting."""
-        known = isinstance(self.potential, BristlePotential)
-        return self.potential.bristle if known else None  # type: ignore[attr-defined]
+        if isinstance(self.potential, BristlePotential):
+            return self.potential.bristle
+        return None
 
     def turning_points(self) -> Real:
         """Turning points of the load in (0, T), shape (turns,), padded with T."""
@@ -132,7 +142,7 @@ _load_range = eqx.filter_jit(load_range)
 
 
 def _require_hypotheses(scene: Scene) -> None:
-    if not is_concrete(scene) or not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
+    if not is_concrete(scene) or not in_64_bits():
         return  # traced values cannot be looked at; 32 bits raise at the entry points
     require_admissible(scene.potential)
     found = coefficients_jit(scene.potential)

@@ -4,7 +4,6 @@ import json
 import signal
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -193,15 +192,18 @@ def test_help_waits_for_no_library():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_is_quiet(tmp_path):
+    """Sent when the bar shows that the sweep is under way, in compiled code."""
     command = [sys.executable, "-c", "from frictionjax.cli import main; main()", "study"]
-    options = ["--eps", "1e-4", "--out", str(tmp_path / "out"), "--no-progress"]
-    process = subprocess.Popen(
-        command + options, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-    time.sleep(6.0)  # JAX is loaded and the sweep under way
-    assert process.poll() is None
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=10)
+    options = ["--eps", "1e-4", "--out", str(tmp_path / "out")]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command + options, **pipes) as process:
+        seen = b""
+        while b"cells" not in seen:
+            letter = process.stderr.read(1)
+            assert letter, seen  # ended before it began
+            seen += letter
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=120)
     assert process.returncode == 130
     assert out == b""
     assert b"Traceback" not in err

@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, is_concrete, require
+from ..arguments import Real, in_64_bits, is_concrete, require
 
 
 class AbstractProfile(eqx.Module):
@@ -48,7 +48,7 @@ def require_smooth(name: str, fn: Callable[[Real], Real], points: int) -> None:
 
     Raises `ValueError` naming the derivative that jumps, where, and by how much.
     """
-    if not is_concrete(fn) or not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
+    if not is_concrete(fn) or not in_64_bits():
         return
     inside = 1e-7
     y = jnp.asarray(np.concatenate([np.arange(points) / points, [1.0 - inside]]))

@@ -4,13 +4,14 @@ import diffrax
 import jax.numpy as jnp
 
 from ..arguments import Real
+from .wrapped import AbstractWrappedController
 
 # Estimates below this share of the tolerance are rounding noise and must not steer;
 # (1e5)^(0.7/5) is the largest growth of a step.
 _NOISE = 1e-5
 
 
-class WellGuard(diffrax.AbstractAdaptiveStepSizeController):
+class WellGuard(AbstractWrappedController):
     """Reject every step that moves the tip further than `reach`, then ask `controller`.
 
     A general solver on a rest phase takes steps longer than a slip. The implicit equation
@@ -28,18 +29,6 @@ class WellGuard(diffrax.AbstractAdaptiveStepSizeController):
 
     def __init__(self, controller: diffrax.PIDController, reach: Real):
         self.controller, self.reach = controller, reach
-
-    @property
-    def rtol(self):
-        return self.controller.rtol
-
-    @property
-    def atol(self):
-        return self.controller.atol
-
-    @property
-    def norm(self):
-        return self.controller.norm
 
     def wrap(self, direction):
         return WellGuard(self.controller.wrap(direction), self.reach)

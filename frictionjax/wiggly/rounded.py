@@ -3,10 +3,12 @@
 import diffrax
 import jax.numpy as jnp
 
+from .wrapped import AbstractWrappedController
+
 _PER_OCTAVE = 8  # 4% more steps; with 2 an octave 20% more
 
 
-class RoundedSteps(diffrax.AbstractAdaptiveStepSizeController):
+class RoundedSteps(AbstractWrappedController):
     """Rounds the step that `controller` proposes down to 2^(k/8) s.
 
     Step size control is chaotic: an error estimate that passes through zero turns a
@@ -19,18 +21,6 @@ class RoundedSteps(diffrax.AbstractAdaptiveStepSizeController):
 
     def __init__(self, controller: diffrax.AbstractAdaptiveStepSizeController):
         self.controller = controller
-
-    @property
-    def rtol(self):
-        return self.controller.rtol
-
-    @property
-    def atol(self):
-        return self.controller.atol
-
-    @property
-    def norm(self):
-        return self.controller.norm
 
     def wrap(self, direction):
         return RoundedSteps(self.controller.wrap(direction))

@@ -1,18 +1,10 @@
 """How a computation ended."""
 
-import enum
+from ..outcomes import Outcome
 
 
-class Status(enum.IntEnum):
+class Status(Outcome):
     """Why a result can or cannot be trusted; `message` says it for people."""
-
-    message: str
-
-    def __new__(cls, code: int, message: str):
-        member = int.__new__(cls, code)
-        member._value_ = code
-        member.message = message
-        return member
 
     OK = 0, "every number can be trusted"
     MAX_STEPS = 1, "the step budget ran out before the last time; raise max_steps"
