@@ -88,7 +88,7 @@ def dissipated(
     """`int_0^t eps^gamma z'^2` in J from the energy lost: exact where slips are short.
 
     The direct sum resolves a force squared over slips; this one only `int l' z`, which is
-    smooth, and energies at points where the force is small: 100 times closer at the same
-    steps.
+    smooth, and energies at points where the force is small: 6 times closer at the same
+    steps (4e-6 against 2.6e-5 of the final value, eps = 1e-2, gamma = 1).
     """
     return jnp.asarray(start_energy - field.energy(t, y) - balance.work)

@@ -16,9 +16,9 @@ class WellGuard(AbstractWrappedController):
 
     A general solver on a rest phase takes steps longer than a slip. The implicit equation
     of such a step has a root in every well that holds an equilibrium; a root in the wrong
-    one comes with a small error estimate (LSODA and BDF: up to 185 wells off, success
-    reported). To change wells the tip must cross a whole falling branch of `W'`; with
-    `reach` a quarter of the narrowest, no step can, and the slip itself is resolved.
+    one comes with a small error estimate (LSODA: 185 wells off, success reported). To
+    change wells the tip must cross a whole falling branch of `W'`; with `reach` a quarter
+    of the narrowest, no step can, and the slip itself is resolved.
 
     The estimate handed on is raised to what makes the controller shrink the step by the
     factor that is needed.

@@ -10,7 +10,7 @@ from ..arguments import require
 from .rosenbrock import Rodas5P
 
 OURS = ("auto", "resolved", "windowed")
-_NEWTON_SHARE = 0.03  # of the tolerance; 0.3 costs accuracy, 0.003 a fifth more iterations
+_NEWTON_SHARE = 0.03  # of the step's tolerance
 
 
 def _is_usable(candidate: object) -> bool:

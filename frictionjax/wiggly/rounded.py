@@ -5,7 +5,7 @@ import jax.numpy as jnp
 
 from .wrapped import AbstractWrappedController
 
-_PER_OCTAVE = 8  # 4% more steps; with 2 an octave 20% more
+_PER_OCTAVE = 8  # costs 2% more steps
 
 
 class RoundedSteps(AbstractWrappedController):

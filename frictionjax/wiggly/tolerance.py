@@ -116,7 +116,7 @@ def plan_steps(scene: Scene, eps: Real, gamma: Real, accuracy: Real) -> Plan:
 
     Errors of the slips remembered add up with mixed signs: as the root of their number.
     (As the number itself: tolerances 6 times smaller at gamma = 1/2, for errors that were
-    7 times below the target already.)
+    10 times below the target already.)
     """
     ground = landscape(scene.potential, eps)
     memory = remembered_slips(ground, scene, eps, gamma)
