@@ -193,7 +193,12 @@ def test_help_waits_for_no_library():
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_is_quiet(tmp_path):
     """Sent when the bar shows that the sweep is under way, in compiled code."""
-    command = [sys.executable, "-c", "from frictionjax.cli import main; main()", "study"]
+    # A shell that runs the tests in the background has them ignore SIGINT; undone here.
+    code = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "from frictionjax.cli import main; main()"
+    )
+    command = [sys.executable, "-c", code, "study"]
     options = ["--eps", "1e-4", "--out", str(tmp_path / "out")]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     with subprocess.Popen(command + options, **pipes) as process:

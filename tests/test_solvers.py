@@ -1,6 +1,7 @@
 """Solvers by name, and the Rosenbrock method itself."""
 
 import diffrax
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -134,3 +135,14 @@ def test_rosenbrock_damps_stiff_transients():
         jnp.asarray(5.0),
     )
     assert abs(float(found.ys[0]) - np.sin(1.0)) < 1e-6
+
+
+def test_a_solution_goes_through_jit_and_vmap_whole(scene):
+    ts = jnp.asarray([0.5, 1.0])
+    many = jax.jit(jax.vmap(lambda eps: fx.solve(scene, eps, 1.0, ts)))
+    found = many(jnp.asarray([0.06, 0.08]))
+    assert found.z.shape == (2, 2)
+    assert "Rodas5P" in found.stats["values"]
+    alone = fx.solve(scene, 0.08, 1.0, ts)
+    assert np.abs(np.asarray(found.z[1] - alone.z)).max() < 1e-9
+    assert "OK" in repr(alone)

@@ -32,7 +32,20 @@ class Solution(eqx.Module):
     dissipation: Float[Array, " n"] | None
     residual: Float[Array, " n"] | None
     status_code: Int[Array, ""]
-    stats: dict[str, Any]
+    counts: dict[str, Any]
+    how: str = eqx.field(static=True)
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        """Counts, and under "values" how the values were obtained."""
+        return {**self.counts, "values": self.how}
+
+    def __repr__(self) -> str:
+        if not is_concrete(self):
+            return super().__repr__()
+        end = f"z({float(self.ts[-1]):.6g} s) = {float(self.z[-1]):.9g} m"
+        steps = f"{int(self.stats['steps'])} steps"
+        return f"Solution({self.status.name}: {self.ts.size} times, {end}, {steps})"
 
     @property
     def ok(self) -> Any:
@@ -62,13 +75,16 @@ def _solve(scene, eps, gamma, ts, accuracy, solver, balanced, max_steps, adjoint
         max_steps=max_steps,
         adjoint=adjoint,
     )
-    stats = {
+    counts = {
         "steps": found.steps,
         "rejected": found.rejected,
         "tolerance": plan.tolerance,
         "dissipation_gap": found.dissipation_gap,
     }
-    return Solution(ts, found.z, found.dissipation, found.residual, found.status, stats)
+    how = f"resolved, every slip, by {type(solver).__name__}"
+    return Solution(
+        ts, found.z, found.dissipation, found.residual, found.status, counts, how
+    )
 
 
 def require_accuracy(accuracy: Any) -> None:
@@ -114,7 +130,7 @@ def solve(
     solver = solver_of(method)
     eps, gamma = jnp.asarray(as_real(eps)), jnp.asarray(as_real(gamma))
     require_reach(scene.potential, eps)
-    found = _solve(
+    return _solve(
         scene,
         eps,
         gamma,
@@ -125,5 +141,3 @@ def solve(
         int(max_steps),
         adjoint,
     )
-    found.stats["values"] = f"resolved, every slip, by {type(solver).__name__}"
-    return found
