@@ -29,6 +29,8 @@ _HOME = {
     "study": "studies",
     "load_scene": "scene_files",
     "save_scene": "scene_files",
+    "use_fast_cpu": "compilation",
+    "keep_compiled": "compilation",
 }
 
 __all__ = [*_HOME, "__version__"]
@@ -40,6 +42,8 @@ if TYPE_CHECKING:
     from . import profiles as profiles
     from . import supports as supports
     from .certificate import certify as certify
+    from .compilation import keep_compiled as keep_compiled
+    from .compilation import use_fast_cpu as use_fast_cpu
     from .friction_law import friction as friction
     from .limit_system import solve_limit as solve_limit
     from .potentials import GivenPotential as GivenPotential

@@ -76,9 +76,13 @@ def main(context: click.Context) -> None:
 
 
 def _start() -> None:
+    from .compilation import keep_compiled, use_fast_cpu
+
+    use_fast_cpu()
     import jax
     import matplotlib
 
+    keep_compiled()
     jax.config.update("jax_enable_x64", True)
     matplotlib.use("Agg")
 

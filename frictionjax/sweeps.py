@@ -23,7 +23,9 @@ from .limit_system import (
 )
 from .provenance import describe
 from .scene import Scene, require_times
-from .wiggly.methods import solver_of
+from .wiggly.engine import integrate_cells
+from .wiggly.methods import is_ours, solver_of
+from .wiggly.status import Status
 from .wiggly.trajectory import require_accuracy
 
 # Lanes of one compiled block. 8 cost 1.0 us a lane and step, 32 cost 0.8, but wide blocks
@@ -89,6 +91,35 @@ def _run(scene, blocks, ts, accuracy, solver, balanced, progress: bool) -> Cell:
 _BAR = "{desc}: {percentage:3.0f}% |{bar}| {elapsed} so far, {remaining} to go"
 
 
+def _run_lanes(scene, eps, gamma, ts, accuracy, method, balanced, progress) -> dict | None:
+    """Values of all cells through lanes, by name; None where they cannot say."""
+    lane_gamma, lane_eps = (a.ravel() for a in np.meshgrid(gamma, eps, indexing="ij"))
+    with tqdm(total=1.0, disable=not progress, bar_format=_BAR, desc="cells") as bar:
+
+        def report(share: float) -> None:
+            bar.update(min(share, bar.total - bar.n))
+
+        found = integrate_cells(
+            scene, lane_eps, lane_gamma, np.asarray(ts), accuracy, method, balanced, report
+        )
+    if found is None:
+        return None
+    values = found._asdict()
+    values["status"] = values["status"].astype(np.int8)
+    values["how"] = values["how"].astype(np.int8)
+    values["bracket"] = values.pop("gap")
+    failed = ~np.isin(values["status"], (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY))
+    for name in ("residual", "dissipation_gap", "dissipation_error", *_SUPREMA):
+        values[name] = np.where(failed, np.nan, values[name])
+    unused = ["running_residual", "survey_work_error"]
+    if not balanced:
+        unused += ["dissipation", "dissipation_error", "residual", "dissipation_gap"]
+    return {name: value for name, value in values.items() if name not in unused}
+
+
+_SUPREMA = ("sup_error", "strip_excess", "survey_error")
+
+
 def _grid(name: str, values: Any) -> np.ndarray:
     require_numbers(name, values, f"{name} > 0, a number or a list", lambda v: v > 0)
     array = np.unique(np.atleast_1d(np.asarray(values, dtype=float)).ravel())
@@ -116,7 +147,9 @@ def sweep(
     `sup_error` = sup |z_eps - z| and `dissipation_error` over all of [0, T], `residual`
     of the energy-dissipation balance, `strip_excess` = sup dist(z_eps, strip) (Lemma 7),
     `dissipation_gap` (an estimate of the error of the dissipation), `viscosity`, `steps`,
-    `rejected` and `status`; over time the limit's `z_limit`, `dissipation_limit`, the
+    `rejected` and `status`; of the library's own methods also `how` and `bracket` over
+    time (see `solve`), `sampled` and `survey_error`, an estimate of what sampling slips
+    adds to the error of `sup_error`; over time the limit's `z_limit`, `dissipation_limit`, the
     strip `z_minus`, `z_plus` and the load, `data["load"]`. Units and provenance are in the
     attributes; it goes to NetCDF and back without loss.
 
@@ -133,25 +166,24 @@ def sweep(
     require_reach(scene.potential, jnp.asarray(eps))
     solver = solver_of(method)
     limit = solve_limit(scene, ts)
-    cells = _run(
-        scene,
-        _blocks(eps, gamma),
-        ts,
-        jnp.asarray(as_real(accuracy)),
-        solver,
-        bool(dissipation),
-        progress,
-    )
+    balanced, wanted = bool(dissipation), float(as_real(accuracy))
+    values, name = None, type(solver).__name__
+    if is_ours(method):
+        options = wanted, str(method), balanced, progress
+        values, name = _run_lanes(scene, eps, gamma, ts, *options), str(method)
+    if values is None:
+        blocks, tight = _blocks(eps, gamma), jnp.asarray(wanted)
+        values = _cell_values(_run(scene, blocks, ts, tight, solver, balanced, progress))
     data = xr.Dataset(coords={"gamma": gamma, "eps": eps, "time": np.asarray(ts)})
     shape = (gamma.size, eps.size)
-    for name, values in _cell_values(cells).items():
-        dims = ("gamma", "eps", "time")[: values.ndim + 1]
-        data[name] = (dims, values.reshape(*shape, *values.shape[1:]))
+    for key, value in values.items():
+        dims = ("gamma", "eps", "time")[: value.ndim + 1]
+        data[key] = (dims, value.reshape(*shape, *value.shape[1:]))
     data["viscosity"] = data.eps**data.gamma
     data["viscosity"] = data.viscosity.transpose("gamma", "eps")
-    for name, values in _limit_values(scene, limit).items():
-        data[name] = (("time",), values)
-    return describe(data, scene, accuracy=float(accuracy), solver=type(solver).__name__)
+    for key, value in _limit_values(scene, limit).items():
+        data[key] = (("time",), value)
+    return describe(data, scene, accuracy=wanted, solver=name)
 
 
 def _cell_values(cells: Cell) -> dict[str, np.ndarray]:

@@ -12,8 +12,8 @@ ROOT = Path(frictionjax.__file__).parent
 # Units on one floor know nothing of each other; a folder is one unit.
 FLOORS = [
     {"arguments"},
-    {"outcomes"},
-    {"roots", "taylor", "extrema"},
+    {"outcomes", "compilation"},
+    {"roots", "taylor", "extrema", "trigonometry"},
     {"profiles", "bristles", "supports", "loads"},
     {"potentials"},
     {"coefficients"},

@@ -11,7 +11,7 @@ import pytest
 import frictionjax as fx
 from frictionjax.wiggly import integration, observed, tolerance
 from frictionjax.wiggly.field import TipField
-from frictionjax.wiggly.rosenbrock import Rodas5P
+from frictionjax.wiggly.rodas5p import Rodas5P
 
 SCENE = fx.Scene(
     fx.profiles.Sine(0.1),

@@ -8,7 +8,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.wiggly.methods import known_solvers
-from frictionjax.wiggly.rosenbrock import Rodas5P
+from frictionjax.wiggly.rodas5p import Rodas5P
 
 EPS = 0.06
 TIMES = np.linspace(0.0, 1.5, 16)
@@ -67,9 +67,16 @@ def test_budget_of_steps_ends_as_a_status(scene):
 
 
 def test_slips_below_the_spacing_of_floats_end_as_a_status(scene):
-    found = fx.solve(scene, 1e-4, 4.0, [0.5, 1.0])
+    found = fx.solve(scene, 1e-4, 4.0, [0.5, 1.0], method="Kvaerno3")
     assert found.status is fx.Status.STEP_TOO_SMALL
     assert "spacing of floats" in found.status.message
+
+
+def test_lanes_go_on_below_the_spacing_of_floats(scene):
+    # A slip of 1e-20 s at t = 1 s: lanes count time from their own start.
+    found = fx.solve(scene, 1e-4, 4.0, [0.5, 1.0])
+    assert found.ok
+    assert np.abs(found.z - fx.solve_limit(scene, [0.5, 1.0]).z).max() < 1e-4
 
 
 @pytest.mark.parametrize(
@@ -144,5 +151,5 @@ def test_a_solution_goes_through_jit_and_vmap_whole(scene):
     assert found.z.shape == (2, 2)
     assert "Rodas5P" in found.stats["values"]
     alone = fx.solve(scene, 0.08, 1.0, ts)
-    assert np.abs(np.asarray(found.z[1] - alone.z)).max() < 1e-9
+    assert np.abs(np.asarray(found.z[1] - alone.z)).max() < 1e-4 * 0.08
     assert "OK" in repr(alone)

@@ -1,10 +1,10 @@
 """Sinusoidal load."""
 
 import equinox as eqx
-import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..arguments import Real, as_real, require_real
+from ..trigonometry import sin_cos
 from .load import AbstractLoad, periodic_turning_count, periodic_turning_points
 
 
@@ -22,7 +22,7 @@ class Sine(AbstractLoad):
         require_real("load.period", self.period, "period > 0", lambda p: p > 0)
 
     def __call__(self, t: Real) -> Real:
-        return self.amplitude * jnp.sin(2 * jnp.pi * t / self.period)
+        return self.amplitude * sin_cos(t / self.period)[0]
 
     def turning_count(self, duration: float) -> int:
         return periodic_turning_count(float(self.period) / 4, duration)

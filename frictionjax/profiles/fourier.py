@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..arguments import Real, as_real, is_concrete, known_numbers, require
+from ..trigonometry import fourier_sum
 from .heights import HeightsFit, fit_heights
 from .profile import AbstractProfile
 
@@ -36,10 +37,7 @@ class Fourier(AbstractProfile):
         require(np.any(cos) or np.any(sin), "profile.cos", cos, "a coefficient != 0")
 
     def __call__(self, y: Real) -> Real:
-        y = jnp.asarray(y)
-        phase = 2 * jnp.pi * (y - jnp.round(y))
-        phases = phase[..., None] * np.arange(1, self.cos.shape[0] + 1)
-        return jnp.cos(phases) @ self.cos + jnp.sin(phases) @ self.sin
+        return fourier_sum(self.cos, self.sin, jnp.asarray(y))
 
     @property
     def points(self) -> int:

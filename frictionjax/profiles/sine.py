@@ -4,6 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from ..arguments import Real, as_real, require_real
+from ..trigonometry import sin_cos
 from .profile import AbstractProfile
 
 
@@ -21,8 +22,7 @@ class Sine(AbstractProfile):
         require_real("profile.slope", self.slope, "slope != 0", lambda s: s != 0)
 
     def __call__(self, y: Real) -> Real:
-        phase = 2 * jnp.pi * (y - jnp.round(y))
-        return self.slope / (2 * jnp.pi) * jnp.sin(phase)
+        return self.slope / (2 * jnp.pi) * sin_cos(y)[0]
 
     @property
     def points(self) -> int:

@@ -12,7 +12,7 @@ from .folder import write_study
 from .job import Job, joined
 from .tables import coefficient_table, failed_table, order_table, row_table, sweep_table
 
-_TIMES = 1201  # pictures follow the slips of the larger eps
+_TIMES = 401  # pictures follow the slips of the larger eps
 
 
 def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:

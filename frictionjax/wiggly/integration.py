@@ -50,7 +50,7 @@ class Front(NamedTuple):
 
 def field_of(scene: Scene, eps: Real, gamma: Real) -> TipField:
     """The vector field of a scene at one eps and gamma."""
-    return TipField(scene.potential, scene.support, scene.load, eps, gamma)
+    return TipField(scene.potential, scene.support, scene.load, eps, eps**gamma)
 
 
 def integrate(

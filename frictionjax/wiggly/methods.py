@@ -7,7 +7,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from ..arguments import require
-from .rosenbrock import Rodas5P
+from .rodas5p import Rodas5P
 
 OURS = ("auto", "resolved", "windowed")
 _NEWTON_SHARE = 0.03  # of the step's tolerance
@@ -46,6 +46,11 @@ def solver_of(method: object) -> diffrax.AbstractSolver:
     usable = _is_usable(candidate)
     require(usable, "method", method if isinstance(method, str) else repr(method), allowed)
     return candidate()  # type: ignore[operator]
+
+
+def is_ours(method: object) -> bool:
+    """Whether `method` names one of the library's own ways."""
+    return isinstance(method, str) and method in OURS
 
 
 def with_tolerance(solver: diffrax.AbstractSolver, tolerance) -> diffrax.AbstractSolver:

@@ -48,7 +48,8 @@ class Recorder(eqx.Module):
         after: list = []
         spent = jnp.zeros_like(y1)
         if self.balanced:
-            balance = advance(self.field, memory[0], t0, t1, y0, y1)
+            ends = self.field.point(t0, y0), self.field.point(t1, y1)
+            balance = advance(self.field, memory[0], t0, t1 - t0, y0, y1, *ends)
             after.append(balance)
         if self.watch is not None:
             if self.balanced:

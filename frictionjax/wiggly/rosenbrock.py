@@ -1,104 +1,108 @@
-"""Rosenbrock method for a scalar stiff equation."""
+"""Rosenbrock methods for a scalar stiff equation."""
 
-from typing import ClassVar
+from collections.abc import Callable
+from typing import ClassVar, NamedTuple
 
 import diffrax
 import jax
 import jax.numpy as jnp
+from equinox import AbstractClassVar
 
-# Rodas5P: eight stages, order 5, stiffly accurate, L-stable, error estimate of order 4.
-# G. Steinebach, Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks
-# within the Julia Differential Equations package, BIT Numer. Math. 63:27 (2023). In the
-# transformed variables of E. Hairer and G. Wanner, Solving ODEs II, Section IV.7.
-_GAMMA = 0.21193756319429014
-_A: tuple[tuple[float, ...], ...] = (
-    (),
-    (3.0,),
-    (2.849394379747939, 0.45842242204463923),
-    (-6.954028509809101, 2.489845061869568, -10.358996098473584),
-    (2.8029986275628964, 0.5072464736228206, -0.3988312541770524, -0.04721187230404641),
-    (
-        -7.502846399306121,
-        2.561846144803919,
-        -11.627539656261098,
-        -0.18268767659942256,
-        0.030198172008377946,
-    ),
-)
-_A = (*_A, (*_A[5], 1.0), (*_A[5], 1.0, 1.0))
-_C: tuple[tuple[float, ...], ...] = (
-    (),
-    (-14.155112264123755,),
-    (-17.97296035885952, -2.859693295451294),
-    (147.12150275711716, -1.41221402718213, 71.68940251302358),
-    (165.43517024871676, -0.4592823456491126, 42.90938336958603, -5.961986721573306),
-    (
-        24.854864614690072,
-        -3.0009227002832186,
-        47.4931110020768,
-        5.5814197821558125,
-        -0.6610691825249471,
-    ),
-    (
-        30.91273214028599,
-        -3.1208243349937974,
-        77.79954646070892,
-        34.28646028294783,
-        -19.097331116725623,
-        -28.087943162872662,
-    ),
-    (
-        37.80277123390563,
-        -3.2571969029072276,
-        112.26918849496327,
-        66.9347231244047,
-        -40.06618937091002,
-        -54.66780262877968,
-        -9.48861652309627,
-    ),
-)
-_TIMES = (
-    0.0,
-    0.6358126895828704,
-    0.4095798393397535,
-    0.9769306725060716,
-    0.4288403609558664,
-    1.0,
-    1.0,
-    1.0,
-)
-_TIME_DERIVATIVE = (
-    0.21193756319429014,
-    -0.42387512638858027,
-    -0.3384627126235924,
-    1.8046452872882734,
-    2.325825639765069,
-    0.0,
-    0.0,
-    0.0,
-)
+from ..arguments import Real
 
 
-def _combine(weights: tuple[float, ...], values: list):
-    return sum(w * v for w, v in zip(weights, values, strict=True)) if weights else 0.0
+class Tableau(NamedTuple):
+    """Coefficients in the transformed variables of Hairer and Wanner, Section IV.7.
 
-
-class Rodas5P(diffrax.AbstractAdaptiveSolver):
-    """Rodas5P for a scalar state, with exact Jacobian and time derivative by autodiff.
-
-    No linear algebra and no Newton iteration: one division a stage. On the paper's
-    vertical spring at gamma = 1 and tolerance 1e-4 it takes 37 steps a slip at eps = 1e-2,
-    where Kvaerno5 takes 1405 and Kvaerno3 962, and 58 at eps = 1e-3, where Rodas4 takes 60
-    for 3.6 times the error.
-
-    Steps have no dense output better than linear: end them where values are wanted.
+    `a`, `c`: rows of the strict lower triangles. `times`, `time_derivative`: of each stage.
+    `dense`: weights of the stages in the interpolant. The last stage is the error estimate
+    (stiffly accurate methods), of order `order - 1`.
     """
 
+    order: int
+    gamma: float
+    a: tuple[tuple[float, ...], ...]
+    c: tuple[tuple[float, ...], ...]
+    times: tuple[float, ...]
+    time_derivative: tuple[float, ...]
+    dense: tuple[tuple[float, ...], ...]
+
+
+class Linearised(NamedTuple):
+    """Right-hand side at the start of a step, and its derivatives by state and time."""
+
+    velocity: Real
+    by_state: Real
+    by_time: Real
+
+
+def combine(weights: tuple[float, ...], values: list) -> Real | float:
+    """Weighted sum that leaves zero weights out of the program."""
+    terms = [w * v for w, v in zip(weights, values, strict=True) if w != 0]
+    return sum(terms[1:], terms[0]) if terms else 0.0
+
+
+def rosenbrock_step(
+    tableau: Tableau,
+    velocity: Callable[[Real, Real], Real],
+    start: Linearised,
+    t: Real,
+    step: Real,
+    y: Real,
+) -> tuple[Real, list]:
+    """State after one step, and the stages; the last one is the error estimate.
+
+    Elementwise: arrays of lanes are as good as scalars. One division a stage, no linear
+    algebra and no Newton iteration.
+    """
+    inverse = 1 / (1 / (step * tableau.gamma) - start.by_state)
+    per_step = 1 / step
+    stages: list = []
+    rows = zip(tableau.a, tableau.c, tableau.times, tableau.time_derivative, strict=True)
+    for a, c, time, by_time in rows:
+        inside = y + combine(a, stages)
+        fresh = any(a) or time != 0
+        slope = velocity(t + time * step, inside) if fresh else start.velocity
+        forcing = step * by_time * start.by_time if by_time else 0.0
+        stages.append((slope + combine(c, stages) * per_step + forcing) * inverse)
+    return inside + stages[-1], stages
+
+
+def dense_output(tableau: Tableau, y0: Real, y1: Real, stages: list, share: Real) -> Real:
+    """The interpolant at a share of the step, of order `order - 1`."""
+    bends = [combine(row, stages) for row in tableau.dense]
+    bend = bends[-1]
+    for lower in bends[-2::-1]:
+        bend = lower + share * bend
+    return (1 - share) * y0 + share * (y1 + (1 - share) * bend)
+
+
+class StageInterpolation(diffrax.AbstractLocalInterpolation):
+    """Dense output of a Rosenbrock step, from the ends and the tableau's bends."""
+
+    t0: Real
+    t1: Real
+    y0: Real
+    y1: Real
+    bends: Real
+
+    def evaluate(self, t0, t1=None, left=True):
+        if t1 is not None:
+            return self.evaluate(t1) - self.evaluate(t0)
+        share = (t0 - self.t0) / jnp.where(self.t1 == self.t0, 1.0, self.t1 - self.t0)
+        bend = jnp.polyval(self.bends[::-1], share)
+        return (1 - share) * self.y0 + share * (self.y1 + (1 - share) * bend)
+
+
+class AbstractRosenbrock(diffrax.AbstractAdaptiveSolver):
+    """A scheme for a scalar state, with exact Jacobian and time derivative by autodiff."""
+
+    tableau: AbstractClassVar[Tableau]
     term_structure: ClassVar = diffrax.ODETerm
-    interpolation_cls: ClassVar = diffrax.LocalLinearInterpolation
+    interpolation_cls: ClassVar = StageInterpolation
 
     def order(self, terms):
-        return 5
+        return self.tableau.order
 
     def init(self, terms, t0, t1, y0, args):
         return None
@@ -107,23 +111,13 @@ class Rodas5P(diffrax.AbstractAdaptiveSolver):
         return terms.vf(t0, y0, args)
 
     def step(self, terms, t0, t1, y0, args, solver_state, made_jump):
-        step = t1 - t0
-        one = jnp.ones_like(y0)
-
         def field(t, y):
             return terms.vf(t, y, args)
 
-        first, jacobian = jax.jvp(lambda y: field(t0, y), (y0,), (one,))
+        velocity, by_state = jax.jvp(lambda y: field(t0, y), (y0,), (jnp.ones_like(y0),))
         _, by_time = jax.jvp(lambda t: field(t, y0), (t0,), (jnp.ones_like(t0),))
-        inverse = 1 / (1 / (step * _GAMMA) - jacobian)
-        stages: list = []
-        y = y0
-        for i, time in enumerate(_TIMES):
-            y = y0 + _combine(_A[i], stages)
-            slope = first if i == 0 else field(t0 + time * step, y)
-            forcing = step * _TIME_DERIVATIVE[i] * by_time
-            stages.append((slope + _combine(_C[i], stages) / step + forcing) * inverse)
-        error = stages[-1]
-        y1 = y + error
-        dense_info = {"y0": y0, "y1": y1}
-        return y1, error, dense_info, None, diffrax.RESULTS.successful
+        start = Linearised(velocity, by_state, by_time)
+        y1, stages = rosenbrock_step(self.tableau, field, start, t0, t1 - t0, y0)
+        bends = jnp.stack([combine(row, stages) for row in self.tableau.dense])
+        info = {"y0": y0, "y1": y1, "bends": bends}
+        return y1, stages[-1], info, None, diffrax.RESULTS.successful

@@ -13,6 +13,8 @@ class Status(Outcome):
     SOLVER_FAILED = 4, "the solver gave up on a step"
     UNBALANCED = 5, "the energy-dissipation balance does not close"
     TOO_MANY_TURNS = 6, "the load turns more often than the scene has room for"
+    OPEN_BRACKET = 7, "starts are not forgotten, and every slip is too many to integrate"
+    ROUGH_SURVEY = 8, "a slide changes too fast to be known from some of its slips"
 
 
 _BY_CODE = {int(status): status for status in Status}

@@ -5,13 +5,15 @@ from typing import Any
 import diffrax
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..admissibility import require_reach
 from ..arguments import as_real, is_concrete, require_numbers, require_real, require_x64
 from ..scene import Scene, require_times
+from .engine import integrate_cells
 from .integration import MAX_STEPS, integrate
-from .methods import solver_of
+from .methods import is_ours, solver_of
 from .status import Status, status_of
 from .tolerance import plan_steps
 
@@ -24,7 +26,10 @@ class Solution(eqx.Module):
     energy-dissipation balance; both are None where dissipation was not asked for. `ok`:
     every number can be trusted. `stats`: steps, rejected steps, tolerance in periods, how
     values were obtained, and `dissipation_gap`, the distance in J at the end between the
-    dissipation and an independent second value of it.
+    dissipation and an independent second value of it. From lanes also `how` (n,): 1 where a
+    bracket from below and above has closed, 0 where every slip since z0 is integrated;
+    `bracket` (n,): how closely, in eps; `sampled`: share of the way that is known from some
+    of its slips.
     """
 
     ts: Float[Array, " n"]
@@ -87,6 +92,43 @@ def _solve(scene, eps, gamma, ts, accuracy, solver, balanced, max_steps, adjoint
     )
 
 
+def _through_lanes(scene, eps, gamma, ts, accuracy, method, balanced) -> Solution | None:
+    """The solution by lanes; None where the scene has no room for the load's turns."""
+    cell = np.atleast_1d(float(eps)), np.atleast_1d(float(gamma))
+    found = integrate_cells(scene, *cell, np.asarray(ts), accuracy, method, balanced)
+    if found is None:
+        return None
+    dissipation = jnp.asarray(found.dissipation[0]) if balanced else None
+    residual = jnp.asarray(found.running_residual[0]) if balanced else None
+    counts = {
+        "steps": int(found.steps[0]),
+        "rejected": int(found.rejected[0]),
+        "tolerance": float(found.tolerance[0]),
+        "dissipation_gap": float(found.dissipation_gap[0]) if balanced else None,
+        "how": found.how[0],
+        "bracket": found.gap[0],
+        "sampled": float(found.sampled[0]),
+    }
+    return Solution(
+        ts,
+        jnp.asarray(found.z[0]),
+        dissipation,
+        residual,
+        jnp.asarray(found.status[0]),
+        counts,
+        _in_words(found.how[0], float(found.sampled[0])),
+    )
+
+
+def _in_words(how: np.ndarray, sampled: float) -> str:
+    if not how.any():
+        return "resolved, every slip since z0, by one lane"
+    share = f"{np.mean(how > 0):.0%} of them from brackets that closed"
+    if sampled:
+        return f"windowed, {share}; {sampled:.0%} of the way known from some of its slips"
+    return f"resolved, every slip, in tiles; {share}"
+
+
 def require_accuracy(accuracy: Any) -> None:
     """Check the accuracy asked for."""
     allowed = "1e-10 <= accuracy <= 1 (error of z in units of eps)"
@@ -109,14 +151,17 @@ def solve(
 
     `eps` in m, `gamma` > 0. `ts`: times in s, not decreasing, in [0, duration]; 201 evenly
     spaced ones where None. `accuracy`: wanted error of `z` in units of eps at every time
-    not inside a slip, and of `dissipation` in units of its final value. `method`: "auto"
-    and "resolved" integrate every slip with a Rosenbrock method, "windowed" falls back to
-    that; or any adaptive diffrax solver of an ODE, by name, class or instance.
-    `dissipation=False` integrates no energies. `adjoint`: how diffrax differentiates
-    (`diffrax.ForwardMode()` for `jax.jvp`).
+    not inside a slip, and of `dissipation` in units of its final value. `method`:
+    "resolved" integrates every slip with a Rosenbrock method, in tiles side by side;
+    "windowed" only what values at `ts` and sums over [0, T] need, and falls back to every
+    slip where starts are not forgotten; "auto" takes what is cheaper; or any adaptive
+    diffrax solver of an ODE, by name, class or instance. `dissipation=False` integrates no
+    energies.
 
-    Differentiable with respect to the leaves of the scene, eps and gamma. Failure is a
-    `status`, not an exception.
+    Differentiable with respect to the leaves of the scene, eps and gamma: traced values go
+    through `diffeqsolve`, every slip one after the other. `adjoint`: how diffrax
+    differentiates (`diffrax.ForwardMode()` for `jax.jvp`). `max_steps`: of such a solve.
+    Failure is a `status`, not an exception.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact (`G > 0` fails), with the largest eps allowed.
@@ -130,6 +175,12 @@ def solve(
     solver = solver_of(method)
     eps, gamma = jnp.asarray(as_real(eps)), jnp.asarray(as_real(gamma))
     require_reach(scene.potential, eps)
+    plain = adjoint is None and max_steps == MAX_STEPS
+    if plain and is_ours(method) and is_concrete(scene, eps, gamma, ts, accuracy):
+        through = float(as_real(accuracy)), str(method), bool(dissipation)
+        found = _through_lanes(scene, eps, gamma, ts, *through)
+        if found is not None:
+            return found
     return _solve(
         scene,
         eps,

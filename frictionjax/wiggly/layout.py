@@ -1,0 +1,254 @@
+"""Which stretches of time each cell measures: all of them, or a few periods of slides."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..scene import Scene
+from .path import Path, states_at, times_at
+from .survey import nodes_of
+from .windows import Windows, way_at
+
+_WELLS_A_LEG = 16
+_LEG = 0.02  # of the whole way: the guide is a cubic on each leg
+_TAIL = 4  # wells before a turning point that are always measured
+
+
+class Slide(NamedTuple):
+    """The inner part of a slide of one cell, of which only some periods are measured.
+
+    `low`, `high`: its ends, s. `starts`, `ends`: times of the periods, s. `stops`: where
+    they end, among the stops of the windows. `wells`: periods between low and high.
+    """
+
+    cell: int
+    piece: int
+    wells: float
+    low: float
+    high: float
+    starts: np.ndarray
+    ends: np.ndarray
+    stops: np.ndarray
+
+
+class Layout(NamedTuple):
+    """Windows of all cells, and what they are for.
+
+    `chain`: for each cell, the stops that follow each other through everything that is
+    not inside a slide, in time. `slides`: of all cells. `output` (cells, n): the stop at
+    each requested time.
+    """
+
+    windows: Windows
+    chain: list[np.ndarray]
+    slides: list[Slide]
+    output: np.ndarray
+
+
+class Needs(NamedTuple):
+    """What a cell's windows need, in wells, shape (cells,).
+
+    `warm`: from a start to where it is forgotten. `settle`: from the start of a slide to
+    where the slide before is forgotten. `tile`: between two cuts of the chain, infinite
+    where it is not cut. `nodes`: periods measured in a slide, 0 for all. `offset` (cells,
+    pieces): from the start of a slide to its first lattice point, which is half a period
+    from the slips of a slow slide: what is measured should not begin in a slip.
+    """
+
+    warm: np.ndarray
+    settle: np.ndarray
+    tile: np.ndarray
+    nodes: np.ndarray
+    offset: np.ndarray
+
+
+def wells_of(path: Path, eps: np.ndarray, needs: Needs) -> tuple[np.ndarray, np.ndarray]:
+    """Wells of the path in each cell: outside inner parts of slides, and inside."""
+    ways = np.abs(np.diff(path.states))[None, :] / eps[:, None]
+    inner = _inner_wells(ways, needs)
+    return np.sum(ways - inner, axis=1), np.sum(inner, axis=1)
+
+
+def cost_of(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray:
+    """Wells that lanes pass through in each cell, about."""
+    outer, inner = wells_of(path, eps, needs)
+    slides = np.sum(_inner_wells(np.abs(np.diff(path.states)) / eps[:, None], needs) > 0, 1)
+    shown = times * inner / np.maximum(inner + outer, 1e-9)
+    tiles = outer / needs.tile
+    windows = slides * needs.nodes + shown
+    return outer + 2 * needs.warm * tiles + 2 * (needs.warm + 2) * windows
+
+
+def _inner_wells(ways: np.ndarray, needs: Needs) -> np.ndarray:
+    """Wells of each slide of which only some are measured, (cells, pieces)."""
+    inner = np.floor(ways) - np.ceil(needs.settle)[:, None] - _TAIL - 1
+    nodes = needs.nodes[:, None]
+    return np.where((nodes > 0) & (inner > 2 * nodes), inner, 0.0)
+
+
+class _Inner(NamedTuple):
+    """Inner parts of slides: cell, piece, first and last well of the slide, times."""
+
+    cell: np.ndarray
+    piece: np.ndarray
+    first: np.ndarray
+    last: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+
+def _level(path: Path, eps: np.ndarray, needs: Needs, cell, piece, well) -> np.ndarray:
+    """The path's state in m at a lattice point of a slide."""
+    way = (well + needs.offset[cell, piece]) * eps[cell]
+    return path.states[piece] + path.direction[piece] * way
+
+
+def _inner_parts(scene: Scene, path: Path, eps: np.ndarray, needs: Needs) -> _Inner:
+    ways = np.abs(np.diff(path.states))[None, :] / eps[:, None]
+    inner = _inner_wells(ways, needs)
+    cell, piece = np.nonzero(inner)
+    first = np.ceil(needs.settle)[cell]
+    last = first + inner[cell, piece]
+    levels = [_level(path, eps, needs, cell, piece, well) for well in (first, last)]
+    both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
+    return _Inner(cell, piece, first, last, *np.split(both, 2))
+
+
+def _sample(scene: Scene, path: Path, eps: np.ndarray, needs: Needs, parts: _Inner):
+    """Wells whose passage is measured in each inner part, and times before and after."""
+    wells, owner = [], []
+    for i in range(parts.cell.size):
+        count = int(needs.nodes[parts.cell[i]])
+        times = nodes_of(float(parts.low[i]), float(parts.high[i]), count)
+        way = np.abs(states_at(scene, path, times) - path.states[parts.piece[i]])
+        at = way / eps[parts.cell[i]] - needs.offset[parts.cell[i], parts.piece[i]]
+        at = np.clip(np.round(at), parts.first[i], parts.last[i] - 1)
+        wells.append(np.unique(at))
+        owner.append(np.full(wells[-1].size, i))
+    if not wells:
+        empty = np.zeros(0)
+        return empty.astype(int), empty, empty
+    at, who = np.concatenate(wells), np.concatenate(owner)
+    cell, piece = parts.cell[who], parts.piece[who]
+    levels = [_level(path, eps, needs, cell, piece, well) for well in (at, at + 1)]
+    both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
+    return who, *np.split(both, 2)
+
+
+def _lattice(scene: Scene, path: Path, eps: np.ndarray, needs: Needs, parts: _Inner):
+    """Cell and time of every leg's end on slides, outside their inner parts."""
+    span = max(float(path.travel[-1]), 1e-300)
+    cells, pieces, wells = [], [], []
+    outside = {
+        (c, p): i for i, (c, p) in enumerate(zip(parts.cell, parts.piece, strict=True))
+    }
+    for cell in range(eps.size):
+        leg = float(np.clip(np.floor(_LEG * span / eps[cell]), 1, _WELLS_A_LEG))
+        for slide in np.flatnonzero(path.direction):
+            way = abs(path.states[slide + 1] - path.states[slide]) / eps[cell]
+            way -= needs.offset[cell, slide]
+            part = outside.get((cell, slide))
+            if part is None:
+                at = np.arange(leg, way, leg)
+            else:
+                first, last = parts.first[part], parts.last[part]
+                before = np.arange(leg, first - 0.5, leg)
+                at = np.concatenate([before, np.arange(last + leg, way, leg)])
+            cells.append(np.full(at.size, cell))
+            pieces.append(np.full(at.size, slide))
+            wells.append(at)
+    if not cells:
+        return np.zeros(0, dtype=int), np.zeros(0)
+    whose, piece, well = (np.concatenate(a) for a in (cells, pieces, wells))
+    return whose, times_at(scene, path, piece, _level(path, eps, needs, whose, piece, well))
+
+
+def lay_out(
+    scene: Scene, path: Path, eps: np.ndarray, ts: np.ndarray, needs: Needs
+) -> Layout:
+    """Windows that give every requested time, and sums and extremes over [0, T].
+
+    Outside the inner parts of slides everything is measured, in tiles that follow each
+    other; inside, some periods, and one window for each requested time.
+    """
+    parts = _inner_parts(scene, path, eps, needs)
+    who, node_start, node_end = _sample(scene, path, eps, needs, parts)
+    lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts)
+    edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
+    fixed = np.unique(np.concatenate([edges, ts]))
+    rows: list[tuple] = []  # cell, begin, paired, stops
+    chain: list[np.ndarray] = []
+    output = np.full((eps.size, ts.size), -1)
+    count = 0
+    for cell in range(eps.size):
+        mine = np.flatnonzero(parts.cell == cell)
+        low, high = parts.low[mine], parts.high[mine]
+        order = np.argsort(low)
+        low, high = low[order], high[order]
+        lattice = lattice_time[lattice_cell == cell]
+        own = np.unique(np.concatenate([fixed, lattice, low]))
+        hole = np.searchsorted(low, own) - 1  # of those that begin before
+        inside = (hole >= 0) & (own < np.append(high, 0.0)[hole])
+        own = own[~inside & (own > 0)]
+        # A segment begins where the hole before it ends.
+        opening = np.concatenate([[0.0], high])
+        segment = np.searchsorted(opening, own, side="left") - 1
+        way = way_at(scene, path, np.concatenate([opening, own]))
+        since = (way[opening.size :] - way[segment]) / eps[cell]
+        tile = np.floor(since / needs.tile[cell] - 1e-9)
+        begins = own > opening[segment]
+        own, segment, tile = own[begins], segment[begins], tile[begins]
+        cut = np.concatenate([[True], (np.diff(segment) != 0) | (np.diff(tile) > 0)])
+        for group in np.split(np.arange(own.size), np.flatnonzero(cut)[1:]):
+            first = group[0]
+            fresh = first == 0 or segment[first] != segment[first - 1]
+            begin = opening[segment[first]] if fresh else own[first - 1]
+            rows.append((cell, begin, False, own[group]))
+        chain.append(count + np.arange(own.size))
+        at = np.searchsorted(own, ts)
+        hit = (at < own.size) & (own[np.minimum(at, own.size - 1)] == ts)
+        output[cell, hit] = count + at[hit]
+        count += own.size
+    slides = []
+    for i in range(parts.cell.size):
+        mine = who == i
+        starts, ends = node_start[mine], node_end[mine]
+        stops = count + np.arange(starts.size)
+        for start, end in zip(starts, ends, strict=True):
+            rows.append((parts.cell[i], start, True, np.array([end])))
+        wells = parts.last[i] - parts.first[i]
+        where = parts.cell[i], parts.piece[i], wells, parts.low[i], parts.high[i]
+        slides.append(Slide(*where, starts, ends, stops))
+        count += starts.size
+    shown_cell, shown = np.nonzero(output < 0)
+    begin = _period_before(scene, path, eps, needs, shown_cell, ts[shown])
+    for one, index, start in zip(shown_cell, shown, begin, strict=True):
+        if ts[index] > 0:
+            rows.append((one, start, True, ts[index : index + 1]))
+            output[one, index] = count
+            count += 1
+    return Layout(_windows(rows), chain, slides, output)
+
+
+def _period_before(scene, path, eps, needs, cell, times) -> np.ndarray:
+    """Start of the slip period of the path that holds each time."""
+    piece = path.piece_of(times)
+    way = np.abs(states_at(scene, path, times) - path.states[piece])
+    well = np.maximum(np.ceil(way / eps[cell] - needs.offset[cell, piece]) - 1, 0)
+    inside = (path.direction[piece] != 0) & (times > path.touch[piece])
+    begin = times.copy()
+    slide = np.flatnonzero(inside)
+    levels = _level(path, eps, needs, cell[slide], piece[slide], well[slide])
+    begin[slide] = times_at(scene, path, piece[slide], levels)
+    return np.minimum(begin, times)
+
+
+def _windows(rows: list[tuple]) -> Windows:
+    sizes = [row[3].size for row in rows]
+    return Windows(
+        cell=np.array([row[0] for row in rows]),
+        begin=np.array([row[1] for row in rows]),
+        paired=np.array([row[2] for row in rows]),
+        owner=np.repeat(np.arange(len(rows)), sizes),
+        stop=np.concatenate([row[3] for row in rows]),
+    )

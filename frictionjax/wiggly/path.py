@@ -1,0 +1,171 @@
+"""The path that the strip's edges prescribe: where, when and how fast the tip must slide.
+
+Lanes measure from it and start by it; what they find does not depend on it, since brackets
+and known starts decide which values are accepted.
+"""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..arguments import Real
+from ..coefficients import coefficients_jit
+from ..roots import bracketed_root
+from ..scene import Scene
+
+_LEAST = 256  # times of one compiled call
+
+
+class Path(NamedTuple):
+    """Pieces between turning points of the load, P of them, as NumPy arrays.
+
+    `edges` (P+1,): times in s. `states` (P+1,): of the path, in m. `direction` (P,): 1, -1
+    or 0 where the path rests. `touch` (P,): time at which a slide begins, the piece's end
+    where none does. `travel` (P+1,): way so far, in m. `rho` (P,): force of friction in N
+    on the slide. `speed`, `stiffness`: largest speed of slides in m/s, smallest Phi''.
+    `rho_plus`, `rho_minus`: in N.
+    """
+
+    edges: np.ndarray
+    states: np.ndarray
+    direction: np.ndarray
+    touch: np.ndarray
+    travel: np.ndarray
+    rho: np.ndarray
+    rho_plus: float
+    rho_minus: float
+    speed: float = 0.0
+    stiffness: float = 1.0
+
+    def piece_of(self, times: np.ndarray) -> np.ndarray:
+        """Index of the piece that holds each time; a turning point opens its piece."""
+        found = np.searchsorted(self.edges, times, side="right") - 1
+        return np.clip(found, 0, self.direction.size - 1)
+
+
+@eqx.filter_jit
+def _edges(scene: Scene, rho_plus: Real, rho_minus: Real, times: Float[Array, " n"]):
+    """Both edges of the strip in m at each time."""
+    loads = jax.vmap(scene.load)(times)
+    ends = jax.vmap(scene.support.state_of)
+    return ends(loads - rho_plus), ends(loads - rho_minus)
+
+
+@eqx.filter_jit
+def _rates(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"]):
+    """l' in N/s at the times and Phi'' in N/m at the states."""
+    slopes = jax.vmap(scene.load.slope)(times)
+    return slopes, jax.vmap(scene.support.stiffness_at)(states)
+
+
+@eqx.filter_jit
+def _times_at(scene: Scene, states, rho, early, late):
+    """Time in [early, late] at which the edge that belongs to `rho` is at each state."""
+
+    def one(state: Real, rho: Real, early: Real, late: Real) -> Real:
+        wanted = scene.support.force(state) + rho
+        rising = jnp.where(scene.load(late) >= scene.load(early), 1.0, -1.0)
+        return bracketed_root(lambda t: rising * (scene.load(t) - wanted), early, late)
+
+    return jax.vmap(one)(states, rho, early, late)
+
+
+def _padded(*columns: np.ndarray) -> list[Array]:
+    """Columns lengthened by their last entry to few different sizes."""
+    size = _LEAST
+    while size < columns[0].size:
+        size *= 4
+    return [jnp.asarray(np.pad(c, (0, size - c.size), mode="edge")) for c in columns]
+
+
+def _edges_at(
+    scene: Scene, rho_plus: float, rho_minus: float, times: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """`z_minus` and `z_plus` in m at each time."""
+    if times.size == 0:
+        return times, times
+    rho = jnp.asarray(rho_plus), jnp.asarray(rho_minus)
+    lower, upper = _edges(scene, *rho, *_padded(times))
+    return np.asarray(lower)[: times.size], np.asarray(upper)[: times.size]
+
+
+def times_at(scene: Scene, path: Path, piece: np.ndarray, states: np.ndarray) -> np.ndarray:
+    """When the path is at each state, on the slide of each piece."""
+    if states.size == 0:
+        return states
+    columns = states, path.rho[piece], path.touch[piece], path.edges[piece + 1]
+    found = np.asarray(_times_at(scene, *_padded(*columns)))[: states.size]
+    return np.clip(found, columns[2], columns[3])
+
+
+def states_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
+    """The path's state in m at each time."""
+    piece = path.piece_of(times)
+    lower, upper = _edges_at(scene, path.rho_plus, path.rho_minus, times)
+    edge = np.where(path.direction[piece] > 0, lower, upper)
+    slides = (path.direction[piece] != 0) & (times > path.touch[piece])
+    ends = np.sort(np.stack([path.states[piece], path.states[piece + 1]]), axis=0)
+    return np.where(slides, np.clip(edge, *ends), path.states[piece])
+
+
+def slopes_at(
+    scene: Scene, path: Path, times: np.ndarray, states: np.ndarray
+) -> np.ndarray:
+    """The path's speed in m/s at each time, from the right at kinks."""
+    if times.size == 0:
+        return times
+    piece = path.piece_of(times)
+    slides = (path.direction[piece] != 0) & (times > path.touch[piece])
+    slope, stiffness = _rates(scene, *_padded(times, states))
+    speed = np.asarray(slope)[: times.size] / np.asarray(stiffness)[: times.size]
+    return np.where(slides, speed, 0.0)
+
+
+def _speeds(scene: Scene, path: Path) -> tuple[float, float]:
+    """Largest speed on slides, sampled, and smallest stiffness there."""
+    share = (np.arange(64) + 0.5) / 64
+    start, end = path.touch[:, None], path.edges[1:, None]
+    times = (start + (end - start) * share).ravel()
+    states = states_at(scene, path, times)
+    speeds = slopes_at(scene, path, times, states)
+    _, stiffness = _rates(scene, *_padded(times, states))
+    return float(np.max(np.abs(speeds))), float(np.min(stiffness))
+
+
+def path_of(scene: Scene) -> Path | None:
+    """The path of a scene; None where the load turns more often than there is room for."""
+    turns = np.asarray(scene.turning_points())
+    duration = float(scene.duration)
+    if np.any(np.isnan(turns)):
+        return None
+    edges = np.unique(np.concatenate([[0.0], turns[turns < duration], [duration]]))
+    found = coefficients_jit(scene.potential)
+    rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
+    lower, upper = _edges_at(scene, rho_plus, rho_minus, edges)
+    states = np.empty(edges.size)
+    states[0] = np.clip(float(scene.z0), lower[0], upper[0])
+    for i in range(1, edges.size):
+        states[i] = np.clip(states[i - 1], lower[i], upper[i])
+    moves = np.diff(states)
+    direction = np.sign(moves)
+    rho = np.where(direction > 0, rho_plus, rho_minus)
+    path = Path(
+        edges=edges,
+        states=states,
+        direction=direction,
+        touch=np.where(direction == 0, edges[1:], edges[:-1]),
+        travel=np.concatenate([[0.0], np.cumsum(np.abs(moves))]),
+        rho=rho,
+        rho_plus=rho_plus,
+        rho_minus=rho_minus,
+    )
+    sliding = np.flatnonzero(direction)
+    touch = path.touch.copy()
+    touch[sliding] = times_at(scene, path, sliding, states[sliding])
+    path = path._replace(touch=touch)
+    speed, stiffness = _speeds(scene, path)
+    return path._replace(speed=speed, stiffness=stiffness)

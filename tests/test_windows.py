@@ -1,0 +1,185 @@
+"""Windows against every slip integrated; cost, brackets and fall-backs."""
+
+import jax
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax.wiggly import engine
+from frictionjax.wiggly.path import path_of, states_at
+
+TIMES = np.linspace(0.0, 3.0, 31)
+SINE = fx.loads.Sine(1.0488, 3.0)
+STEPS = fx.loads.PiecewiseLinear([0.0, 0.6, 1.1, 2.0, 3.0], [0.0, 0.9, 0.9, -0.7, 0.4])
+
+
+def quartic(z):
+    return z**2 / 2 + z**4 / 4
+
+
+def scene_of(bristle="vertical", load=SINE, z0=0.0, support=None):
+    profiles = {
+        "vertical": fx.profiles.Sine(0.1),
+        "angular": fx.profiles.Fourier(
+            [0.0, 0.0024, 0.0, 0.0012], [0.0096, 0.0, -0.0024, 0.0006]
+        ),
+    }
+    bristles = {
+        "vertical": fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        "angular": fx.bristles.AngularSpring(1.0, 1.414, 1.0, 0.3),
+    }
+    support = support or fx.supports.Spring(1.0)
+    return fx.Scene(profiles[bristle], bristles[bristle], support, load, 3.0, z0)
+
+
+SCENES = {
+    "sine load": scene_of(),
+    "piecewise load": scene_of(load=STEPS),
+    "several folds": scene_of("angular"),
+    "convex support": scene_of(support=fx.supports.Convex(quartic)),
+    "far start": scene_of(z0=0.5),
+}
+
+
+def cells(scene, eps, gamma, method, accuracy=1e-3, times=TIMES, **options):
+    eps, gamma = (
+        np.atleast_1d(np.asarray(eps, float)),
+        np.atleast_1d(np.asarray(gamma, float)),
+    )
+    return engine.integrate_cells(scene, eps, gamma, times, accuracy, method, **options)
+
+
+def outside_slips(scene, eps, gamma):
+    """Tight values at TIMES, and which times are not inside a slip."""
+    shift = 0.005 * eps / path_of(scene).speed
+    around = np.clip(np.stack([TIMES - shift, TIMES, TIMES + shift]), 0, 3.0)
+    every, place = np.unique(around, return_inverse=True)
+    z = cells(scene, eps, gamma, "resolved", 1e-6, every, balanced=False).z[0]
+    before, now, after = z[place.reshape(3, -1)]
+    return now, np.abs(after - before) <= 0.05 * eps
+
+
+@pytest.mark.parametrize("gamma", [0.8, 1.0, 2.0])
+@pytest.mark.parametrize("name", SCENES)
+def test_windows_agree_with_every_slip(name, gamma):
+    scene, eps = SCENES[name], 1.3e-3
+    few = cells(scene, eps, gamma, "windowed")
+    every = cells(scene, eps, gamma, "resolved")
+    if gamma >= 1:  # below, slides forget too slowly for their length at this eps
+        assert few.sampled[0] > 0.5
+    assert few.status[0] == every.status[0] == fx.Status.OK
+    truth, counted = outside_slips(scene, eps, gamma)
+    for found in (few, every):
+        assert np.abs(found.z[0] - truth)[counted].max() < 1e-3 * eps
+        assert found.gap.max() < 1e-3
+    assert counted.sum() > 20
+    final = every.dissipation[0, -1]
+    assert np.abs(few.dissipation - every.dissipation)[0][counted].max() < 1e-3 * final
+    assert few.sup_error[0] == pytest.approx(every.sup_error[0], abs=1e-3 * eps)
+    assert few.strip_excess[0] == pytest.approx(every.strip_excess[0], abs=1e-3 * eps)
+    assert few.dissipation_error[0] == pytest.approx(
+        every.dissipation_error[0], abs=2e-3 * eps * 0.2
+    )
+
+
+@pytest.mark.parametrize("load", [SINE, STEPS], ids=["sine", "piecewise"])
+@pytest.mark.parametrize("gamma", [1.0, 2.0])
+def test_cost_does_not_grow_as_eps_falls(load, gamma):
+    found = cells(scene_of(load=load), [1e-5, 1e-8], [gamma, gamma], "windowed")
+    assert np.all(found.status == fx.Status.OK)
+    assert found.steps[1] < 2 * found.steps[0]
+    assert found.gap.max() < 1e-3  # every bracket closed
+    assert np.all(found.sup_error / [1e-5, 1e-8] < 3)
+
+
+@pytest.mark.parametrize("gamma", [1.0, 2.0])
+def test_slips_are_not_early_at_small_eps(gamma):
+    """At a fixed tolerance they were, by 3% of a period, with every bracket closed."""
+    scene, eps = scene_of(), 1e-6
+    loose = cells(scene, eps, gamma, "windowed", 1e-2, balanced=False).z[0]
+    tight = cells(scene, eps, gamma, "windowed", 1e-5, balanced=False).z[0]
+    assert np.abs(loose - tight).max() < 1e-2 * eps
+
+
+def test_path_is_the_limit():
+    for scene in SCENES.values():
+        if float(scene.z0) == 0:
+            limit = fx.solve_limit(scene, TIMES)
+            assert np.abs(states_at(scene, path_of(scene), TIMES) - limit.z).max() < 1e-13
+
+
+def test_brackets_hold_the_tip():
+    """Lanes set off below and above every trajectory that there is."""
+    scene, eps, gamma = scene_of(), 2e-3, 1.0
+    path = path_of(scene)
+    control = engine._controls(scene, np.full(64, eps), np.full(64, gamma), 1e-3)
+    folds = jax.tree_util.tree_map(lambda v: np.asarray(v)[:1], control.folds)
+    ground = engine.ground_of(scene, path, np.array([eps]), np.array([gamma]), folds)
+    begin = np.linspace(0.1, 2.9, 200)
+    starts = engine.starts_of(scene, path, ground, np.zeros(200, int), begin, 3.0)
+    slides = np.flatnonzero(~starts.known)
+    assert slides.size > 150
+    time = np.unique(starts.time[slides])
+    truth = cells(scene, eps, gamma, "resolved", times=time, balanced=False).z[0]
+    z = truth[np.searchsorted(time, starts.time[slides])] / eps
+    ends = np.stack(
+        [starts.behind_well + starts.behind_tip, starts.ahead_well + starts.ahead_tip]
+    )[:, slides]
+    assert np.all(ends.min(axis=0) <= z)
+    assert np.all(z <= ends.max(axis=0))
+    assert np.ptp(ends, axis=0).max() < 5  # and not far away
+
+
+def test_inner_loops_are_integrated_from_the_start():
+    """No slide, so nothing is forgotten: values come from z0."""
+    scene = scene_of(load=fx.loads.Sine(0.08, 0.5))
+    found = cells(scene, [1e-4, 1e-8], [1.0, 1.0], "windowed")
+    assert np.all(found.how == 0)
+    assert np.all(found.status == fx.Status.OK)
+    assert np.all(np.abs(found.z) < 2 * np.array([[1e-4], [1e-8]]))
+
+
+def test_a_cell_alone_equals_the_batch():
+    scene = scene_of("angular")
+    eps, gamma = np.array([3e-2, 2e-3, 1e-4, 1e-6]), np.array([1.0, 0.8, 2.0, 1.0])
+    batch = cells(scene, eps, gamma, "auto")
+    order = np.array([2, 0, 3, 1])
+    mixed = cells(scene, eps[order], gamma[order], "auto")
+    for i in range(eps.size):
+        alone = cells(scene, eps[i], gamma[i], "auto")
+        for other in (alone.z[0], mixed.z[np.flatnonzero(order == i)[0]]):
+            assert np.abs(other - batch.z[i]).max() < 1e-6 * eps[i]
+
+
+def test_one_program_for_all_values():
+    scene = scene_of()
+    eps, gamma = np.geomspace(1e-2, 1e-5, 6), np.full(6, 1.0)
+    cells(scene, eps, gamma, "windowed")
+    names = []
+    jax.monitoring.register_event_duration_secs_listener(
+        lambda name, seconds, **kwargs: names.append(name)
+    )
+    try:
+        cells(scene, 0.7 * eps, np.full(6, 1.3), "windowed")
+    finally:
+        jax.monitoring.clear_event_listeners()
+    assert not [name for name in names if "backend_compile" in name]
+
+
+def test_solve_says_how_values_were_obtained():
+    found = fx.solve(scene_of(), 1e-6, ts=TIMES)
+    assert "windowed" in found.stats["values"]
+    assert found.stats["how"].shape == found.stats["bracket"].shape == TIMES.shape
+    assert found.ok
+    every = fx.solve(scene_of(), 1e-2, ts=TIMES, method="resolved")
+    assert "every slip" in every.stats["values"]
+    assert every.stats["sampled"] == 0
+
+
+def test_too_much_to_integrate_is_a_status(monkeypatch):
+    """A bracket that stays open, at an eps where every slip is too many."""
+    monkeypatch.setattr(engine, "_ROUNDS", 1)
+    monkeypatch.setattr(engine, "_CLOSED", 0.0)
+    found = cells(scene_of(), 1e-7, 1.0, "windowed")
+    assert found.status[0] == fx.Status.OPEN_BRACKET
+    assert np.all(np.isnan(found.z))
