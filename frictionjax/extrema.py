@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array
 
 from .arguments import Real
-from .roots import bracketed_root
+from .roots import find_root
 
 _BUMPS = 8  # scanned maxima that are polished
 
@@ -28,7 +28,7 @@ def _downhill(fn: Callable[[Real], Real]) -> Callable[[Real], Real]:
 
 def _summit(fn: Callable[[Real], Real], place: Real, width: float) -> Real:
     """Move a scanned maximum of `fn` to the zero of `fn'` beside it."""
-    root = bracketed_root(_downhill(fn), place - width, place + width)
+    root = find_root(_downhill(fn), place - width, place + width)
     # Flat tops and unresolved kinks: a scan point that beats the root is kept.
     return jax.lax.stop_gradient(jnp.where(fn(root) >= fn(place), root, place))
 

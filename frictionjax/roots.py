@@ -12,6 +12,38 @@ _SMALL = 1e-8
 _MAX_ITERATIONS = 128  # 64 bisections exhaust a float64 bracket; Newton needs under 10
 
 
+def find_root(fn: Callable[[Real], Real], lower: Real, upper: Real) -> Real:
+    """As `bracketed_root`, where nobody differentiates: traced in half the time."""
+
+    def body(state):
+        low, high, x, last, _, count = state
+        scale = jnp.maximum(jnp.abs(lower), jnp.abs(upper))
+        value, slope = jax.jvp(fn, (x,), (jnp.ones_like(x),))
+        low = jnp.where(value <= 0, x, low)
+        high = jnp.where(value >= 0, x, high)
+        step = value / jnp.where(slope == 0, 1.0, slope)
+        newton = x - step
+        inside = (slope > 0) & (newton >= low) & (newton <= high)
+        new = jnp.where(inside, newton, 0.5 * (low + high))
+        new = jnp.where(jnp.isnan(value), value, new)  # no root where fn is undefined
+        moved = jnp.abs(new - x)
+        # A Newton step below the rounding of the whole bracket leaves an error that is
+        # its square, also where the root is near 0; steps that are small and no longer
+        # shrink are rounding of `f` over a small slope.
+        settled = moved <= _ROUNDING * jnp.where(inside, scale, jnp.abs(new))
+        stuck = inside & (moved <= _SMALL * scale) & (moved >= 0.5 * last)
+        done = settled | stuck | jnp.isnan(value)
+        return low, high, new, moved, done, count + 1
+
+    def go_on(state):
+        low, high, _, _, done, count = state
+        return ~done & (high > low) & (count < _MAX_ITERATIONS)
+
+    far, open_end = jnp.full_like(lower, jnp.inf), jnp.zeros_like(lower, dtype=bool)
+    start = (lower, upper, 0.5 * (lower + upper), far, open_end, 0)
+    return jax.lax.while_loop(go_on, body, start)[2]
+
+
 def bracketed_root(fn: Callable[[Real], Real], lower: Real, upper: Real) -> Real:
     """Root of the increasing `fn` in [`lower`, `upper`], to rounding.
 
@@ -21,40 +53,13 @@ def bracketed_root(fn: Callable[[Real], Real], lower: Real, upper: Real) -> Real
     Kepler's equation near its singular end (1 + a omega = 1e-3) takes 6 iterations in
     the median and 12 at most; plain Newton cycles for 1% of the arguments there.
     """
-
-    def search(f: Callable, guess: Real) -> Real:
-        def body(state):
-            low, high, x, last, _, count = state
-            scale = jnp.maximum(jnp.abs(lower), jnp.abs(upper))
-            value, slope = jax.jvp(f, (x,), (jnp.ones_like(x),))
-            low = jnp.where(value <= 0, x, low)
-            high = jnp.where(value >= 0, x, high)
-            step = value / jnp.where(slope == 0, 1.0, slope)
-            newton = x - step
-            inside = (slope > 0) & (newton >= low) & (newton <= high)
-            new = jnp.where(inside, newton, 0.5 * (low + high))
-            new = jnp.where(jnp.isnan(value), value, new)  # no root where fn is undefined
-            moved = jnp.abs(new - x)
-            # A Newton step below the rounding of the whole bracket leaves an error that is
-            # its square, also where the root is near 0; steps that are small and no longer
-            # shrink are rounding of `f` over a small slope.
-            settled = moved <= _ROUNDING * jnp.where(inside, scale, jnp.abs(new))
-            stuck = inside & (moved <= _SMALL * scale) & (moved >= 0.5 * last)
-            done = settled | stuck | jnp.isnan(value)
-            return low, high, new, moved, done, count + 1
-
-        def go_on(state):
-            low, high, _, _, done, count = state
-            return ~done & (high > low) & (count < _MAX_ITERATIONS)
-
-        far, open_end = jnp.full_like(guess, jnp.inf), jnp.zeros_like(guess, dtype=bool)
-        start = (lower, upper, guess, far, open_end, 0)
-        return jax.lax.while_loop(go_on, body, start)[2]
-
     lower, upper = jnp.asarray(lower), jnp.asarray(upper)
     lower, upper = jax.lax.stop_gradient((lower, upper))
     return jax.lax.custom_root(
-        fn, 0.5 * (lower + upper), search, lambda linear, b: b / linear(jnp.ones_like(b))
+        fn,
+        0.5 * (lower + upper),
+        lambda f, guess: find_root(f, lower, upper),
+        lambda linear, b: b / linear(jnp.ones_like(b)),
     )
 
 

@@ -148,10 +148,10 @@ def sweep(
     of the energy-dissipation balance, `strip_excess` = sup dist(z_eps, strip) (Lemma 7),
     `dissipation_gap` (an estimate of the error of the dissipation), `viscosity`, `steps`,
     `rejected` and `status`; of the library's own methods also `how` and `bracket` over
-    time (see `solve`), `sampled` and `survey_error`, an estimate of what sampling slips
-    adds to the error of `sup_error`; over time the limit's `z_limit`, `dissipation_limit`, the
-    strip `z_minus`, `z_plus` and the load, `data["load"]`. Units and provenance are in the
-    attributes; it goes to NetCDF and back without loss.
+    time (see `solve`), `sampled`, and `survey_error`, an estimate of what sampling slips
+    adds to the error of `sup_error`; over time the limit's `z_limit`,
+    `dissipation_limit`, the strip `z_minus`, `z_plus` and the load, `data["load"]`. Units
+    and provenance are in the attributes; it goes to NetCDF and back without loss.
 
     A cell that fails has its status and NaNs and does not disturb the others.
 
