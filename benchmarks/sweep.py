@@ -11,6 +11,7 @@ take more than a minute, which is said.
 """
 
 import argparse
+import importlib.util
 import sys
 import time
 from pathlib import Path
@@ -101,6 +102,12 @@ def lsoda(eps: float, gamma: float, tolerance: float):
 PEERS = {"heyoka": heyoka_batch, "lsoda": lsoda}
 
 
+def installed() -> list[str]:
+    """Peers that can be imported; numbalsoda needs a Fortran compiler to install."""
+    needs = {"heyoka": "heyoka", "lsoda": "numbalsoda"}
+    return [name for name in PEERS if importlib.util.find_spec(needs[name])]
+
+
 def cheapest(peer, eps, gamma, exact, counted) -> tuple[float, float, str]:
     """Both-core seconds and error at the cheapest tolerance that is accurate enough."""
     best = (np.inf, np.nan, "never accurate")
@@ -120,7 +127,7 @@ def main() -> None:
     parser.add_argument("--gamma", type=float, nargs="+", default=[1.0, 2.0])
     parser.add_argument("--smallest", type=float, default=1e-4)
     parser.add_argument("--cells", type=int, default=16)
-    parser.add_argument("--peers", nargs="*", default=list(PEERS))
+    parser.add_argument("--peers", nargs="*", default=installed())
     arguments = parser.parse_args()
     grid = np.geomspace(0.1, arguments.smallest, arguments.cells)
     gamma, eps = (a.ravel() for a in np.meshgrid(arguments.gamma, grid, indexing="ij"))
