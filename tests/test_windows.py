@@ -60,7 +60,15 @@ def outside_slips(scene, eps, gamma):
 
 
 @pytest.mark.parametrize(
-    ("name", "gamma"), [("sine load", 0.8), *((n, g) for n in SCENES for g in (1.0, 2.0))]
+    ("name", "gamma"),
+    [
+        *(("sine load", gamma) for gamma in (0.8, 1.0, 2.0)),
+        ("piecewise load", 1.0),
+        ("piecewise load", 2.0),
+        ("several folds", 2.0),
+        ("convex support", 1.0),
+        ("far start", 2.0),
+    ],
 )
 def test_windows_agree_with_every_slip(name, gamma):
     scene, eps = SCENES[name], 1.3e-3
@@ -103,10 +111,10 @@ def test_slips_are_not_early_at_small_eps(gamma):
 
 
 def test_path_is_the_limit():
-    for scene in SCENES.values():
-        if float(scene.z0) == 0:
-            limit = fx.solve_limit(scene, TIMES)
-            assert np.abs(states_at(scene, path_of(scene), TIMES) - limit.z).max() < 1e-13
+    for name in ("sine load", "piecewise load"):
+        scene = SCENES[name]
+        limit = fx.solve_limit(scene, TIMES)
+        assert np.abs(states_at(scene, path_of(scene), TIMES) - limit.z).max() < 1e-13
 
 
 def test_brackets_hold_the_tip():
