@@ -250,10 +250,6 @@ class _Work(NamedTuple):
     found: Float[Array, "legs 13"]
 
 
-def _rows(columns: NamedTuple) -> Float[Array, "n columns"]:
-    return jnp.stack([jnp.asarray(c, dtype=float) for c in columns], axis=-1)
-
-
 def _idle(tables: _Tables, width: int) -> tuple[_Task, _Motion]:
     zero, one = jnp.zeros(width), jnp.ones(width)
     none = jnp.full(width, tables.jobs.shape[0], dtype=int)

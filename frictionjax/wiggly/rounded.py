@@ -3,9 +3,8 @@
 import diffrax
 import jax.numpy as jnp
 
+from .step_sizes import PER_OCTAVE
 from .wrapped import AbstractWrappedController
-
-_PER_OCTAVE = 8  # costs 2% more steps
 
 
 class RoundedSteps(AbstractWrappedController):
@@ -41,5 +40,5 @@ class RoundedSteps(AbstractWrappedController):
 
 def _round_down(step):
     # A hair above the grid point counts as on it: products of grid steps land there.
-    level = jnp.floor(_PER_OCTAVE * jnp.log2(jnp.maximum(step, 1e-300)) + 1e-6)
-    return jnp.exp2(level / _PER_OCTAVE)
+    level = jnp.floor(PER_OCTAVE * jnp.log2(jnp.maximum(step, 1e-300)) + 1e-6)
+    return jnp.exp2(level / PER_OCTAVE)
