@@ -37,10 +37,11 @@ class Found(NamedTuple):
 class Answers(NamedTuple):
     """Values of all cells; (cells, n) at the requested times, else (cells,).
 
-    `tolerance`: of steps, in periods. `how`: 0 where one lane has integrated every slip since z0, 1 where a bracket
-    has closed. `gap`: how closely, in eps. `sampled`: share of the path's way in slides of
-    which only some periods were measured. `survey_error`, `survey_work_error`: estimates
-    of the errors that this makes in `sup_error` (m) and in the dissipation (J).
+    `tolerance`: of steps, in periods. `how`: 0 where one lane has integrated every slip
+    since z0, 1 where a bracket has closed. `gap`: how closely, in eps. `sampled`: share of
+    the path's way in slides of which only some periods were measured. `survey_error`,
+    `survey_work_error`: estimates of the errors that this makes in `sup_error` (m) and in
+    the dissipation (J).
     """
 
     z: np.ndarray
