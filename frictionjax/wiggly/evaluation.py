@@ -22,14 +22,14 @@ _RESIDUAL_SHARE = 0.05  # of the energy dissipated; solutions leave about 1e-6 o
 class Found(NamedTuple):
     """Values at all stops of a layout, shape (S,), and of the legs that lead to them.
 
-    `gap`: how closely brackets have closed, in eps; `known`: whether integrated from z0.
+    `gap`: how closely brackets have closed, in eps; `how`: as in `Answers`.
     `steps`, `rejected`: of each cell.
     """
 
     arrivals: Arrivals
     legs: Legs
     gap: np.ndarray
-    known: np.ndarray
+    how: np.ndarray
     steps: np.ndarray
     rejected: np.ndarray
 
@@ -38,7 +38,7 @@ class Answers(NamedTuple):
     """Values of all cells; (cells, n) at the requested times, else (cells,).
 
     `tolerance`: of steps, in periods. `how`: 0 where one lane has integrated every slip
-    since z0, 1 where a bracket has closed. `gap`: how closely, in eps. `sampled`: share of
+    since z0, 1 where a bracket has closed, 2 where one has set off from a slip map. `gap`: how closely, in eps. `sampled`: share of
     the path's way in slides of which only some periods were measured. `survey_error`,
     `survey_work_error`: estimates of the errors that this makes in `sup_error` (m) and in
     the dissipation (J).
@@ -205,7 +205,7 @@ def evaluate(
         cell = _Cell(layout.chain[c], slides, [_survey(s, stops) for s in slides])
         energetics = _no_energetics(ts.size)
         if balanced:
-            of = layout, layout.output[c], energy0[c], of_path
+            of = layout, layout.output[c], energy0[c], of_path, path
             energetics = _energetics(cell, stops, *of)
         output = layout.output[c]
         z = np.where(output >= 0, stops.z[output], z_start[c])
@@ -214,7 +214,7 @@ def evaluate(
                 z,
                 *energetics,
                 *_deviations(cell, stops),
-                np.where((output >= 0) & ~found.known[output], 1, 0),
+                np.where(output >= 0, found.how[output], 0),
                 np.where(output >= 0, found.gap[output], 0.0),
                 _share(cell, path, whole),
                 max([s.error_extreme for s in cell.surveys], default=0.0),
@@ -257,7 +257,7 @@ def _running(cell: _Cell, stops: _Stops, outputs: _Outputs, name: str) -> np.nda
     return found
 
 
-def _energetics(cell, stops, layout, output, energy0, of_path):
+def _energetics(cell, stops, layout, output, energy0, of_path, path):
     """Dissipation and residual at the outputs, gap at the end, sup of the error, all in J.
 
     `int eps^gamma z'^2` is the path's dissipation and what the energies and the work of
@@ -267,7 +267,7 @@ def _energetics(cell, stops, layout, output, energy0, of_path):
     work = _running(cell, stops, outputs, "work")
     energy = np.where(output >= 0, stops.energy[output], energy0)
     beyond = energy0 - stops.energy[cell.chain] - cell.total("work", stops)
-    final = beyond[-1] + _spent(cell, stops)
+    final = beyond[-1] + _spent(cell, stops, path)
     return (
         of_path + energy0 - energy - work,
         _running(cell, stops, outputs, "residual"),
@@ -294,16 +294,10 @@ def _no_energetics(size: int) -> tuple:
     return nothing, nothing, np.nan, np.nan, np.nan
 
 
-def _spent(cell: _Cell, stops: _Stops) -> float:
+def _spent(cell: _Cell, stops: _Stops, path: Path) -> float:
     """The path's dissipation in J over [0, T], from the legs and slides of the cell."""
     legs = float(np.sum((stops.viscous - stops.beyond)[cell.chain]))
-    return legs + sum(_slide_spent(s, stops) for s in cell.slides)
-
-
-def _slide_spent(slide: Slide, stops: _Stops) -> float:
-    at = slide.stops[0]
-    each = float(stops.viscous[at] - stops.beyond[at])
-    return each * slide.wells
+    return legs + sum(path.rho[s.piece] * s.way for s in cell.slides)
 
 
 def _worst_dissipation(cell, stops, energy0, beyond) -> float:
@@ -329,12 +323,13 @@ def _deviations(cell: _Cell, stops: _Stops) -> tuple[float, float]:
         high = float(np.max(survey.curve(survey.ahead, fine)))
         low = float(np.min(survey.curve(survey.behind, fine)))
         far = max(far, high, -low)
-        lag = max(lag, -low if stops.sliding[slide.stops[0]] > 0 else high)
+        sign = stops.sliding[slide.stops[0]]
+        lag = max(lag, -low if sign > 0 else high if sign < 0 else 0.0)
     return float(far), float(lag)
 
 
 def _share(cell: _Cell, path: Path, whole: float) -> float:
-    covered = sum(abs(path.states[s.piece + 1] - path.states[s.piece]) for s in cell.slides)
+    covered = sum(abs(s.way) for s in cell.slides)
     return float(covered / whole) if whole > 0 else 0.0
 
 

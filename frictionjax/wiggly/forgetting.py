@@ -14,7 +14,7 @@ from .tolerance import Folds
 # to 1e-13 of a period.
 _GRADED = np.expm1(30.0 * np.linspace(0.0, 1.0, 1024)) / np.expm1(30.0)
 _GRID = 0.5 * np.concatenate([-_GRADED[:0:-1], _GRADED])
-_FORCES = np.logspace(-24, 4, 85)
+FORCES = np.logspace(-24, 4, 85)
 
 
 @eqx.filter_jit
@@ -22,7 +22,7 @@ def _forces(potential: AbstractPotential, eps: Real, places: Float[Array, " n"])
     return jax.vmap(lambda y: potential.tip_force(y, eps))(places)
 
 
-def _passage(
+def passage_integrals(
     potential: AbstractPotential, eps: float, place: float, side: float
 ) -> np.ndarray:
     """`int_0^1 dY/(f + rho - V')` for each force f beyond the fold, an upper bound.
@@ -39,7 +39,7 @@ def _passage(
     bump = (heights >= np.roll(heights, 1)) & (heights > np.roll(heights, -1))
     near = bump & (heights > heights.max() - 0.05 * np.ptp(heights))
     gaps = np.maximum(top - force[: _GRID.size], 0.0)
-    integrals = np.trapezoid(stretch / (_FORCES[:, None] + gaps), _GRID, axis=1)
+    integrals = np.trapezoid(stretch / (FORCES[:, None] + gaps), _GRID, axis=1)
     return max(int(near.sum()), 1) * integrals
 
 
@@ -54,6 +54,6 @@ def lag_forces(
     wanted = np.log(np.maximum(drag, 1e-300))
     found = []
     for place, side in ((folds.place_plus, 1.0), (folds.place_minus, -1.0)):
-        speeds = -np.log(_passage(potential, eps, float(place), side))
-        found.append(np.exp(np.interp(wanted, speeds, np.log(_FORCES))))
+        speeds = -np.log(passage_integrals(potential, eps, float(place), side))
+        found.append(np.exp(np.interp(wanted, speeds, np.log(FORCES))))
     return found

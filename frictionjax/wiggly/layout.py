@@ -11,6 +11,9 @@ from .windows import Windows, way_at
 
 _WELLS_A_LEG = 16
 _LEG = 0.02  # of the whole way: the guide is a cubic on each leg
+# Wells of a part for each node that is measured in it. On fewer, nodes moved to whole wells
+# are no Chebyshev points any more; and behind rides periods still change in shape.
+_SPARSE, _FEW = 6, 20
 _TAIL = 4  # wells before a turning point that are always measured
 
 
@@ -18,14 +21,14 @@ class Slide(NamedTuple):
     """The inner part of a slide of one cell, of which only some periods are measured.
 
     `low`, `high`: its ends, s. `starts`, `ends`: times of the periods, s. `stops`: where
-    they end, among the stops of the windows. `wells`: periods between low and high.
+    they end, among the stops of the windows. `way`: of the path from low to high, m.
     """
 
     cell: int
     piece: int
-    wells: float
     low: float
     high: float
+    way: float
     starts: np.ndarray
     ends: np.ndarray
     stops: np.ndarray
@@ -87,7 +90,11 @@ def _inner_wells(ways: np.ndarray, needs: Needs) -> np.ndarray:
 
 
 class _Inner(NamedTuple):
-    """Inner parts of slides: cell, piece, first and last well of the slide, times."""
+    """Inner parts of slides: cell, piece, first and last well of the slide, times.
+
+    `ride`: which of the cell's, with wells counted from its start; -1 where wells are those
+    of the path. `count`: periods to be measured.
+    """
 
     cell: np.ndarray
     piece: np.ndarray
@@ -95,6 +102,8 @@ class _Inner(NamedTuple):
     last: np.ndarray
     low: np.ndarray
     high: np.ndarray
+    ride: np.ndarray
+    count: np.ndarray
 
 
 def _level(path: Path, eps: np.ndarray, needs: Needs, cell, piece, well) -> np.ndarray:
@@ -103,25 +112,82 @@ def _level(path: Path, eps: np.ndarray, needs: Needs, cell, piece, well) -> np.n
     return path.states[piece] + path.direction[piece] * way
 
 
-def _inner_parts(scene: Scene, path: Path, eps: np.ndarray, needs: Needs) -> _Inner:
+def _path_parts(scene: Scene, path: Path, eps, needs: Needs, rides) -> _Inner:
+    """Inner parts of slides that are known from brackets: all but those with rides."""
     ways = np.abs(np.diff(path.states))[None, :] / eps[:, None]
     inner = _inner_wells(ways, needs)
+    for c in range(eps.size):
+        inner[c, [ride.piece for ride in rides[c]]] = 0.0
     cell, piece = np.nonzero(inner)
     first = np.ceil(needs.settle)[cell]
     last = first + inner[cell, piece]
     levels = [_level(path, eps, needs, cell, piece, well) for well in (first, last)]
     both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
-    return _Inner(cell, piece, first, last, *np.split(both, 2))
+    none, nodes = np.full(cell.size, -1), needs.nodes[cell]
+    return _Inner(cell, piece, first, last, *np.split(both, 2), none, nodes)
 
 
-def _sample(scene: Scene, path: Path, eps: np.ndarray, needs: Needs, parts: _Inner):
+def _ridden_parts(needs: Needs, rides: np.ndarray) -> list[tuple]:
+    """Each panel of a ride is one part; and so is what is left of its slide behind it."""
+    rows = []
+    for c in range(needs.nodes.size):
+        # Panels hold times that are polynomials already: half the nodes do.
+        count = needs.nodes[c] // 2 + 1
+        for index, ride in enumerate(rides[c] if needs.nodes[c] > 0 else ()):
+            edges, starts = ride.curve.edges, ride.curve.starts
+            for k in np.flatnonzero(np.diff(edges) > _SPARSE * count):
+                span = edges[k], edges[k + 1], starts[k], starts[k + 1]
+                rows.append((c, ride.piece, *span, index, count))
+    return rows
+
+
+def _rests_of_slides(scene: Scene, path: Path, eps, needs: Needs, rides) -> list[tuple]:
+    """Where rides end because slides turn slow: the path's wells from there on."""
+    rows = []
+    for c in range(eps.size):
+        if needs.nodes[c] <= 0:
+            continue
+        for k, ride in enumerate(rides[c]):
+            piece = ride.piece
+            follows = k + 1 < len(rides[c]) and rides[c][k + 1].piece == piece
+            if follows or path.direction[piece] != ride.sign:
+                continue
+            way = abs(path.states[piece + 1] - path.states[piece]) / eps[c]
+            at = states_at(scene, path, np.array([ride.end]))[0]
+            first = np.ceil(abs(at - path.states[piece]) / eps[c]) + _TAIL
+            last = np.floor(way - needs.offset[c, piece]) - _TAIL
+            if ride.end > path.touch[piece] and last - first > _FEW * needs.nodes[c]:
+                # Slides turn from fast to slow there: 17 nodes leave 6e-4 eps.
+                rows.append((c, piece, first, last, -1, 2 * needs.nodes[c]))
+    return rows
+
+
+def _inner_parts(scene: Scene, path: Path, eps, needs: Needs, rides: np.ndarray) -> _Inner:
+    parts = [_path_parts(scene, path, eps, needs, rides)]
+    ridden = _ridden_parts(needs, rides)
+    if ridden:
+        parts.append(_Inner(*(np.array(column) for column in zip(*ridden, strict=True))))
+    rest = _rests_of_slides(scene, path, eps, needs, rides)
+    if rest:
+        cell, piece, first, last, none, count = (
+            np.array(c) for c in zip(*rest, strict=True)
+        )
+        levels = [_level(path, eps, needs, cell, piece, well) for well in (first, last)]
+        both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
+        parts.append(_Inner(cell, piece, first, last, *np.split(both, 2), none, count))
+    return _Inner(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+def _sample(scene: Scene, path: Path, eps, needs: Needs, parts: _Inner, rides: np.ndarray):
     """Wells whose passage is measured in each inner part, and times before and after."""
     wells, owner = [], []
     for i in range(parts.cell.size):
-        count = int(needs.nodes[parts.cell[i]])
-        times = nodes_of(float(parts.low[i]), float(parts.high[i]), count)
-        way = np.abs(states_at(scene, path, times) - path.states[parts.piece[i]])
-        at = way / eps[parts.cell[i]] - needs.offset[parts.cell[i], parts.piece[i]]
+        times = nodes_of(float(parts.low[i]), float(parts.high[i]), int(parts.count[i]))
+        if parts.ride[i] >= 0:
+            at = rides[parts.cell[i]][parts.ride[i]].curve.number_at(times)
+        else:
+            way = np.abs(states_at(scene, path, times) - path.states[parts.piece[i]])
+            at = way / eps[parts.cell[i]] - needs.offset[parts.cell[i], parts.piece[i]]
         at = np.clip(np.round(at), parts.first[i], parts.last[i] - 1)
         wells.append(np.unique(at))
         owner.append(np.full(wells[-1].size, i))
@@ -129,31 +195,33 @@ def _sample(scene: Scene, path: Path, eps: np.ndarray, needs: Needs, parts: _Inn
         empty = np.zeros(0)
         return empty.astype(int), empty, empty
     at, who = np.concatenate(wells), np.concatenate(owner)
-    cell, piece = parts.cell[who], parts.piece[who]
-    levels = [_level(path, eps, needs, cell, piece, well) for well in (at, at + 1)]
+    start, end = np.empty(at.size), np.empty(at.size)
+    plain = np.flatnonzero(parts.ride[who] < 0)
+    cell, piece = parts.cell[who[plain]], parts.piece[who[plain]]
+    levels = [_level(path, eps, needs, cell, piece, at[plain] + k) for k in (0, 1)]
     both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
-    return who, *np.split(both, 2)
+    start[plain], end[plain] = np.split(both, 2)
+    for i in np.flatnonzero(parts.ride >= 0):
+        mine = np.flatnonzero(who == i)
+        curve = rides[parts.cell[i]][parts.ride[i]].curve
+        start[mine], end[mine] = curve.time_of(at[mine]), curve.time_of(at[mine] + 1)
+    return who, start, end
 
 
 def _lattice(scene: Scene, path: Path, eps: np.ndarray, needs: Needs, parts: _Inner):
     """Cell and time of every leg's end on slides, outside their inner parts."""
     span = max(float(path.travel[-1]), 1e-300)
+    lows, highs = (states_at(scene, path, t) for t in (parts.low, parts.high))
     cells, pieces, wells = [], [], []
-    outside = {
-        (c, p): i for i, (c, p) in enumerate(zip(parts.cell, parts.piece, strict=True))
-    }
     for cell in range(eps.size):
         leg = float(np.clip(np.floor(_LEG * span / eps[cell]), 1, _WELLS_A_LEG))
+        own = parts.cell == cell
         for slide in np.flatnonzero(path.direction):
             way = abs(path.states[slide + 1] - path.states[slide]) / eps[cell]
             way -= needs.offset[cell, slide]
-            part = outside.get((cell, slide))
-            if part is None:
-                at = np.arange(leg, way, leg)
-            else:
-                first, last = parts.first[part], parts.last[part]
-                before = np.arange(leg, first - 0.5, leg)
-                at = np.concatenate([before, np.arange(last + leg, way, leg)])
+            mine = own & (parts.low < path.edges[slide + 1])
+            mine &= parts.high > path.touch[slide]
+            at = _outside(path, slide, eps[cell], leg, way, lows[mine], highs[mine])
             cells.append(np.full(at.size, cell))
             pieces.append(np.full(at.size, slide))
             wells.append(at)
@@ -163,16 +231,33 @@ def _lattice(scene: Scene, path: Path, eps: np.ndarray, needs: Needs, parts: _In
     return whose, times_at(scene, path, piece, _level(path, eps, needs, whose, piece, well))
 
 
+def _outside(path: Path, slide: int, eps: float, leg: float, way: float, lows, highs):
+    """Wells of a slide at which legs end: none inside its inner parts, in m of the path."""
+    if lows.size == 0:
+        return np.arange(leg, way, leg)
+    ends = path.states[slide], path.states[slide + 1]
+    starts = np.abs(np.clip(lows, *sorted(ends)) - ends[0]) / eps
+    stops = np.abs(np.clip(highs, *sorted(ends)) - ends[0]) / eps
+    order = np.argsort(starts)
+    opens = np.concatenate([[0.0], stops[order]])
+    closes = np.concatenate([starts[order], [way]])
+    gaps = [
+        np.arange(np.ceil(a) + leg, b - 0.5, leg)
+        for a, b in zip(opens, closes, strict=True)
+    ]
+    return np.concatenate(gaps)
+
+
 def lay_out(
-    scene: Scene, path: Path, eps: np.ndarray, ts: np.ndarray, needs: Needs
+    scene: Scene, path: Path, eps: np.ndarray, ts: np.ndarray, needs: Needs, rides
 ) -> Layout:
     """Windows that give every requested time, and sums and extremes over [0, T].
 
     Outside the inner parts of slides everything is measured, in tiles that follow each
     other; inside, some periods, and one window for each requested time.
     """
-    parts = _inner_parts(scene, path, eps, needs)
-    who, node_start, node_end = _sample(scene, path, eps, needs, parts)
+    parts = _inner_parts(scene, path, eps, needs, rides)
+    who, node_start, node_end = _sample(scene, path, eps, needs, parts, rides)
     lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts)
     edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
     fixed = np.unique(np.concatenate([edges, ts]))
@@ -186,7 +271,8 @@ def lay_out(
         order = np.argsort(low)
         low, high = low[order], high[order]
         lattice = lattice_time[lattice_cell == cell]
-        own = np.unique(np.concatenate([fixed, lattice, low]))
+        # Where one hole follows another there is nothing to be measured between.
+        own = np.unique(np.concatenate([fixed, lattice, low[~np.isin(low, high)]]))
         hole = np.searchsorted(low, own) - 1  # of those that begin before
         inside = (hole >= 0) & (own < np.append(high, 0.0)[hole])
         own = own[~inside & (own > 0)]
@@ -209,19 +295,20 @@ def lay_out(
         hit = (at < own.size) & (own[np.minimum(at, own.size - 1)] == ts)
         output[cell, hit] = count + at[hit]
         count += own.size
-    slides = []
+    slides: list[Slide] = []
+    lows, highs = (states_at(scene, path, t) for t in (parts.low, parts.high))
     for i in range(parts.cell.size):
         mine = who == i
         starts, ends = node_start[mine], node_end[mine]
         stops = count + np.arange(starts.size)
         for start, end in zip(starts, ends, strict=True):
             rows.append((parts.cell[i], start, True, np.array([end])))
-        wells = parts.last[i] - parts.first[i]
-        where = parts.cell[i], parts.piece[i], wells, parts.low[i], parts.high[i]
-        slides.append(Slide(*where, starts, ends, stops))
+        where = parts.cell[i], parts.piece[i], parts.low[i], parts.high[i]
+        slides.append(Slide(*where, highs[i] - lows[i], starts, ends, stops))
         count += starts.size
     shown_cell, shown = np.nonzero(output < 0)
     begin = _period_before(scene, path, eps, needs, shown_cell, ts[shown])
+    begin = _ridden_before(rides, shown_cell, ts[shown], begin)
     for one, index, start in zip(shown_cell, shown, begin, strict=True):
         if ts[index] > 0:
             rows.append((one, start, True, ts[index : index + 1]))
@@ -241,6 +328,19 @@ def _period_before(scene, path, eps, needs, cell, times) -> np.ndarray:
     levels = _level(path, eps, needs, cell[slide], piece[slide], well[slide])
     begin[slide] = times_at(scene, path, piece[slide], levels)
     return np.minimum(begin, times)
+
+
+def _ridden_before(rides: np.ndarray, cell, times, begin) -> np.ndarray:
+    """Start of the ride's slip period that holds each time; as it was where none does."""
+    begin = begin.copy()
+    for c in np.unique(cell):
+        for ride in rides[c]:
+            inside = (cell == c) & (times >= ride.begin) & (times < ride.end)
+            mine = np.flatnonzero(inside)
+            if mine.size:
+                number = np.floor(ride.curve.number_at(times[mine]))
+                begin[mine] = np.minimum(ride.curve.time_of(number), times[mine])
+    return begin
 
 
 def _windows(rows: list[tuple]) -> Windows:

@@ -16,6 +16,7 @@ from ..arguments import Real
 from ..coefficients import coefficients_jit
 from ..roots import bracketed_root
 from ..scene import Scene
+from .sizes import fitted
 
 _LEAST = 256  # times of one compiled call
 
@@ -74,12 +75,9 @@ def _times_at(scene: Scene, states, rho, early, late):
     return jax.vmap(one)(states, rho, early, late)
 
 
-def _padded(*columns: np.ndarray) -> list[Array]:
-    """Columns lengthened by their last entry to few different sizes."""
-    size = _LEAST
-    while size < columns[0].size:
-        size *= 4
-    return [jnp.asarray(np.pad(c, (0, size - c.size), mode="edge")) for c in columns]
+@eqx.filter_jit
+def _state_under(scene: Scene, times: Float[Array, " n"], pull: Float[Array, " n"]):
+    return jax.vmap(lambda t, f: scene.support.state_of(scene.load(t) - f))(times, pull)
 
 
 def _edges_at(
@@ -89,7 +87,7 @@ def _edges_at(
     if times.size == 0:
         return times, times
     rho = jnp.asarray(rho_plus), jnp.asarray(rho_minus)
-    lower, upper = _edges(scene, *rho, *_padded(times))
+    lower, upper = _edges(scene, *rho, *fitted(_LEAST, times))
     return np.asarray(lower)[: times.size], np.asarray(upper)[: times.size]
 
 
@@ -98,8 +96,22 @@ def times_at(scene: Scene, path: Path, piece: np.ndarray, states: np.ndarray) ->
     if states.size == 0:
         return states
     columns = states, path.rho[piece], path.touch[piece], path.edges[piece + 1]
-    found = np.asarray(_times_at(scene, *_padded(*columns)))[: states.size]
+    found = np.asarray(_times_at(scene, *fitted(_LEAST, *columns)))[: states.size]
     return np.clip(found, columns[2], columns[3])
+
+
+def arrivals_at(
+    scene: Scene, states: np.ndarray, pull: np.ndarray, early: np.ndarray, late: np.ndarray
+) -> np.ndarray:
+    """Time in [early, late] at which `l - Phi'` is `pull` (N) at each state."""
+    found = _times_at(scene, *fitted(_LEAST, states, pull, early, late))
+    return np.asarray(found)[: states.size]
+
+
+def state_under(scene: Scene, times: np.ndarray, pull: np.ndarray) -> np.ndarray:
+    """State in m at which `l - Phi'` is `pull` (N) at each time."""
+    found = _state_under(scene, *fitted(_LEAST, times, pull))
+    return np.asarray(found)[: times.size]
 
 
 def states_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
@@ -120,7 +132,7 @@ def slopes_at(
         return times
     piece = path.piece_of(times)
     slides = (path.direction[piece] != 0) & (times > path.touch[piece])
-    slope, stiffness = _rates(scene, *_padded(times, states))
+    slope, stiffness = _rates(scene, *fitted(_LEAST, times, states))
     speed = np.asarray(slope)[: times.size] / np.asarray(stiffness)[: times.size]
     return np.where(slides, speed, 0.0)
 
@@ -132,7 +144,7 @@ def _speeds(scene: Scene, path: Path) -> tuple[float, float]:
     times = (start + (end - start) * share).ravel()
     states = states_at(scene, path, times)
     speeds = slopes_at(scene, path, times, states)
-    _, stiffness = _rates(scene, *_padded(times, states))
+    _, stiffness = _rates(scene, *fitted(_LEAST, times, states))
     return float(np.max(np.abs(speeds))), float(np.min(stiffness))
 
 

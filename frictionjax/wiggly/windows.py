@@ -7,19 +7,21 @@ import numpy as np
 from ..scene import Scene
 from .lanes import Arrivals, Jobs, Legs
 from .path import Path, slopes_at, states_at, times_at
+from .rides import Ride
 from .tolerance import Folds
 
 _ASIDE = 1e-6  # of a leg: where one-sided slopes are taken
 _GAP = 1e-6  # of a well: rounding of z/eps
 # Steps are 10 to 200 a well; lags let lanes pass through more wells than the path.
 _STEPS_A_WELL, _SOME_WELLS = 2000, 100
+_WHOLE = 1e-4  # wells: rounding of times, in numbers of wells
 _SLOW = 0.03  # of the largest speed: what counts as a slip on a path that rests
 
 
 class Ground(NamedTuple):
     """What windows need to know of each cell, shape (cells,) each.
 
-    `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
+    `rides`: tuples of `Ride`, in time. `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
     most. `shift_plus`, `shift_minus`: by how much in m folds at this eps differ from rho.
     """
 
@@ -31,6 +33,7 @@ class Ground(NamedTuple):
     shift_minus: np.ndarray
     start_well: np.ndarray
     start_tip: np.ndarray
+    rides: np.ndarray
 
 
 class Windows(NamedTuple):
@@ -59,13 +62,15 @@ class Windows(NamedTuple):
 
 
 class Starts(NamedTuple):
-    """Where lanes of windows set off: time, and whether from the known z0 (shape (W,)).
+    """Where lanes of windows set off, shape (W,).
 
-    `behind_*` and `ahead_*`: well and tip of the two lanes of the bracket.
+    `time` in s. `known`: from the known z0; `ridden`: from a ride, as closely as its error
+    says. `behind_*` and `ahead_*`: well and tip of the two lanes of the bracket.
     """
 
     time: np.ndarray
     known: np.ndarray
+    ridden: np.ndarray
     behind_well: np.ndarray
     behind_tip: np.ndarray
     ahead_well: np.ndarray
@@ -76,7 +81,8 @@ class Plan(NamedTuple):
     """Jobs and legs of windows, and where each window's stops are among the legs.
 
     `behind`, `ahead` (S,): leg of each stop in either lane, -1 where the second does not
-    run. `meet_behind`, `meet_ahead` (W,): legs that end where the windows begin.
+    run. `meet_behind`, `meet_ahead` (W,): legs that end where the windows begin. `known`,
+    `ridden` (W,): as in `Starts`.
     """
 
     jobs: Jobs
@@ -85,6 +91,8 @@ class Plan(NamedTuple):
     ahead: np.ndarray
     meet_behind: np.ndarray
     meet_ahead: np.ndarray
+    known: np.ndarray
+    ridden: np.ndarray
 
 
 def way_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
@@ -110,15 +118,21 @@ def _run_up(path: Path) -> np.ndarray:
 
 
 def starts_of(
-    scene: Scene, path: Path, ground: Ground, cell: np.ndarray, begin: np.ndarray, wells
+    scene: Scene,
+    path: Path,
+    ground: Ground,
+    cell: np.ndarray,
+    begin: np.ndarray,
+    wells,
+    back,
 ) -> Starts:
-    """Starts at least `wells` of the path's way before each window.
+    """Starts at least `wells` of the path's way before each window, or `back` of a ride's.
 
     On a slide the tip cannot be past the first fold beyond the strip's edge: it would have
     had to climb it against a force. Nor can it be further behind than a steady slide at
     the largest speed of the scene. Both hold once the path has come further than the lag
     of the slide before in the other direction. Where no such place is left, lanes start
-    from z0.
+    from z0; and from a ride where one comes later than that.
     """
     eps = ground.eps[cell]
     lag = np.maximum(ground.lag_plus, ground.lag_minus)[cell]
@@ -136,7 +150,44 @@ def starts_of(
     slide = np.flatnonzero(~known)
     time = np.zeros(begin.size)
     time[slide] = times_at(scene, path, piece[slide], level[slide])
-    return Starts(time, known, *_brackets(ground, cell, direction, level, known))
+    lanes = _brackets(ground, cell, direction, level, known)
+    plain = Starts(time, known, np.zeros(begin.size, dtype=bool), *lanes)
+    reach = wells * eps + 2 * lag
+    return _ridden(scene, path, ground, cell, begin, plain, back, reach)
+
+
+def _ridden(
+    scene: Scene, path: Path, ground: Ground, cell, begin, plain: Starts, back, way
+):
+    """The same starts, from the last ride before each window where that is nearer.
+
+    `way` (W,): m that a lane of the bracket goes until the window begins, its lag included.
+    """
+    ridden = Starts(*(column.copy() for column in plain))
+    ridden.time[:] = -np.inf
+    for c in np.unique(cell):
+        for ride in ground.rides[c]:
+            mine = np.flatnonzero((cell == c) & (begin >= ride.begin))
+            if mine.size:
+                _set_off(ride, mine, begin[mine], back[mine], ridden)
+    some = np.flatnonzero(ridden.ridden)
+    both = np.concatenate([begin[some], ridden.time[some]])
+    late, early = np.split(way_at(scene, path, both), 2)
+    nearer = plain.known[some] | (late - early <= way[some])
+    chosen = np.isin(np.arange(begin.size), some[nearer])
+    return Starts(*(np.where(chosen, r, p) for r, p in zip(ridden, plain, strict=True)))
+
+
+def _set_off(ride: Ride, mine: np.ndarray, begin, back, starts: Starts) -> None:
+    """Put starts at a lattice point of the ride, its error behind and ahead of it."""
+    curve = ride.curve
+    number = np.floor(curve.number_at(np.minimum(begin, ride.end)) + _WHOLE) - back
+    number = np.maximum(number, curve.edges[0])
+    time = np.minimum(curve.time_of(number), begin)
+    well, error = ride.wells_at(number), ride.sign * ride.error_at(number)
+    rows = (time, False, True, well, ride.tip - error, well, ride.tip + error)
+    for column, row in zip(starts, rows, strict=True):
+        column[mine] = row
 
 
 def _brackets(ground: Ground, cell, direction, level, known) -> tuple[np.ndarray, ...]:
@@ -237,7 +288,8 @@ def plan_windows(
     chosen = chosen[np.argsort(windows.owner[chosen], kind="stable")]
     ahead[chosen[mark[two & (mark >= 0)]]] = index[two & (mark >= 0)]
     meet_ahead[second[owner[two & (mark == -1)]]] = index[two & (mark == -1)]
-    return Plan(jobs, legs, behind, ahead, meet_behind, meet_ahead)
+    marks = behind, ahead, meet_behind, meet_ahead
+    return Plan(jobs, legs, *marks, starts.known, starts.ridden)
 
 
 def _legs(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Legs:
