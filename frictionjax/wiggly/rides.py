@@ -13,7 +13,7 @@ import numpy as np
 
 from ..scene import Scene
 from .passage import Stretch, one_passage, pull_at, track_of, wiggles_at
-from .path import Path, slopes_at, states_at
+from .path import Path, arrivals_at, slopes_at, states_at
 from .set_off import first_wells
 from .slip_map import Curve, Slides, follow
 
@@ -179,15 +179,15 @@ class Rider(NamedTuple):
         return found
 
 
-def _touching(rider: Rider, cells: np.ndarray, piece: int) -> tuple[np.ndarray, float]:
-    """When each cell has passed the first wells of the slide of a piece, and its touch."""
+def _set_off(rider: Rider, cells: np.ndarray, piece: int) -> np.ndarray:
+    """Seconds from a touch of the strip's edge in a piece until the first wells are passed."""
     path, scene = rider.path, rider.scene
     touch = np.array([path.touch[piece]])
     inside = touch + 1e-6 * (path.edges[piece + 1] - touch)
     state = states_at(scene, path, inside)
     speed = float(np.abs(slopes_at(scene, path, inside, state))[0])
     stiffness = float(pull_at(scene, inside, state).support[0, 1])
-    times = np.full(cells.size, np.nan)
+    times = np.full(cells.size, np.inf)
     if speed > 0:
         sign = float(path.direction[piece])
         for i, c in enumerate(cells):
@@ -195,18 +195,43 @@ def _touching(rider: Rider, cells: np.ndarray, piece: int) -> tuple[np.ndarray, 
             way = fold, sign, float(rider.viscosity[c]), speed * stiffness, stiffness
             eps = float(rider.eps[c])
             times[i] = first_wells(scene.potential, eps, *way, _FIRST)
-    return path.touch[piece] + times, float(path.touch[piece])
+    return times
+
+
+def _touches(rider: Rider, look: Look, cells: np.ndarray, piece: int) -> np.ndarray:
+    """When the pull reaches the fold where each tip rests before the slide of a piece, s.
+
+    The path's own touch comes earlier where the slide before has lagged: the tip then
+    rests short of where the path does.
+    """
+    touch = np.full(cells.size, rider.path.touch[piece])
+    if piece == 0:
+        return touch
+    seen = look(cells, touch, touch)
+    eps, sign = rider.eps[cells], rider.path.direction[piece]
+    tip = np.where(np.isfinite(seen.tip), seen.tip, 0.0)
+    offset = wiggles_at(rider.scene.potential, eps, tip)[2]
+    states = eps * (np.where(np.isfinite(seen.well), seen.well, 0.0) + tip) + offset
+    force = rider.folds[float(sign)][1][cells]
+    late = np.full(cells.size, rider.path.edges[piece + 1])
+    return arrivals_at(rider.scene, states, force, touch, late)
 
 
 def _starting(rider: Rider, look: Look, cells: np.ndarray, piece: int) -> Candidates | None:
     """Candidates at the start of the slide of a piece."""
-    stops, touch = _touching(rider, cells, piece)
     late = rider.path.edges[piece + 1]
-    mine = np.flatnonzero(stops < late)
-    if mine.size == 0:
+    wait = _set_off(rider, cells, piece)
+    able = rider.path.touch[piece] + wait < late
+    cells, wait = cells[able], wait[able]
+    if cells.size == 0:
         return None
-    cells, stops = cells[mine], stops[mine]
-    seen = look(cells, np.full(cells.size, touch), stops)
+    touch = _touches(rider, look, cells, piece)
+    stops = touch + wait
+    able = stops < late
+    cells, stops, touch = cells[able], stops[able], touch[able]
+    if cells.size == 0:
+        return None
+    seen = look(cells, touch, stops)
     none = np.zeros(cells.size)
     sign = none + rider.path.direction[piece]
     ends, pieces = none + late, np.full(cells.size, piece)
