@@ -12,17 +12,17 @@ import jax  # noqa: E402
 
 jax.config.update("jax_enable_x64", True)
 
-from scenes import TIMES, scene  # noqa: E402
+from scenes import TIMES  # noqa: E402
 
 from frictionjax.wiggly.engine import integrate_cells  # noqa: E402
 
 _LONG = 5.0  # s of one run, beyond which two repeats are enough
 
 
-def solve(name: str, eps, gamma, accuracy: float, method: str = "auto"):
+def solve(one: fx.Scene, eps, gamma, accuracy: float, method: str = "auto"):
     """Answers of all cells at once, at TIMES."""
     eps, gamma = np.atleast_1d(eps), np.atleast_1d(gamma)
-    return integrate_cells(scene(name), eps, gamma, TIMES, accuracy, method, balanced=False)
+    return integrate_cells(one, eps, gamma, TIMES, accuracy, method, balanced=False)
 
 
 def timed(run, repeats: int = 5):

@@ -2,7 +2,7 @@
 
 A maker is called as `PEERS[name](scene, eps, gamma, tolerance)` and returns the run, how
 many equal lanes it solves at once, and the seconds that compilation took (what was
-compiled for an earlier cell is kept). Fields start at y = 0; tolerances are absolute, in
+compiled for an earlier cell is kept). Tolerances are absolute, in
 periods: relative ones would loosen as 1/eps.
 """
 
@@ -13,7 +13,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from scenes import PERIOD, TIMES, heyoka_field, jax_field, numba_field
+from scenes import PERIOD, TIMES, heyoka_field, jax_field, numba_field, start, state
 
 _RELATIVE = 1e-12  # where a solver wants one; LSODA and CVODE take no smaller one
 
@@ -55,12 +55,12 @@ def heyoka(scene: str, eps: float, gamma: float, tolerance: float) -> Run:
 
     def solve():
         lanes.set_time(0.0)
-        lanes.state[:] = 0.0
+        lanes.state[:] = start(scene, eps)
         lanes.pars[0], lanes.pars[1] = eps, eps ** -(1 + gamma)
         _, values = lanes.propagate_grid(grid)
         return values[:, 0, 0]
 
-    return Run(lambda: states_of(scene, eps, solve()), width, compiled)
+    return Run(lambda: state(scene, solve(), eps), width, compiled)
 
 
 @cache
@@ -77,11 +77,10 @@ def _lsoda(scene: str):
     address = rate.address
 
     @njit
-    def solve(times, numbers, tolerance):
-        start = np.zeros(1)
+    def solve(start, times, numbers, tolerance):
         return lsoda(address, start, times, numbers, 1e-13, tolerance, 10**9)
 
-    solve(TIMES[:3], np.array([0.1, 1.0]), 1e-3)
+    solve(np.zeros(1), TIMES[:3], np.array([0.1, 1.0]), 1e-3)
     return solve, rate  # the callback must live as long
 
 
@@ -90,11 +89,13 @@ def numbalsoda(scene: str, eps: float, gamma: float, tolerance: float) -> Run:
     (solve, _), compiled = _timed(lambda: _lsoda(scene))
     numbers = np.array([eps, eps ** (1 + gamma)])
 
+    begin = np.array([start(scene, eps)])
+
     def states():
-        y, success = solve(TIMES, numbers, tolerance)
+        y, success = solve(begin, TIMES, numbers, tolerance)
         if not success:
             raise GaveUpError("success = False")
-        return states_of(scene, eps, y[:, 0])
+        return state(scene, y[:, 0], eps)
 
     return Run(states, 1, compiled)
 
@@ -104,13 +105,13 @@ def _scipy(method: str):
         from scipy.integrate import solve_ivp
 
         field, compiled = _compiled_field(scene)
-        drag = eps ** (1 + gamma)
+        drag, begin = eps ** (1 + gamma), start(scene, eps)
 
         def states():
             found = solve_ivp(
                 lambda t, y: (field(t, y[0], eps, drag),),
                 (0.0, PERIOD),
-                [0.0],
+                [begin],
                 method,
                 t_eval=TIMES,
                 rtol=_RELATIVE,
@@ -118,7 +119,7 @@ def _scipy(method: str):
             )
             if not found.success:
                 raise GaveUpError(found.message)
-            return states_of(scene, eps, found.y[0])
+            return state(scene, found.y[0], eps)
 
         return Run(states, 1, compiled)
 
@@ -135,13 +136,14 @@ def cvode(scene: str, eps: float, gamma: float, tolerance: float) -> Run:
     def right_hand_side(t, y, yp):
         yp[0] = field(t, y[0], eps, drag)
 
+    begin = np.array([start(scene, eps)])
     solver = CVODE(right_hand_side, rtol=_RELATIVE, atol=tolerance, max_num_steps=10**9)
 
     def states():
-        found = solver.solve(TIMES, np.zeros(1))
+        found = solver.solve(TIMES, begin)
         if not found.success:
             raise GaveUpError(found.message)
-        return states_of(scene, eps, found.y[:, 0])
+        return state(scene, found.y[:, 0], eps)
 
     return Run(states, 1, compiled)
 
@@ -166,14 +168,14 @@ def _diffrax(method: str, scene: str):
 
     @jax.jit
     @jax.vmap
-    def solve(eps, drag, tolerance):
+    def solve(y, eps, drag, tolerance):
         found = diffrax.diffeqsolve(
             term,
             getattr(diffrax, method)(),
             0.0,
             PERIOD,
             None,
-            jnp.zeros(()),
+            y,
             (eps, drag),
             saveat=diffrax.SaveAt(ts=TIMES),
             stepsize_controller=diffrax.PIDController(rtol=_RELATIVE, atol=tolerance),
@@ -184,7 +186,7 @@ def _diffrax(method: str, scene: str):
         return jnp.where(failed, jnp.nan, found.ys)
 
     ones = np.ones(_VMAP)
-    return solve.lower(ones, ones, ones).compile()
+    return solve.lower(ones, ones, ones, ones).compile()
 
 
 def _kvaerno(method: str):
@@ -193,24 +195,13 @@ def _kvaerno(method: str):
         ones = np.ones(_VMAP)
 
         def states():
-            y = solve(eps * ones, eps ** (1 + gamma) * ones, tolerance * ones)
-            return states_of(scene, eps, np.asarray(y)[0])
+            numbers = start(scene, eps), eps, eps ** (1 + gamma), tolerance
+            y = solve(*(number * ones for number in numbers))
+            return state(scene, np.asarray(y)[0], eps)
 
         return Run(states, _VMAP, compiled)
 
     return make
-
-
-def states_of(scene: str, eps: float, y: np.ndarray) -> np.ndarray:
-    """`z = eps y + A(eps w(y))` in m."""
-    if scene == "vertical":
-        return eps * y
-    from scenes import COS, HEIGHT, LENGTH, SIN
-
-    turns = 2 * np.pi * np.arange(1, 5) * y[:, None]
-    eta = eps * (np.cos(turns) @ np.array(COS) + np.sin(turns) @ np.array(SIN))
-    reach = np.sqrt(LENGTH**2 - (HEIGHT - eta) ** 2)
-    return eps * y + reach - np.sqrt(LENGTH**2 - HEIGHT**2)
 
 
 PEERS = {

@@ -25,8 +25,8 @@ SIN = (0.01536, 0.0, -0.00384, 0.00096)
 NAMES = ("vertical", "angular")
 
 
-def scene(name: str):
-    """The scene for our own solver."""
+def scene(name: str, load=None):
+    """The scene for our own solver, with the sine load where no other is given."""
     import frictionjax as fx
 
     profile, bristle = {
@@ -39,7 +39,7 @@ def scene(name: str):
             fx.bristles.AngularSpring(STIFFNESS, LENGTH, HEIGHT, REST),
         ),
     }[name]()
-    load = fx.loads.Sine(AMPLITUDE, PERIOD)
+    load = load or fx.loads.Sine(AMPLITUDE, PERIOD)
     return fx.Scene(profile, bristle, fx.supports.Spring(1.0), load, PERIOD)
 
 
@@ -70,6 +70,24 @@ def _angular(m, t, y, eps):
 
 
 _FIELDS = {"vertical": _vertical, "angular": _angular}
+
+
+def state(name: str, y, eps: float):
+    """`z = eps y + A(eps w(y))` in m."""
+    if name == "vertical":
+        return eps * y
+    turns = TWO_PI * np.arange(1, 5) * np.asarray(y)[..., None]
+    eta = eps * (np.cos(turns) @ np.array(COS) + np.sin(turns) @ np.array(SIN))
+    reach = np.sqrt(LENGTH**2 - (HEIGHT - eta) ** 2)
+    return eps * y + eta * (2 * HEIGHT - eta) / (reach + math.sqrt(LENGTH**2 - HEIGHT**2))
+
+
+@cache
+def start(name: str, eps: float) -> float:
+    """The tip coordinate of z = 0."""
+    from scipy.optimize import brentq
+
+    return float(brentq(lambda y: state(name, y, eps) / eps, -1.0, 1.0, xtol=1e-15))
 
 
 def jax_field(name: str):

@@ -16,7 +16,7 @@ import numpy as np
 from cores import Cores
 from ours import solve, timed
 from peers import PEERS, installed
-from scenes import NAMES
+from scenes import NAMES, scene
 from truth import error_of, independent
 
 ACCURACIES = (1e-2, 1e-3, 1e-4)
@@ -30,20 +30,19 @@ def row(name: str, asked: float, error: float, seconds: float, compiled: float) 
     )
 
 
-def own_rows(scene: str, eps: float, gamma: float, truth) -> None:
+def own_rows(one, eps: float, gamma: float, truth) -> None:
     for method in OURS:
         for asked in ACCURACIES:
             found, best, _, first = timed(
-                lambda m=method, a=asked: solve(scene, eps, gamma, a, m)
+                lambda m=method, a=asked: solve(one, eps, gamma, a, m)
             )
             name = f"frictionjax, {method}"
             row(name, asked, error_of(found.z[0], truth, eps), best, first - best)
 
 
-def guarded_rows(scene: str, eps: float, gamma: float, truth) -> None:
+def guarded_rows(one, eps: float, gamma: float, truth) -> None:
     """Diffrax's implicit solvers inside our own integration, which guards the wells."""
     from scenes import TIMES
-    from scenes import scene as named
 
     import frictionjax as fx
 
@@ -51,7 +50,7 @@ def guarded_rows(scene: str, eps: float, gamma: float, truth) -> None:
         for asked in ACCURACIES[1:]:
             found, best, _, first = timed(
                 lambda m=method, a=asked: np.asarray(
-                    fx.solve(named(scene), eps, gamma, TIMES, a, m, dissipation=False).z
+                    fx.solve(one, eps, gamma, TIMES, a, m, dissipation=False).z
                 )
             )
             name = f"{method}, guarded by frictionjax"
@@ -74,8 +73,8 @@ def main() -> None:
     )
     print("\n| method | asked | error/eps | s | compile s |")
     print("|---|---|---|---|---|")
-    own_rows(chosen.scene, eps, gamma, truth)
-    guarded_rows(chosen.scene, eps, gamma, truth)
+    own_rows(scene(chosen.scene), eps, gamma, truth)
+    guarded_rows(scene(chosen.scene), eps, gamma, truth)
     cores, failures = Cores(), []
     for name in chosen.peers:
         for tolerance in TOLERANCES:

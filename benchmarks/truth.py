@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from scenes import FASTEST, PERIOD, TIMES, numba_field, scene
+from scenes import FASTEST, PERIOD, TIMES, numba_field, start, state
 
 ACCURACY = 1e-3  # of the benchmarks, in units of eps
 
@@ -17,14 +17,14 @@ def outside_slips(states: Callable[[np.ndarray], np.ndarray], eps: float):
     return now, np.abs(after - before) <= 0.05 * eps
 
 
-def own(name: str, eps: float, gamma: float):
-    """From our own method at accuracy 1e-6; a peer that agrees with it confirms it."""
+def own(one, eps: float, gamma: float, accuracy: float = 1e-6):
+    """From our own method on the scene `one`; a peer that agrees with it confirms it."""
     from frictionjax.wiggly.engine import integrate_cells
 
     cell = np.array([eps]), np.array([gamma])
 
     def states(ts):
-        found = integrate_cells(scene(name), *cell, ts, 1e-6, "auto", balanced=False)
+        found = integrate_cells(one, *cell, ts, accuracy, "auto", balanced=False)
         return found.z[0]
 
     return outside_slips(states, eps)
@@ -32,7 +32,6 @@ def own(name: str, eps: float, gamma: float):
 
 def independent(name: str, eps: float, gamma: float):
     """From SciPy's LSODA at tolerance 1e-11 with steps no longer than a slip."""
-    from peers import states_of
     from scipy.integrate import solve_ivp
 
     field, drag = numba_field(name), eps ** (1 + gamma)
@@ -42,12 +41,12 @@ def independent(name: str, eps: float, gamma: float):
         found = solve_ivp(
             lambda t, y: (field(t, y[0], eps, drag),),
             (0.0, PERIOD),
-            [0.0],
+            [start(name, eps)],
             "LSODA",
             t_eval=ts,
             **options,
         )
-        return states_of(name, eps, found.y[0])
+        return state(name, found.y[0], eps)
 
     return outside_slips(states, eps)
 
