@@ -1,6 +1,7 @@
 """Our own solver as benchmarks call it; imported before JAX starts, for its flags."""
 
 import time
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,11 +26,21 @@ def solve(one: fx.Scene, eps, gamma, accuracy: float, method: str = "auto"):
     return integrate_cells(one, eps, gamma, TIMES, accuracy, method, balanced=False)
 
 
-def timed(run, repeats: int = 5):
-    """Result, best and worst seconds of the repeats, seconds of the first call."""
-    seconds = []
-    while len(seconds) <= (2 if seconds and seconds[-1] > _LONG else repeats):
-        start = time.perf_counter()
+class Timed(NamedTuple):
+    """Wall seconds, best and worst of the repeats and of the first call; CPU, least."""
+
+    found: Any
+    best: float
+    worst: float
+    first: float
+    cpu: float
+
+
+def timed(run, repeats: int = 5) -> Timed:
+    wall, cpu = [], []
+    while len(wall) <= (2 if wall and wall[-1] > _LONG else repeats):
+        start, busy = time.perf_counter(), time.process_time()
         found = run()
-        seconds.append(time.perf_counter() - start)
-    return found, min(seconds[1:]), max(seconds[1:]), seconds[0]
+        wall.append(time.perf_counter() - start)
+        cpu.append(time.process_time() - busy)
+    return Timed(found, min(wall[1:]), max(wall[1:]), wall[0], min(cpu[1:]))

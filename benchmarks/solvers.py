@@ -33,7 +33,7 @@ def row(name: str, asked: float, error: float, seconds: float, compiled: float) 
 def own_rows(one, eps: float, gamma: float, truth) -> None:
     for method in OURS:
         for asked in ACCURACIES:
-            found, best, _, first = timed(
+            found, best, _, first, _ = timed(
                 lambda m=method, a=asked: solve(one, eps, gamma, a, m)
             )
             name = f"frictionjax, {method}"
@@ -48,7 +48,7 @@ def guarded_rows(one, eps: float, gamma: float, truth) -> None:
 
     for method in ("Kvaerno3", "Kvaerno5"):
         for asked in ACCURACIES[1:]:
-            found, best, _, first = timed(
+            found, best, _, first, _ = timed(
                 lambda m=method, a=asked: np.asarray(
                     fx.solve(one, eps, gamma, TIMES, a, m, dissipation=False).z
                 )

@@ -7,7 +7,8 @@
 61 times, those inside a slip left out, in units of eps, against our own method at accuracy
 1e-6. A cell's time for us is its share of the sweep (also: solved alone); for a peer that
 of a lane while both cores run such cells, at the loosest tolerance of those tried that
-reaches 1e-3 eps. All warm; compilation is printed apart. A peer that runs out of patience
+reaches 1e-3 eps. Wall seconds; CPU seconds where said, which other programs on the machine
+change less. All warm; compilation is printed apart. A peer that runs out of patience
 (seconds a run) is left out from there on.
 """
 
@@ -15,7 +16,7 @@ import argparse
 
 import numpy as np
 from cores import Cores
-from ours import solve, timed
+from ours import Timed, solve, timed
 from peers import COMPILED, PEERS, installed
 from scenes import NAMES, scene
 from truth import ACCURACY, error_of, own
@@ -34,10 +35,10 @@ class Contest:
         self.cores, self.left_out = Cores(), set()
         self.failures, self.compiled = [], dict.fromkeys(peers, 0.0)
 
-    def cheapest(self, name: str, eps: float, gamma: float, truth) -> tuple[float, str]:
-        """Both-core seconds a cell, and those with error and tolerance as text."""
+    def cheapest(self, name: str, eps: float, gamma: float, truth) -> tuple:
+        """Both-core seconds a cell, wall and CPU, and a text with error and tolerance."""
         if (name, gamma) in self.left_out:
-            return np.inf, "-"
+            return np.inf, np.inf, "-"
         met = []
         for tolerance in TOLERANCES:
             job = name, self.scene, eps, gamma, tolerance
@@ -45,7 +46,8 @@ class Contest:
             self.compiled[name] = max(self.compiled[name], found.compiled)
             error = np.inf if found.failure else error_of(found.z, truth, eps)
             if error <= ACCURACY:
-                return found.seconds, f"{found.seconds:.2g} ({error:.0e}, {tolerance:.0e})"
+                text = f"{found.seconds:.2g} ({error:.0e}, {tolerance:.0e})"
+                return found.seconds, found.cpu, text
             if not found.failure and error > _A_WELL:
                 self.failures.append(
                     f"{name}, gamma {gamma:g}, eps {eps:.2g}, {tolerance:.0e}: "
@@ -56,49 +58,53 @@ class Contest:
                 self.left_out.add((name, gamma))
                 break
         self.failures.append(f"{name}, gamma {gamma:g}, eps {eps:.2g}: {'; '.join(met)}")
-        return np.inf, "failed"
+        return np.inf, np.inf, "failed"
 
 
-def report(run: tuple, eps: np.ndarray, gamma: np.ndarray, truths, method: str):
-    """Errors by cell and seconds of our sweep; prints a line about the whole."""
-    found, best, worst, first = run
+def report(run: Timed, eps: np.ndarray, gamma: np.ndarray, truths, method: str):
+    """Errors by cell of our sweep; prints a line about the whole."""
+    found, best, worst, first, cpu = run
     cells = zip(found.z, truths, eps, strict=True)
     errors = np.array([error_of(z, truth, e) for z, truth, e in cells])
     bad = {status_of(int(s)).name for s in found.status if s != 0}
     gammas = ", ".join(f"{g:g}" for g in np.unique(gamma))
     print(
-        f"ours, {method}, gamma {gammas}: {best:.3f} s ({worst:.3f} at worst) "
-        f"for {eps.size} cells; first call {first:.1f} s; "
+        f"ours, {method}, gamma {gammas}: {best:.3f} s for {eps.size} cells "
+        f"({worst:.3f} at worst, CPU {cpu:.3f}); first call {first:.1f} s; "
         f"largest error {np.nanmax(errors):.1e} eps; status {', '.join(bad) or 'OK'}",
         flush=True,
     )
-    return errors, best
+    return errors
 
 
 def alone(one, eps: float, gamma: float) -> float:
     return timed(lambda: solve(one, eps, gamma, ACCURACY), 3)[1]
 
 
-def table(contest: Contest, eps: np.ndarray, gamma: float, truths, errors, total: float):
+def table(contest: Contest, eps: np.ndarray, gamma: float, truths, errors, run: Timed):
     """Rows of one gamma; the fastest peers added up, over cells where one has ended."""
-    one, share = scene(contest.scene), total / eps.size
+    one, share = scene(contest.scene), run.best / eps.size
     names = " | ".join(contest.peers)
     print(f"\n| gamma | eps | our error | share, s | alone, s | {names} | peer/share |")
     print("|---" * (6 + len(contest.peers)) + "|")
     fastest = []
     for e, truth, error in zip(eps, truths, errors, strict=True):
         met = [contest.cheapest(name, float(e), gamma, truth) for name in contest.peers]
-        fastest.append(min([s for s, _ in met], default=np.inf))
-        ratio = f"{fastest[-1] / share:.2g}" if np.isfinite(fastest[-1]) else "-"
+        fastest.append(np.min([(np.inf, np.inf), *(m[:2] for m in met)], axis=0))
+        wall = fastest[-1][0]
+        ratio = f"{wall / share:.2g}" if np.isfinite(wall) else "-"
         columns = [f"{gamma:g}", f"{e:.2g}", f"{error:.0e}", f"{share:.2g}"]
-        columns += [f"{alone(one, e, gamma):.2g}", *(text for _, text in met), ratio]
+        columns += [f"{alone(one, e, gamma):.2g}", *(m[2] for m in met), ratio]
         print(f"| {' | '.join(columns)} |", flush=True)
-    ended = np.isfinite(fastest)
-    added = np.sum(fastest, where=ended)
+    wall, cpu = np.array(fastest).T
+    ended = np.isfinite(wall)
+    added, busy = wall[ended].sum(), cpu[ended].sum()
+    part = ended.mean() or 1.0
     print(
         f"\nfastest peers added up: {added:.3f} s over {ended.sum()} of {eps.size} cells, "
-        f"{added / (share * max(1, ended.sum())):.2g} times our share of those, "
-        f"{added / total:.2g} times our whole sweep\n",
+        f"{added / (part * run.best):.2g} times our share of those, "
+        f"{added / run.best:.2g} times our whole sweep; in CPU seconds {2 * busy:.3f}, "
+        f"{2 * busy / run.cpu:.2g} times our whole sweep\n",
         flush=True,
     )
 
@@ -133,7 +139,7 @@ def main() -> None:
             report(run, eps, gammas, truths, method)
             for run, method in zip(runs, chosen.methods, strict=True)
         ]
-        table(contest, eps, gamma, truths, *found[0])
+        table(contest, eps, gamma, truths, found[0], runs[0])
     if len(chosen.gamma) > 1:
         gammas = np.repeat(chosen.gamma, eps.size)
         every = np.tile(eps, len(chosen.gamma))
