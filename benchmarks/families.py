@@ -116,25 +116,51 @@ _ITERATIONS, _NEWTON = 10, 0.02  # at most; of the tolerance
 
 
 @njit
+def inverse(m):
+    """Of a 3x3 matrix by cofactors: LAPACK's overhead would be most of a step."""
+    out = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            k, n, p, q = (j + 1) % 3, (j + 2) % 3, (i + 1) % 3, (i + 2) % 3
+            out[i, j] = m[k, p] * m[n, q] - m[k, q] * m[n, p]
+    return out / (m[0, 0] * out[0, 0] + m[0, 1] * out[1, 0] + m[0, 2] * out[2, 0])
+
+
+@njit
+def newton_change(solve, f, z, h):
+    """`solve @ (f - A^-1 z/h)`, and its largest entry."""
+    change, size = np.zeros(3), 0.0
+    for i in range(3):
+        rest = f[i]
+        for j in range(3):
+            rest -= INVERSE[i, j] * z[j] / h
+        for j in range(3):
+            change[j] += solve[j, i] * rest
+    for i in range(3):
+        size = max(size, abs(change[i]))
+    return change, size
+
+
+@njit
 def radau(start, t, h, y, eps, per_drag, tolerance):
     """Radau IIA of order 5, simplified Newton from zero, E. Hairer and G. Wanner IV.8."""
     velocity, by_state, _ = start
-    solve = np.linalg.inv(INVERSE / h - by_state * np.eye(3))
+    solve = inverse(INVERSE / h - by_state * np.eye(3))
     z, f = np.zeros(3), np.zeros(3)
     pulls = np.array([load(t + NODES[0] * h), load(t + NODES[1] * h), load(t + h)])
     before = np.inf
     for iteration in range(1, _ITERATIONS + 1):
         for i in range(3):
             f[i] = rate(pulls[i], y + z[i], eps, per_drag)
-        change = solve @ (f - (INVERSE @ z) / h)
+        change, size = newton_change(solve, f, z, h)
         z += change
-        size = np.max(np.abs(change))
         share = size / before if iteration > 1 else 0.0
         done = size <= 1e-3 * _NEWTON * tolerance
         if iteration > 1 and share < 1:
             done = done or share / (1 - share) * size <= _NEWTON * tolerance
         if done:
-            filtered = velocity + np.dot(ESTIMATE, z) / h
+            bend = ESTIMATE[0] * z[0] + ESTIMATE[1] * z[1] + ESTIMATE[2] * z[2]
+            filtered = velocity + bend / h
             return y + z[2], filtered / (REAL / h - by_state), 3 * iteration
         if share >= 1 or not size < 1e3:
             break
