@@ -19,7 +19,7 @@ import jax  # noqa: E402
 
 jax.config.update("jax_enable_x64", True)
 
-from solvers import AMPLITUDE, PERIOD, SLOPE, TWO_PI, scene  # noqa: E402
+from scenes import AMPLITUDE, PERIOD, SLOPE, TWO_PI, scene  # noqa: E402
 
 from frictionjax.wiggly.lanes import Cells, Jobs, LaneScene, Legs, march  # noqa: E402
 from frictionjax.wiggly.rodas4p2 import Rodas4P2  # noqa: E402
@@ -79,7 +79,7 @@ LANES, SLIPS = 1024, 4
 
 def run(tableau: Tableau, eps: float, gamma: float, tolerance: float):
     """Positions at the end, steps a slip, share rejected, seconds."""
-    one = scene()
+    one = scene("vertical")
     parts = LaneScene(one.potential, one.support, one.load)
     start = np.random.default_rng(0).uniform(0.1, 0.5, LANES)
     edge = AMPLITUDE * np.sin(TWO_PI * start / PERIOD) - SLOPE

@@ -1,163 +1,155 @@
-"""A sweep against compiled solvers, at equal accuracy, on both cores.
+"""A sweep against compiled solvers, at equal accuracy, on both cores; prints Markdown.
 
-    python benchmarks/sweep.py [--gamma 1 2] [--smallest 1e-4] [--peers heyoka lsoda]
+    python benchmarks/sweep.py [--scene vertical|angular] [--gamma 0.5 1 2] [--cells 16]
+        [--smallest 1e-4] [--patience 20] [--peers heyoka numbalsoda ...]
 
-The benchmark scene: a vertical spring on a sine of slope 0.1, k_h = alpha = 1, load
-1.0488 sin(2 pi t/3) on [0, 3]. Error: max over 61 times, those inside a slip left out,
-in units of eps, against our own method at accuracy 1e-6. Each peer runs at its cheapest
-tolerance of those listed that reaches 1e-3, 8 lanes of one batch or one lane a core, and
-a cell's time is half of what one core takes. Peers are left out of cells where they would
-take more than a minute, which is said.
+16 eps from 0.1 to 1e-4, a sweep for each gamma and one of all together. Error: max over
+61 times, those inside a slip left out, in units of eps, against our own method at accuracy
+1e-6. A cell's time for us is its share of the sweep (also: solved alone); for a peer that
+of a lane while both cores run such cells, at the loosest tolerance of those tried that
+reaches 1e-3 eps. Wall seconds; CPU seconds where said, which other programs on the machine
+change less. All warm; compilation is printed apart. A peer that runs out of patience
+(seconds a run) is left out from there on.
 """
 
 import argparse
-import importlib.util
-import sys
-import time
-from pathlib import Path
 
 import numpy as np
+from cores import Cores
+from ours import Timed, solve, timed
+from peers import COMPILED, PEERS, installed
+from scenes import NAMES, scene
+from truth import ACCURACY, error_of, own
 
-import frictionjax as fx
+from frictionjax.wiggly.status import status_of
 
-fx.use_fast_cpu()
-
-import jax  # noqa: E402
-
-jax.config.update("jax_enable_x64", True)
-sys.path.insert(0, str(Path(__file__).parent))
-
-from solvers import AMPLITUDE, PERIOD, SLOPE, TIMES, TWO_PI, scene  # noqa: E402
-
-from frictionjax.wiggly.engine import integrate_cells  # noqa: E402
-
-ACCURACY = 1e-3
-PATIENCE = 60.0  # s a cell
-TOLERANCES = (1e-6, 1e-8, 1e-10)
+TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10)
+_A_WELL = 0.5  # eps: an error that means another well
 
 
-def truth(eps: float, gamma: float) -> tuple[np.ndarray, np.ndarray]:
-    """States at TIMES, and which of them are not inside a slip."""
-    shift = 0.005 * eps / (AMPLITUDE * TWO_PI / PERIOD)
-    around = np.clip(np.stack([TIMES - shift, TIMES, TIMES + shift]), 0, PERIOD)
-    every, place = np.unique(around, return_inverse=True)
-    cell = np.array([eps]), np.array([gamma])
-    z = integrate_cells(scene(), *cell, every, 1e-6, "auto", balanced=False).z[0]
-    before, now, after = z[place.reshape(3, -1)]
-    return now, np.abs(after - before) <= 0.05 * eps
+class Contest:
+    """Each peer's cheapest tolerance, cell by cell, and what failed on the way."""
+
+    def __init__(self, scene: str, peers: list[str], patience: float):
+        self.scene, self.peers, self.patience = scene, peers, patience
+        self.cores, self.left_out = Cores(), set()
+        self.failures, self.compiled = [], dict.fromkeys(peers, 0.0)
+
+    def cheapest(self, name: str, eps: float, gamma: float, truth) -> tuple:
+        """Both-core seconds a cell, wall and CPU, and a text with error and tolerance."""
+        if (name, gamma) in self.left_out:
+            return np.inf, np.inf, "-"
+        met = []
+        for tolerance in TOLERANCES:
+            job = name, self.scene, eps, gamma, tolerance
+            found = self.cores.solve(job, self.patience)
+            self.compiled[name] = max(self.compiled[name], found.compiled)
+            error = np.inf if found.failure else error_of(found.z, truth, eps)
+            if error <= ACCURACY:
+                text = f"{found.seconds:.2g} ({error:.0e}, {tolerance:.0e})"
+                return found.seconds, found.cpu, text
+            if not found.failure and error > _A_WELL:
+                self.failures.append(
+                    f"{name}, gamma {gamma:g}, eps {eps:.2g}, {tolerance:.0e}: "
+                    f"{error:.2g} eps off, success reported"
+                )
+            met.append(f"{tolerance:.0e}: {found.failure or f'{error:.1e} eps off'}")
+            if found.failure.startswith("> "):
+                self.left_out.add((name, gamma))
+                break
+        self.failures.append(f"{name}, gamma {gamma:g}, eps {eps:.2g}: {'; '.join(met)}")
+        return np.inf, np.inf, "failed"
 
 
-def ours(eps: np.ndarray, gamma: np.ndarray, method: str):
-    """States of all cells, seconds warm (best, worst of 5), seconds of the first call."""
-    seconds = []
-    for _ in range(6):
-        start = time.perf_counter()
-        found = integrate_cells(
-            scene(), eps, gamma, TIMES, ACCURACY, method, balanced=False
-        )
-        seconds.append(time.perf_counter() - start)
-    return found, min(seconds[1:]), max(seconds[1:]), seconds[0]
-
-
-def heyoka_batch(eps: float, gamma: float, tolerance: float):
-    """Seconds of one core a lane, and states, of heyoka in a batch of 8 equal lanes."""
-    import heyoka as hy
-
-    y = hy.make_vars("y")
-    drag = eps ** (1 + gamma)
-    normal = 1.0 + eps * SLOPE / TWO_PI * hy.sin(TWO_PI * y)
-    pull = AMPLITUDE * hy.sin(TWO_PI / PERIOD * hy.time)
-    rate = (pull - eps * y - SLOPE * hy.cos(TWO_PI * y) * normal) / drag
-    start = time.perf_counter()
-    lanes = hy.taylor_adaptive_batch([(y, rate)], np.zeros((1, 8)), tol=tolerance)
-    compiled = time.perf_counter() - start
-    start = time.perf_counter()
-    grid = np.repeat(TIMES[:, None], 8, axis=1)
-    _, values = lanes.propagate_grid(grid)
-    return (time.perf_counter() - start) / 8, eps * values[:, 0, 0], compiled
-
-
-def lsoda(eps: float, gamma: float, tolerance: float):
-    """Seconds of one core, and states, of numbalsoda's compiled LSODA."""
-    from numba import cfunc
-    from numbalsoda import lsoda as solve
-    from numbalsoda import lsoda_sig
-
-    @cfunc(lsoda_sig)
-    def rate(t, y, dy, p):
-        phase = TWO_PI * y[0]
-        normal = 1 + p[0] * SLOPE / TWO_PI * np.sin(phase)
-        pull = AMPLITUDE * np.sin(TWO_PI * t / PERIOD)
-        dy[0] = (pull - p[0] * y[0] - SLOPE * np.cos(phase) * normal) / p[1]
-
-    numbers = np.array([eps, eps ** (1 + gamma)])
-    start = time.perf_counter()
-    found, success = solve(
-        rate.address, np.zeros(1), TIMES, numbers, rtol=1e-13, atol=tolerance, mxstep=10**9
+def report(run: Timed, eps: np.ndarray, gamma: np.ndarray, truths, method: str):
+    """Errors by cell of our sweep; prints a line about the whole."""
+    found, best, worst, first, cpu = run
+    cells = zip(found.z, truths, eps, strict=True)
+    errors = np.array([error_of(z, truth, e) for z, truth, e in cells])
+    bad = {status_of(int(s)).name for s in found.status if s != 0}
+    gammas = ", ".join(f"{g:g}" for g in np.unique(gamma))
+    print(
+        f"ours, {method}, gamma {gammas}: {best:.3f} s for {eps.size} cells "
+        f"({worst:.3f} at worst, CPU {cpu:.3f}); first call {first:.1f} s; "
+        f"largest error {np.nanmax(errors):.1e} eps; status {', '.join(bad) or 'OK'}",
+        flush=True,
     )
-    seconds = time.perf_counter() - start
-    return seconds, np.where(success, eps * found[:, 0], np.nan), 0.0
+    return errors
 
 
-PEERS = {"heyoka": heyoka_batch, "lsoda": lsoda}
+def alone(one, eps: float, gamma: float) -> float:
+    return timed(lambda: solve(one, eps, gamma, ACCURACY), 3)[1]
 
 
-def installed() -> list[str]:
-    """Peers that can be imported; numbalsoda needs a Fortran compiler to install."""
-    needs = {"heyoka": "heyoka", "lsoda": "numbalsoda"}
-    return [name for name in PEERS if importlib.util.find_spec(needs[name])]
-
-
-def cheapest(peer, eps, gamma, exact, counted) -> tuple[float, float, str]:
-    """Both-core seconds and error at the cheapest tolerance that is accurate enough."""
-    best = (np.inf, np.nan, "never accurate")
-    for tolerance in TOLERANCES:
-        seconds, z, _ = peer(eps, gamma, tolerance)
-        error = np.abs(z - exact)[counted].max() / eps
-        if error < ACCURACY and seconds / 2 < best[0]:
-            best = (seconds / 2, error, f"{tolerance:g}")
-            break
-        if seconds > PATIENCE:
-            return best
-    return best
+def table(contest: Contest, eps: np.ndarray, gamma: float, truths, errors, run: Timed):
+    """Rows of one gamma; the fastest peers added up, over cells where one has ended."""
+    one, share = scene(contest.scene), run.best / eps.size
+    names = " | ".join(contest.peers)
+    print(f"\n| gamma | eps | our error | share, s | alone, s | {names} | peer/share |")
+    print("|---" * (6 + len(contest.peers)) + "|")
+    fastest = []
+    for e, truth, error in zip(eps, truths, errors, strict=True):
+        met = [contest.cheapest(name, float(e), gamma, truth) for name in contest.peers]
+        fastest.append(np.min([(np.inf, np.inf), *(m[:2] for m in met)], axis=0))
+        wall = fastest[-1][0]
+        ratio = f"{wall / share:.2g}" if np.isfinite(wall) else "-"
+        columns = [f"{gamma:g}", f"{e:.2g}", f"{error:.0e}", f"{share:.2g}"]
+        columns += [f"{alone(one, e, gamma):.2g}", *(m[2] for m in met), ratio]
+        print(f"| {' | '.join(columns)} |", flush=True)
+    wall, cpu = np.array(fastest).T
+    ended = np.isfinite(wall)
+    added, busy = wall[ended].sum(), cpu[ended].sum()
+    part = ended.mean() or 1.0
+    print(
+        f"\nfastest peers added up: {added:.3f} s over {ended.sum()} of {eps.size} cells, "
+        f"{added / (part * run.best):.2g} times our share of those, "
+        f"{added / run.best:.2g} times our whole sweep; in CPU seconds {2 * busy:.3f}, "
+        f"{2 * busy / run.cpu:.2g} times our whole sweep\n",
+        flush=True,
+    )
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--gamma", type=float, nargs="+", default=[1.0, 2.0])
+    parser.add_argument("--scene", choices=NAMES, default="vertical")
+    parser.add_argument("--gamma", type=float, nargs="+", default=[0.5, 1.0, 2.0])
+    parser.add_argument("--largest", type=float, default=0.1)
     parser.add_argument("--smallest", type=float, default=1e-4)
     parser.add_argument("--cells", type=int, default=16)
-    parser.add_argument("--peers", nargs="*", default=installed())
-    arguments = parser.parse_args()
-    grid = np.geomspace(0.1, arguments.smallest, arguments.cells)
-    gamma, eps = (a.ravel() for a in np.meshgrid(arguments.gamma, grid, indexing="ij"))
-    exact = [truth(e, g) for e, g in zip(eps, gamma, strict=True)]
-    for method in ("auto", "resolved"):
-        found, best, worst, first = ours(eps, gamma, method)
-        errors = [
-            np.abs(z - now)[counted].max() / e
-            for z, (now, counted), e in zip(found.z, exact, eps, strict=True)
+    parser.add_argument("--patience", type=float, default=20.0)
+    usual = [name for name in installed() if name in COMPILED]
+    parser.add_argument("--peers", nargs="*", default=usual, choices=PEERS)
+    parser.add_argument("--methods", nargs="+", default=["auto", "resolved"])
+    chosen = parser.parse_args()
+    eps = np.geomspace(chosen.largest, chosen.smallest, chosen.cells)
+    contest = Contest(chosen.scene, chosen.peers, chosen.patience)
+    print(f"scene: {chosen.scene}")
+    everything, one = [], scene(chosen.scene)
+
+    def sweep(cells, gammas, method):
+        return timed(lambda: solve(one, cells, gammas, ACCURACY, method))
+
+    for gamma in chosen.gamma:
+        gammas = np.full(eps.size, gamma)
+        # Before the reference, so that the first call of the first gamma compiles.
+        runs = [sweep(eps, gammas, method) for method in chosen.methods]
+        truths = [own(one, float(e), gamma) for e in eps]
+        everything += truths
+        found = [
+            report(run, eps, gammas, truths, method)
+            for run, method in zip(runs, chosen.methods, strict=True)
         ]
-        print(
-            f"ours, {method}: {best:.3f} s ({worst:.3f} at worst) for {eps.size} cells, "
-            f"first call {first:.1f} s, largest error {max(errors):.1e} eps",
-            flush=True,
-        )
-    print(f"{'gamma':>5s} {'eps':>8s}  peer, s on both cores, error/eps, tolerance")
-    total, patience = 0.0, {}
-    for e, g, (now, counted) in zip(eps, gamma, exact, strict=True):
-        row, fastest = [], np.inf
-        for name in arguments.peers:
-            if patience.get((name, g)):
-                row.append(f"{name} left out")
-                continue
-            seconds, error, tolerance = cheapest(PEERS[name], e, g, now, counted)
-            patience[name, g] = not seconds < PATIENCE / 2
-            row.append(f"{name} {seconds:.4f} {error:.0e} {tolerance}")
-            fastest = min(fastest, seconds)
-        total += fastest
-        print(f"{g:5g} {e:8.2g}  {'; '.join(row)}", flush=True)
-    print(f"fastest peer of each cell, added up: {total:.3f} s")
+        table(contest, eps, gamma, truths, found[0], runs[0])
+    if len(chosen.gamma) > 1:
+        gammas = np.repeat(chosen.gamma, eps.size)
+        every = np.tile(eps, len(chosen.gamma))
+        run = sweep(every, gammas, chosen.methods[0])
+        report(run, every, gammas, everything, chosen.methods[0])
+    contest.cores.stop()
+    compiled = ", ".join(f"{n} {s:.1f} s" for n, s in contest.compiled.items())
+    print(f"compilation: {compiled}")
+    for line in contest.failures:
+        print(f"not accurate: {line}")
 
 
 if __name__ == "__main__":

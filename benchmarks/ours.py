@@ -1,0 +1,46 @@
+"""Our own solver as benchmarks call it; imported before JAX starts, for its flags."""
+
+import time
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import frictionjax as fx
+
+fx.use_fast_cpu()
+
+import jax  # noqa: E402
+
+jax.config.update("jax_enable_x64", True)
+
+from scenes import TIMES  # noqa: E402
+
+from frictionjax.wiggly.engine import integrate_cells  # noqa: E402
+
+_LONG = 5.0  # s of one run, beyond which two repeats are enough
+
+
+def solve(one: fx.Scene, eps, gamma, accuracy: float, method: str = "auto"):
+    """Answers of all cells at once, at TIMES."""
+    eps, gamma = np.atleast_1d(eps), np.atleast_1d(gamma)
+    return integrate_cells(one, eps, gamma, TIMES, accuracy, method, balanced=False)
+
+
+class Timed(NamedTuple):
+    """Wall seconds, best and worst of the repeats and of the first call; CPU, least."""
+
+    found: Any
+    best: float
+    worst: float
+    first: float
+    cpu: float
+
+
+def timed(run, repeats: int = 5) -> Timed:
+    wall, cpu = [], []
+    while len(wall) <= (2 if wall and wall[-1] > _LONG else repeats):
+        start, busy = time.perf_counter(), time.process_time()
+        found = run()
+        wall.append(time.perf_counter() - start)
+        cpu.append(time.process_time() - busy)
+    return Timed(found, min(wall[1:]), max(wall[1:]), wall[0], min(cpu[1:]))
