@@ -3,26 +3,24 @@
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import xarray as xr
-from jaxtyping import Array
 from tqdm import tqdm
 
 from .admissibility import require_reach
 from .arguments import as_real, require_numbers, require_x64
 from .cells import Cell, run_block
-from .coefficients import coefficients
+from .coefficients import coefficients_jit
 from .limit_system import (
     LimitSolution,
     require_start_in_strip,
     solve_limit,
-    strip,
 )
 from .provenance import describe
 from .scene import Scene, require_times
+from .strip import strips_at
 from .wiggly.engine import integrate_cells
 from .wiggly.methods import is_ours, solver_of
 from .wiggly.status import Status
@@ -206,15 +204,10 @@ def _cell_values(cells: Cell) -> dict[str, np.ndarray]:
     return {name: np.asarray(value) for name, value in values.items()}
 
 
-@eqx.filter_jit
-def _strips(scene: Scene, ts: Array):
-    found = coefficients(scene.potential)
-    loads = jax.vmap(scene.load)(ts)
-    return loads, *jax.vmap(lambda load: strip(scene.support, found, load))(loads)
-
-
 def _limit_values(scene: Scene, limit: LimitSolution) -> dict[str, np.ndarray]:
-    load, lower, upper = _strips(scene, limit.ts)
+    found = coefficients_jit(scene.potential)
+    rho = float(found.rho_plus), float(found.rho_minus)
+    load, lower, upper = strips_at(scene, *rho, np.asarray(limit.ts))
     values = {
         "z_limit": limit.z,
         "dissipation_limit": limit.dissipation,

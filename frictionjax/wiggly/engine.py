@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Array
 
 from ..arguments import Real
+from ..coefficients import Coefficients
 from ..potentials import AbstractPotential, BristlePotential
 from ..scene import Scene
 from .evaluation import Answers, Found, evaluate
@@ -23,7 +24,7 @@ from .rodas5p import Rodas5P
 from .rosenbrock import Tableau
 from .series_bristle import series_of
 from .status import Status
-from .tolerance import Folds, plan_steps
+from .tolerance import Folds, plan_steps, pull_of
 from .tolerance import Plan as StepPlan
 from .windows import Ground, Plan, Windows, gaps_of, plan_windows, starts_of
 
@@ -44,8 +45,9 @@ Report = Callable[[float], None]
 
 
 @eqx.filter_jit
-def _controls(scene: Scene, eps: Array, gamma: Array, accuracy: Real) -> StepPlan:
-    return jax.vmap(lambda e, g: plan_steps(scene, e, g, accuracy))(eps, gamma)
+def _controls(scene, rho_plus, rho_minus, eps, gamma, accuracy) -> StepPlan:
+    pull = pull_of(scene, Coefficients(rho_plus, rho_minus))
+    return jax.vmap(lambda e, g: plan_steps(scene, e, g, accuracy, pull))(eps, gamma)
 
 
 def _fixed(values: np.ndarray) -> jnp.ndarray:
@@ -337,7 +339,8 @@ def integrate_cells(
     lanes = lane_scene(scene, float(eps.max()))
     # The bristle as a series compiles faster too.
     smooth = eqx.tree_at(lambda s: s.potential, scene, lanes.potential)
-    control = _controls(smooth, _fixed(eps), _fixed(gamma), jnp.asarray(accuracy))
+    rho = np.asarray(path.rho_plus), np.asarray(path.rho_minus)
+    control = _controls(smooth, *rho, _fixed(eps), _fixed(gamma), np.asarray(accuracy))
     control = _some(control, np.arange(eps.size))
     ground = ground_of(scene, path, eps, gamma, control.folds)
     needs = _choose(path, eps, _needs(control, ground, path, accuracy), ts.size, method)

@@ -6,18 +6,16 @@ and known starts decide which values are accepted.
 
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real
 from ..coefficients import coefficients_jit
-from ..roots import bracketed_root
+from ..programs import Program, in_chunks
+from ..roots import find_root
 from ..scene import Scene
-
-_LEAST = 256  # times of one compiled call
+from ..strip import CHUNK, strips_at
 
 
 class Path(NamedTuple):
@@ -47,50 +45,20 @@ class Path(NamedTuple):
         return np.clip(found, 0, self.direction.size - 1)
 
 
-@eqx.filter_jit
-def _edges(scene: Scene, rho_plus: Real, rho_minus: Real, times: Float[Array, " n"]):
-    """Both edges of the strip in m at each time."""
-    loads = jax.vmap(scene.load)(times)
-    ends = jax.vmap(scene.support.state_of)
-    return ends(loads - rho_plus), ends(loads - rho_minus)
-
-
-@eqx.filter_jit
+@Program
 def _rates(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"]):
     """l' in N/s at the times and Phi'' in N/m at the states."""
     slopes = jax.vmap(scene.load.slope)(times)
     return slopes, jax.vmap(scene.support.stiffness_at)(states)
 
 
-@eqx.filter_jit
+@Program
 def _times_at(scene: Scene, states, rho, early, late):
     """Time in [early, late] at which the edge that belongs to `rho` is at each state."""
-
-    def one(state: Real, rho: Real, early: Real, late: Real) -> Real:
-        wanted = scene.support.force(state) + rho
-        rising = jnp.where(scene.load(late) >= scene.load(early), 1.0, -1.0)
-        return bracketed_root(lambda t: rising * (scene.load(t) - wanted), early, late)
-
-    return jax.vmap(one)(states, rho, early, late)
-
-
-def _padded(*columns: np.ndarray) -> list[Array]:
-    """Columns lengthened by their last entry to few different sizes."""
-    size = _LEAST
-    while size < columns[0].size:
-        size *= 4
-    return [jnp.asarray(np.pad(c, (0, size - c.size), mode="edge")) for c in columns]
-
-
-def _edges_at(
-    scene: Scene, rho_plus: float, rho_minus: float, times: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """`z_minus` and `z_plus` in m at each time."""
-    if times.size == 0:
-        return times, times
-    rho = jnp.asarray(rho_plus), jnp.asarray(rho_minus)
-    lower, upper = _edges(scene, *rho, *_padded(times))
-    return np.asarray(lower)[: times.size], np.asarray(upper)[: times.size]
+    load = jax.vmap(scene.load)
+    wanted = jax.vmap(scene.support.force)(states) + rho
+    rising = jnp.where(load(late) >= load(early), 1.0, -1.0)
+    return (find_root(lambda t: rising * (load(t) - wanted), early, late),)
 
 
 def times_at(scene: Scene, path: Path, piece: np.ndarray, states: np.ndarray) -> np.ndarray:
@@ -98,14 +66,14 @@ def times_at(scene: Scene, path: Path, piece: np.ndarray, states: np.ndarray) ->
     if states.size == 0:
         return states
     columns = states, path.rho[piece], path.touch[piece], path.edges[piece + 1]
-    found = np.asarray(_times_at(scene, *_padded(*columns)))[: states.size]
+    (found,) = in_chunks(_times_at, CHUNK, (scene,), columns)
     return np.clip(found, columns[2], columns[3])
 
 
 def states_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
     """The path's state in m at each time."""
     piece = path.piece_of(times)
-    lower, upper = _edges_at(scene, path.rho_plus, path.rho_minus, times)
+    _, lower, upper = strips_at(scene, path.rho_plus, path.rho_minus, times)
     edge = np.where(path.direction[piece] > 0, lower, upper)
     slides = (path.direction[piece] != 0) & (times > path.touch[piece])
     ends = np.sort(np.stack([path.states[piece], path.states[piece + 1]]), axis=0)
@@ -120,9 +88,8 @@ def slopes_at(
         return times
     piece = path.piece_of(times)
     slides = (path.direction[piece] != 0) & (times > path.touch[piece])
-    slope, stiffness = _rates(scene, *_padded(times, states))
-    speed = np.asarray(slope)[: times.size] / np.asarray(stiffness)[: times.size]
-    return np.where(slides, speed, 0.0)
+    slope, stiffness = in_chunks(_rates, CHUNK, (scene,), (times, states))
+    return np.where(slides, slope / stiffness, 0.0)
 
 
 def _speeds(scene: Scene, path: Path) -> tuple[float, float]:
@@ -132,7 +99,7 @@ def _speeds(scene: Scene, path: Path) -> tuple[float, float]:
     times = (start + (end - start) * share).ravel()
     states = states_at(scene, path, times)
     speeds = slopes_at(scene, path, times, states)
-    _, stiffness = _rates(scene, *_padded(times, states))
+    _, stiffness = in_chunks(_rates, CHUNK, (scene,), (times, states))
     return float(np.max(np.abs(speeds))), float(np.min(stiffness))
 
 
@@ -145,7 +112,7 @@ def path_of(scene: Scene) -> Path | None:
     edges = np.unique(np.concatenate([[0.0], turns[turns < duration], [duration]]))
     found = coefficients_jit(scene.potential)
     rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
-    lower, upper = _edges_at(scene, rho_plus, rho_minus, edges)
+    _, lower, upper = strips_at(scene, rho_plus, rho_minus, edges)
     states = np.empty(edges.size)
     states[0] = np.clip(float(scene.z0), lower[0], upper[0])
     for i in range(1, edges.size):
