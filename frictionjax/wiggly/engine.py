@@ -16,7 +16,7 @@ from ..potentials import AbstractPotential, BristlePotential
 from ..scene import Scene
 from .evaluation import Answers, Found, evaluate
 from .forgetting import lag_forces
-from .lanes import Arrivals, Cells, Jobs, LaneScene, Legs, march
+from .lanes import Arrivals, Cells, Jobs, LaneScene, Legs, Room, march, prepare
 from .layout import Layout, Needs, cost_of, lay_out, wells_of
 from .path import Path, path_of
 from .rodas4p2 import Rodas4P2
@@ -40,6 +40,8 @@ _BATCH = 1e5  # wells: a few seconds, between two reports
 _AFFORDABLE = 2e5
 _TIGHT = 3e-5  # tolerance below which the scheme of order 5 is the cheaper one
 _CELLS = 64
+# Accuracy below which the tolerance is below `_TIGHT`, and values worth a guess at rooms.
+_LIKELY_TIGHT, _FEW = 100 * _TIGHT, 500
 
 Report = Callable[[float], None]
 
@@ -337,6 +339,7 @@ def integrate_cells(
     if path is None:
         return None
     lanes = lane_scene(scene, float(eps.max()))
+    _prepare(lanes, eps.size, ts.size, accuracy, balanced)
     # The bristle as a series compiles faster too.
     smooth = eqx.tree_at(lambda s: s.potential, scene, lanes.potential)
     rho = np.asarray(path.rho_plus), np.asarray(path.rho_minus)
@@ -368,6 +371,13 @@ def integrate_cells(
         never[again] = open_
     _from_the_start(sweep, every, answers, np.flatnonzero(never))
     return answers
+
+
+def _prepare(lanes: LaneScene, cells: int, times: int, accuracy: float, balanced) -> None:
+    """Have the loop compiled beside the planning, where its scheme is known already."""
+    if accuracy < _LIKELY_TIGHT and cells * times > _FEW:
+        legs = cells * times // _WORKERS
+        prepare(lanes, Rodas5P.tableau, Room(cells, legs // 2, legs), balanced)
 
 
 def _affordable(path: Path, cells: _Cellwise) -> np.ndarray:
