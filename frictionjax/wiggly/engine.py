@@ -6,13 +6,14 @@ from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
 from ..arguments import Real
 from ..coefficients import Coefficients
 from ..potentials import AbstractPotential, BristlePotential
+from ..profiles import AbstractProfile
+from ..programs import Program
 from ..scene import Scene
 from .evaluation import Answers, Found, evaluate
 from .forgetting import lag_forces
@@ -46,21 +47,21 @@ _LIKELY_TIGHT, _FEW = 100 * _TIGHT, 500
 Report = Callable[[float], None]
 
 
-@eqx.filter_jit
+@Program
 def _controls(scene, rho_plus, rho_minus, eps, gamma, accuracy) -> StepPlan:
     pull = pull_of(scene, Coefficients(rho_plus, rho_minus))
     return jax.vmap(lambda e, g: plan_steps(scene, e, g, accuracy, pull))(eps, gamma)
 
 
-def _fixed(values: np.ndarray) -> jnp.ndarray:
+def _fixed(values: np.ndarray) -> np.ndarray:
     """Values of the cells padded to few different sizes."""
     size = _CELLS
     while size < values.size:
         size *= 4
-    return jnp.asarray(np.pad(values, (0, size - values.size), mode="edge"))
+    return np.pad(values, (0, size - values.size), mode="edge")
 
 
-@eqx.filter_jit
+@Program
 def _tips(potential: AbstractPotential, z0: Real, eps: Array):
     return jax.vmap(lambda e: potential.tip(z0, e))(eps)
 
@@ -88,12 +89,17 @@ def ground_of(
     )
 
 
+@Program
+def _heights(profile: AbstractProfile, places: Array) -> Array:
+    return jax.vmap(profile)(places)
+
+
 def lane_scene(scene: Scene, highest: float) -> LaneScene:
     """The scene as lanes see it, with the bristle as a series where one converges."""
     potential = scene.potential
     if isinstance(potential, BristlePotential):
-        scan = jnp.arange(potential.points) / potential.points
-        height = float(jnp.max(jnp.abs(jax.vmap(potential.profile)(scan))))
+        scan = np.arange(potential.points) / potential.points
+        height = float(np.max(np.abs(_heights(potential.profile, scan))))
         bristle = series_of(potential.bristle, 1.01 * highest * height)
         potential = BristlePotential(potential.profile, bristle)
     return LaneScene(potential, scene.support, scene.load)

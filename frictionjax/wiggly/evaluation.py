@@ -132,9 +132,11 @@ def _surveys(slides: list[Slide], stops: _Stops) -> dict[int, Survey]:
         extremes = stops.extremes[:, at].swapaxes(0, 1)
         start = stops.energy[at] + sums[:, WORK] + stops.beyond[at]
         extremes[:, SURPLUS:] -= start[:, None]
-        ends = (np.array([getattr(s, end) for s in some]) for end in ("low", "high"))
-        periods = (np.stack([getattr(s, end) for s in some]) for end in ("starts", "ends"))
-        found |= zip(mine, surveys_of(*ends, *periods, sums, extremes), strict=True)
+        low, high = np.array([(slide.low, slide.high) for slide in some]).T
+        starts = np.stack([slide.starts for slide in some])
+        ends = np.stack([slide.ends for slide in some])
+        fits = surveys_of(low, high, starts, ends, sums, extremes)
+        found |= zip(mine.tolist(), fits, strict=True)
     return found
 
 

@@ -117,10 +117,14 @@ def _inner_parts(scene: Scene, path: Path, eps: np.ndarray, needs: Needs) -> _In
 def _sample(scene: Scene, path: Path, eps: np.ndarray, needs: Needs, parts: _Inner):
     """Wells whose passage is measured in each inner part, and times before and after."""
     wells, owner = [], []
-    for i in range(parts.cell.size):
-        count = int(needs.nodes[parts.cell[i]])
-        times = nodes_of(float(parts.low[i]), float(parts.high[i]), count)
-        way = np.abs(states_at(scene, path, times) - path.states[parts.piece[i]])
+    nodes = [
+        nodes_of(float(low), float(high), int(needs.nodes[cell]))
+        for cell, low, high in zip(parts.cell, parts.low, parts.high, strict=True)
+    ]
+    states = states_at(scene, path, np.concatenate([*nodes, np.zeros(0)]))
+    cuts = np.cumsum([times.size for times in nodes])
+    for i, here in enumerate(np.split(states, cuts)[:-1] if nodes else []):
+        way = np.abs(here - path.states[parts.piece[i]])
         at = way / eps[parts.cell[i]] - needs.offset[parts.cell[i], parts.piece[i]]
         at = np.clip(np.round(at), parts.first[i], parts.last[i] - 1)
         wells.append(np.unique(at))
@@ -163,6 +167,22 @@ def _lattice(scene: Scene, path: Path, eps: np.ndarray, needs: Needs, parts: _In
     return whose, times_at(scene, path, piece, _level(path, eps, needs, whose, piece, well))
 
 
+def _cuts(parts: _Inner, cell: int, fixed: np.ndarray, lattice: np.ndarray):
+    """Where a cell's segments open, its stops in the chain, and the segment of each.
+
+    Inner parts are left out: a segment begins where the one before it ends.
+    """
+    mine = np.flatnonzero(parts.cell == cell)
+    mine = mine[np.argsort(parts.low[mine])]
+    low, high = parts.low[mine], parts.high[mine]
+    own = np.unique(np.concatenate([fixed, lattice, low]))
+    hole = np.searchsorted(low, own) - 1  # of those that begin before
+    inside = (hole >= 0) & (own < np.append(high, 0.0)[hole])
+    own = own[~inside & (own > 0)]
+    opening = np.concatenate([[0.0], high])
+    return opening, own, np.searchsorted(opening, own, side="left") - 1
+
+
 def lay_out(
     scene: Scene, path: Path, eps: np.ndarray, ts: np.ndarray, needs: Needs
 ) -> Layout:
@@ -180,21 +200,16 @@ def lay_out(
     chain: list[np.ndarray] = []
     output = np.full((eps.size, ts.size), -1)
     count = 0
-    for cell in range(eps.size):
-        mine = np.flatnonzero(parts.cell == cell)
-        low, high = parts.low[mine], parts.high[mine]
-        order = np.argsort(low)
-        low, high = low[order], high[order]
-        lattice = lattice_time[lattice_cell == cell]
-        own = np.unique(np.concatenate([fixed, lattice, low]))
-        hole = np.searchsorted(low, own) - 1  # of those that begin before
-        inside = (hole >= 0) & (own < np.append(high, 0.0)[hole])
-        own = own[~inside & (own > 0)]
-        # A segment begins where the hole before it ends.
-        opening = np.concatenate([[0.0], high])
-        segment = np.searchsorted(opening, own, side="left") - 1
-        way = way_at(scene, path, np.concatenate([opening, own]))
-        since = (way[opening.size :] - way[segment]) / eps[cell]
+    cuts = [
+        _cuts(parts, cell, fixed, lattice_time[lattice_cell == cell])
+        for cell in range(eps.size)
+    ]
+    # Of all cells at once: a call each took 0.1 ms.
+    times = [t for opening, own, _ in cuts for t in (opening, own)]
+    every = way_at(scene, path, np.concatenate(times))
+    ways = np.split(every, np.cumsum([t.size for t in times]))
+    for cell, (opening, own, segment) in enumerate(cuts):
+        since = (ways[2 * cell + 1] - ways[2 * cell][segment]) / eps[cell]
         tile = np.floor(since / needs.tile[cell] - 1e-9)
         begins = own > opening[segment]
         own, segment, tile = own[begins], segment[begins], tile[begins]

@@ -46,6 +46,11 @@ class Path(NamedTuple):
 
 
 @Program
+def _turns(scene: Scene) -> Array:
+    return scene.turning_points()
+
+
+@Program
 def _rates(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"]):
     """l' in N/s at the times and Phi'' in N/m at the states."""
     slopes = jax.vmap(scene.load.slope)(times)
@@ -105,7 +110,7 @@ def _speeds(scene: Scene, path: Path) -> tuple[float, float]:
 
 def path_of(scene: Scene) -> Path | None:
     """The path of a scene; None where the load turns more often than there is room for."""
-    turns = np.asarray(scene.turning_points())
+    turns = np.asarray(_turns(scene))
     duration = float(scene.duration)
     if np.any(np.isnan(turns)):
         return None
