@@ -59,13 +59,14 @@ def scene_text(scene: Scene) -> str:
 
 def describe(data: xr.Dataset, scene: Scene, **facts: Any) -> xr.Dataset:
     """Attach units, long names, CF flags and provenance to the data set of a sweep."""
-    for name in data.variables:
+    for name, variable in data.variables.items():
         units, meaning = _MEANING[str(name)]
-        data[name].attrs["long_name"] = meaning
+        variable.attrs["long_name"] = meaning
         if units is not None:
-            data[name].attrs["units"] = units
-    data["status"].attrs["flag_values"] = np.array(FLAGS["flag_values"], dtype=np.int8)
-    data["status"].attrs["flag_meanings"] = FLAGS["flag_meanings"]
+            variable.attrs["units"] = units
+    status = data.variables["status"].attrs
+    status["flag_values"] = np.array(FLAGS["flag_values"], dtype=np.int8)
+    status["flag_meanings"] = FLAGS["flag_meanings"]
     known = _versions(*_PACKAGES)
     data.attrs = {
         "title": "Convergence of a wiggly viscous system to directional dry friction",

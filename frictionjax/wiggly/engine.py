@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array
 
 from ..arguments import Real
-from ..coefficients import Coefficients
+from ..coefficients import Coefficients, coefficients_jit
 from ..potentials import AbstractPotential, BristlePotential
 from ..profiles import AbstractProfile
 from ..programs import Program
@@ -40,7 +40,7 @@ _BATCH = 1e5  # wells: a few seconds, between two reports
 # Wells that one lane alone goes through at most: a minute or two.
 _AFFORDABLE = 2e5
 _TIGHT = 3e-5  # tolerance below which the scheme of order 5 is the cheaper one
-_CELLS = 64
+_CELLS = 16  # at least, in a compiled call: 64 take 4 ms, 16 one
 # Accuracy below which the tolerance is below `_TIGHT`, and values worth a guess at rooms.
 _LIKELY_TIGHT, _FEW = 100 * _TIGHT, 500
 
@@ -48,9 +48,17 @@ Report = Callable[[float], None]
 
 
 @Program
-def _controls(scene, rho_plus, rho_minus, eps, gamma, accuracy) -> StepPlan:
+def _plans(scene, rho_plus, rho_minus, eps, gamma, accuracy) -> StepPlan:
     pull = pull_of(scene, Coefficients(rho_plus, rho_minus))
     return jax.vmap(lambda e, g: plan_steps(scene, e, g, accuracy, pull))(eps, gamma)
+
+
+def _controls(scene, eps, gamma, accuracy, rho: tuple | None = None) -> StepPlan:
+    """Step control of all cells. `rho`: plus and minus, N, where they are known."""
+    if rho is None:
+        found = coefficients_jit(scene.potential)
+        rho = found.rho_plus, found.rho_minus
+    return _plans(scene, *map(np.asarray, rho), eps, gamma, np.asarray(accuracy))
 
 
 def _fixed(values: np.ndarray) -> np.ndarray:
@@ -348,8 +356,8 @@ def integrate_cells(
     _prepare(lanes, eps.size, ts.size, accuracy, balanced)
     # The bristle as a series compiles faster too.
     smooth = eqx.tree_at(lambda s: s.potential, scene, lanes.potential)
-    rho = np.asarray(path.rho_plus), np.asarray(path.rho_minus)
-    control = _controls(smooth, *rho, _fixed(eps), _fixed(gamma), np.asarray(accuracy))
+    rho = path.rho_plus, path.rho_minus
+    control = _controls(smooth, _fixed(eps), _fixed(gamma), accuracy, rho)
     control = _some(control, np.arange(eps.size))
     ground = ground_of(scene, path, eps, gamma, control.folds)
     needs = _choose(path, eps, _needs(control, ground, path, accuracy), ts.size, method)

@@ -1,5 +1,6 @@
 """Lanes: many short integrations of the wiggly system, side by side in one loop."""
 
+import contextlib
 import threading
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -446,8 +447,12 @@ def prepare(
         tables = (np.ones((n, w)) for n, w in zip(room, widths, strict=True))
         return _Tables(*tables, waiting=np.asarray(0))
 
-    program = scene, tableau, balanced, WIDTH
-    threading.Thread(target=_LOOPS.run, args=(program, needed, nothing)).start()
+    def compile_quietly() -> None:
+        # What cannot be compiled fails again in `march`, where somebody hears of it.
+        with contextlib.suppress(Exception):
+            _LOOPS.run((scene, tableau, balanced, WIDTH), needed, nothing)
+
+    threading.Thread(target=compile_quietly).start()
 
 
 def march(
