@@ -1,6 +1,7 @@
 """The hypotheses of the paper, checked where values are known and named where they fail."""
 
 import math
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -11,12 +12,13 @@ from .arguments import Real, as_text, is_concrete, require
 from .coefficients import Coefficients, coefficients_jit
 from .extrema import smallest
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
+from .programs import Program
 from .supports import AbstractSupport
 
 _EPS64 = float(np.finfo(np.float64).eps)
 
 
-@eqx.filter_jit
+@Program
 def _bristle_facts(potential: BristlePotential):
     bounds = potential.bristle.slope_bounds()
     curvature = jax.grad(jax.grad(potential.bristle.energy))(jnp.zeros(()))
@@ -53,7 +55,9 @@ def _require_slopes(
 ) -> None:
     low, high = float(found.omega_minus), float(found.omega_plus)
     a = float(found.a)
-    _, _, lower_name, upper_name = potential.bristle.slope_bounds()
+    # The names alone: computing the bounds op by op takes 0.1 s, the first time.
+    named = eqx.filter_eval_shape(potential.bristle.slope_bounds)
+    lower_name, upper_name = named.lower_name, named.upper_name
     name, value = _culprit(potential)
     needs = f"omega_plus < {upper_name}, but {high:.6g} >= {upper:.6g}"
     require(high < upper, name, value, needs)
@@ -75,10 +79,10 @@ def _culprit(potential: BristlePotential) -> tuple[str, object]:
     return "bristle", type(bristle).__name__
 
 
-_stretch = eqx.filter_jit(smallest_stretch)
+_stretch = Program(smallest_stretch)
 
 
-@eqx.filter_jit
+@Program
 def _stretches(potential: AbstractPotential, eps: Real):
     return jax.lax.map(lambda e: smallest_stretch(potential, e), eps)
 
@@ -91,7 +95,7 @@ def require_reach(potential: AbstractPotential, eps: Real) -> None:
     if not is_concrete(potential, eps):
         return
     sizes = np.unique(np.asarray(eps, dtype=float))
-    stretch = np.asarray(_stretches(potential, jnp.asarray(sizes)))
+    stretch = np.asarray(_stretches(potential, sizes))
     if np.all(stretch > 0):
         return
     worst = float(sizes[~(stretch > 0)][0])
@@ -105,7 +109,7 @@ def largest_eps(potential: AbstractPotential, upper: float) -> float:
     A scan over 12 decades for the first failure, then bisection in log eps.
     """
     grid = np.geomspace(1e-12 * upper, upper, 241)
-    fails = ~(np.asarray(_stretches(potential, jnp.asarray(grid))) > 0)
+    fails = ~(np.asarray(_stretches(potential, grid)) > 0)
     if not fails.any():
         return upper
     first = int(np.argmax(fails))
@@ -114,14 +118,14 @@ def largest_eps(potential: AbstractPotential, upper: float) -> float:
     low, high = float(grid[first - 1]), float(grid[first])
     while high / low > 1 + 1e-9:
         middle = math.sqrt(low * high)
-        if float(_stretch(potential, jnp.asarray(middle))) > 0:
+        if float(_stretch(potential, np.asarray(middle))) > 0:
             low = middle
         else:
             high = middle
     return low
 
 
-@eqx.filter_jit
+@Program
 def _range_and_convexity(support: AbstractSupport, low: Real, high: Real):
     ends = jax.vmap(support.state_of)(jnp.stack([low, high]))
     width = (ends[1] - ends[0]) / 1024
@@ -133,7 +137,7 @@ def _range_and_convexity(support: AbstractSupport, low: Real, high: Real):
     return ends, least, jnp.max(coarse), jax.vmap(support.force)(ends)
 
 
-def require_convex(support: AbstractSupport, low: Real, high: Real) -> None:
+def require_convex(support: AbstractSupport, low: Any, high: Any) -> None:
     """Check `Phi'' > 0` on the states that forces between `low` and `high` (N) reach.
 
     Raises `ValueError` where `Phi` is not uniformly convex there, or where `Phi'` does
@@ -141,8 +145,8 @@ def require_convex(support: AbstractSupport, low: Real, high: Real) -> None:
     """
     if not is_concrete(support, low, high):
         return
-    ends, least, largest, forces = _range_and_convexity(support, low, high)
     wanted = np.array([float(low), float(high)])
+    ends, least, largest, forces = _range_and_convexity(support, *wanted)
     size = max(1e-300, float(np.max(np.abs(wanted))))
     reached = np.all(np.abs(np.asarray(forces) - wanted) <= 1e-6 * size)
     span = f"[{float(ends[0]):.6g}, {float(ends[1]):.6g}]"

@@ -15,7 +15,7 @@ from .scene import Scene
 from .wiggly.integration import integrate
 from .wiggly.observed import AbstractWatch
 from .wiggly.status import Status
-from .wiggly.tolerance import plan_steps
+from .wiggly.tolerance import plan_steps, pull_of
 
 
 class Deviation(NamedTuple):
@@ -76,7 +76,8 @@ class Cell(NamedTuple):
 
 
 def _cell(scene: Scene, eps: Real, gamma: Real, ts, accuracy, solver, balanced) -> Cell:
-    plan = plan_steps(scene, eps, gamma, accuracy)
+    limit = coefficients(scene.potential)
+    plan = plan_steps(scene, eps, gamma, accuracy, pull_of(scene, limit))
     found = integrate(
         scene,
         eps,
@@ -86,7 +87,7 @@ def _cell(scene: Scene, eps: Real, gamma: Real, ts, accuracy, solver, balanced) 
         solver,
         until=jnp.asarray(scene.duration),
         balanced=balanced,
-        watch=LimitWatch(scene, coefficients(scene.potential)),
+        watch=LimitWatch(scene, limit),
     )
     unfinished = (found.status != Status.OK) & (found.status != Status.UNBALANCED)
     blank = jnp.where(unfinished, jnp.nan, 0.0)

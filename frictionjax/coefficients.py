@@ -3,12 +3,12 @@
 from typing import Any
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 
 from .arguments import Real, as_text, is_concrete
-from .extrema import periodic_extrema
+from .extrema import periodic_extrema, slope_of
 from .potentials import AbstractPotential, BristlePotential
+from .programs import Program
 
 OfBristle = Any
 """A traced real scalar, or None in the abstract setting, where there is no bristle."""
@@ -42,10 +42,10 @@ class Coefficients(eqx.Module):
 def coefficients(potential: AbstractPotential) -> Coefficients:
     """Coefficients of a potential, without checks; traceable and differentiable."""
     if not isinstance(potential, BristlePotential):
-        slope = jax.grad(potential._leading)
+        slope = slope_of(potential._leading)
         extrema = periodic_extrema(slope, potential.points)
         return Coefficients(rho_plus=extrema.max, rho_minus=extrema.min)
-    slope = jax.grad(lambda y: potential.profile(y))
+    slope = slope_of(potential.profile)
     extrema = periodic_extrema(slope, potential.points)
     a, alpha = potential.a(), potential.alpha()
     mu_plus = extrema.max / (1 + a * extrema.max)  # Lemma 3
@@ -62,4 +62,4 @@ def coefficients(potential: AbstractPotential) -> Coefficients:
     )
 
 
-coefficients_jit = eqx.filter_jit(coefficients)
+coefficients_jit = Program(coefficients)

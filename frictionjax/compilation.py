@@ -13,7 +13,7 @@ FAST_CPU_FLAGS = (
     "--xla_backend_extra_options=xla_cpu_small_while_loop_byte_threshold=1000000000 "
     "--xla_cpu_prefer_vector_width=512"
 )
-_WORTH_KEEPING = 0.2  # s of compilation
+_WORTH_KEEPING = 0.0  # s of compilation: small programs add up to 2 s of a study
 
 
 def use_fast_cpu() -> bool:

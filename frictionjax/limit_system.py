@@ -9,9 +9,11 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .arguments import Real, is_concrete, require, require_x64
-from .coefficients import Coefficients, coefficients
+from .coefficients import Coefficients, coefficients_jit
 from .friction_law import dissipation_potential
+from .programs import Program
 from .scene import Scene, require_times
+from .strip import strip_of, strips_at
 from .supports import AbstractSupport
 
 
@@ -28,10 +30,7 @@ class LimitSolution(eqx.Module):
 
 def strip(support: AbstractSupport, found: Coefficients, load: Real) -> tuple[Real, Real]:
     """States that rest under `load` (N): `[z_minus, z_plus]` in m (Section 5.1)."""
-    return (
-        support.state_of(load - found.rho_plus),
-        support.state_of(load - found.rho_minus),
-    )
+    return strip_of(support, found.rho_plus, found.rho_minus, load)
 
 
 def play_step(support: AbstractSupport, found: Coefficients, z: Real, load: Real) -> Real:
@@ -47,14 +46,13 @@ def _then(first, second):
 
 
 def limit_on_grid(
-    scene: Scene, grid: Float[Array, " m"]
+    scene: Scene, found: Coefficients, grid: Float[Array, " m"]
 ) -> tuple[Float[Array, " m"], Float[Array, " m"]]:
     """State and cumulative dissipation on a sorted grid that holds the turning points.
 
     Between grid points the load is monotone, so the solution is too, and a clip to the
     strip at the grid point is exact: there is no time-stepping error.
     """
-    found = coefficients(scene.potential)
     loads = jax.vmap(scene.load)(grid)
     lower, upper = jax.vmap(lambda load: strip(scene.support, found, load))(loads)
     lower, upper = jax.lax.associative_scan(_then, (lower, upper))
@@ -64,28 +62,24 @@ def limit_on_grid(
     return z, jnp.cumsum(spent)
 
 
-@eqx.filter_jit
-def _solve(scene: Scene, ts: Float[Array, " n"]) -> LimitSolution:
+@Program
+def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSolution:
     turns = scene.turning_points()
     order = jnp.argsort(jnp.concatenate([ts, turns]))
-    z, dissipation = limit_on_grid(scene, jnp.concatenate([ts, turns])[order])
+    z, dissipation = limit_on_grid(scene, found, jnp.concatenate([ts, turns])[order])
     back = jnp.argsort(order)[: ts.shape[0]]
     # Too little room for the turning points of a traced load is NaN, never a wrong number.
     poison = jnp.where(jnp.any(jnp.isnan(turns)), jnp.nan, 0.0)
     return LimitSolution(ts, z[back] + poison, dissipation[back] + poison)
 
 
-@eqx.filter_jit
-def _first_strip(scene: Scene) -> tuple[Real, Real]:
-    start = scene.load(jnp.zeros_like(scene.duration))
-    return strip(scene.support, coefficients(scene.potential), start)
-
-
 def require_start_in_strip(scene: Scene) -> None:
     """Check that z0 lies in the strip at t = 0, as Theorem 1 asks (eq. 2.11)."""
     if not is_concrete(scene):
         return
-    lower, upper = (float(v) for v in _first_strip(scene))
+    found = coefficients_jit(scene.potential)
+    rho = float(found.rho_plus), float(found.rho_minus)
+    _, lower, upper = (float(v[0]) for v in strips_at(scene, *rho, np.zeros(1)))
     slack = 4 * float(np.finfo(float).eps) * max(abs(lower), abs(upper))
     z0 = float(scene.z0)
     needs = f"z_minus(0) <= z0 <= z_plus(0), the interval [{lower:.9g}, {upper:.9g}]"
@@ -106,7 +100,7 @@ def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     require_x64(scene)
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
-    return _solve(scene, ts)
+    return _solve(scene, coefficients_jit(scene.potential), ts)
 
 
 def dissipation_between(scene: Scene, t1: Any, t2: Any) -> Real:

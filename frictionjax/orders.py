@@ -4,7 +4,7 @@ import enum
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit  # scipy.stats takes 0.2 s to import
 
 from .arguments import require
 
@@ -131,7 +131,7 @@ def _line(x: np.ndarray, y: np.ndarray, scatter: float, start: int) -> _Line:
     left = y - height - slope * (x - middle)
     sigma = max(float(np.sqrt(np.sum(left**2) / freedom)), scatter)
     spread = float(np.sqrt(np.sum((x - middle) ** 2)))
-    random = float(stats.t.ppf(0.5 + 0.5 * _LEVEL, freedom)) * sigma / spread
+    random = float(stdtrit(freedom, 0.5 + 0.5 * _LEVEL)) * sigma / spread
     move, allowance = _drift(x, y)
     order = float(slope) + move
     half = max(float(np.hypot(random, allowance)), _ROUNDING)
@@ -152,7 +152,7 @@ def _foretells_its_end(x: np.ndarray, y: np.ndarray) -> bool:
     away = (x[-1] - x[:-1].mean()) ** 2 / np.sum((x[:-1] - x[:-1].mean()) ** 2)
     error = sigma * np.sqrt(1 + 1 / (x.size - 1) + away)
     miss = abs(y[-1] - np.polyval(line, x[-1]))
-    return bool(miss <= stats.t.ppf(0.5 + 0.5 * _LEVEL, freedom) * error + _ROUNDING)
+    return bool(miss <= stdtrit(freedom, 0.5 + 0.5 * _LEVEL) * error + _ROUNDING)
 
 
 def _drift(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
@@ -170,7 +170,7 @@ def _drift(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     error = sigma * np.sqrt(np.linalg.inv(basis.T @ basis)[0, 0])
     end = basis[:, 1].min()
     move = float(2 * bend[0] * end)
-    if abs(bend[0]) > stats.t.ppf(0.5 + 0.5 * _LEVEL, rest) * error:
+    if abs(bend[0]) > stdtrit(rest, 0.5 + 0.5 * _LEVEL) * error:
         return move, 2 * abs(move)
     return 0.0, abs(move) if abs(bend[0]) > error else 0.0
 

@@ -23,6 +23,7 @@ from .coefficients import coefficients_jit
 from .loads import AbstractLoad
 from .potentials import AbstractPotential, BristlePotential, potential
 from .profiles import AbstractProfile
+from .programs import Program
 from .supports import AbstractSupport
 
 _TRACED_TURNS = 64  # turning points allowed for where the load's numbers are traced
@@ -138,7 +139,10 @@ def load_range(scene: Scene) -> tuple[Real, Real]:
     return jnp.min(values), jnp.max(values)
 
 
-_load_range = eqx.filter_jit(load_range)
+@Program
+def _forces_met(scene: Scene) -> tuple[Real, Real, Real]:
+    """Smallest and largest load, and the support's force at z0, in N."""
+    return *load_range(scene), scene.support.force(jnp.asarray(scene.z0))
 
 
 def _require_hypotheses(scene: Scene) -> None:
@@ -146,13 +150,12 @@ def _require_hypotheses(scene: Scene) -> None:
         return  # traced values cannot be looked at; 32 bits raise at the entry points
     require_admissible(scene.potential)
     found = coefficients_jit(scene.potential)
-    low, high = (float(v) for v in _load_range(scene))
+    low, high, start = (float(v) for v in _forces_met(scene))
     finite = np.isfinite(low) and np.isfinite(high)
     require(finite, "load", f"[{low:.6g}, {high:.6g}]", "finite values on [0, duration]")
-    start = float(scene.support.force(jnp.asarray(scene.z0)))
     low = min(low - float(found.rho_plus), start)
     high = max(high - float(found.rho_minus), start)
-    require_convex(scene.support, jnp.asarray(low), jnp.asarray(high))
+    require_convex(scene.support, low, high)
 
 
 def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " n"]:

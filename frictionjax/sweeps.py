@@ -3,26 +3,24 @@
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import xarray as xr
-from jaxtyping import Array
 from tqdm import tqdm
 
 from .admissibility import require_reach
 from .arguments import as_real, require_numbers, require_x64
 from .cells import Cell, run_block
-from .coefficients import coefficients
+from .coefficients import coefficients_jit
 from .limit_system import (
     LimitSolution,
     require_start_in_strip,
     solve_limit,
-    strip,
 )
 from .provenance import describe
 from .scene import Scene, require_times
+from .strip import strips_at
 from .wiggly.engine import integrate_cells
 from .wiggly.methods import is_ours, solver_of
 from .wiggly.status import Status
@@ -117,6 +115,7 @@ def _run_lanes(scene, eps, gamma, ts, accuracy, method, balanced, progress) -> d
     return {name: value for name, value in values.items() if name not in unused}
 
 
+_DIMS = ("gamma", "eps", "time")
 _SUPREMA = ("sup_error", "strip_excess", "survey_error")
 
 
@@ -163,7 +162,7 @@ def sweep(
     require_accuracy(accuracy)
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
-    require_reach(scene.potential, jnp.asarray(eps))
+    require_reach(scene.potential, eps)
     solver = solver_of(method)
     limit = solve_limit(scene, ts)
     balanced, wanted = bool(dissipation), float(as_real(accuracy))
@@ -174,15 +173,15 @@ def sweep(
     if values is None:
         blocks, tight = _blocks(eps, gamma), jnp.asarray(wanted)
         values = _cell_values(_run(scene, blocks, ts, tight, solver, balanced, progress))
-    data = xr.Dataset(coords={"gamma": gamma, "eps": eps, "time": np.asarray(ts)})
     shape = (gamma.size, eps.size)
-    for key, value in values.items():
-        dims = ("gamma", "eps", "time")[: value.ndim + 1]
-        data[key] = (dims, value.reshape(*shape, *value.shape[1:]))
-    data["viscosity"] = data.eps**data.gamma
-    data["viscosity"] = data.viscosity.transpose("gamma", "eps")
-    for key, value in _limit_values(scene, limit).items():
-        data[key] = (("time",), value)
+    columns = {
+        key: (_DIMS[: value.ndim + 1], value.reshape(*shape, *value.shape[1:]))
+        for key, value in values.items()
+    }
+    columns["viscosity"] = (_DIMS[:2], eps ** gamma[:, None])
+    columns |= {key: (_DIMS[2:], v) for key, v in _limit_values(scene, limit).items()}
+    # All variables at once: one by one they are aligned anew, 1 ms each.
+    data = xr.Dataset(columns, coords={"gamma": gamma, "eps": eps, "time": np.asarray(ts)})
     return describe(data, scene, accuracy=wanted, solver=name)
 
 
@@ -206,15 +205,10 @@ def _cell_values(cells: Cell) -> dict[str, np.ndarray]:
     return {name: np.asarray(value) for name, value in values.items()}
 
 
-@eqx.filter_jit
-def _strips(scene: Scene, ts: Array):
-    found = coefficients(scene.potential)
-    loads = jax.vmap(scene.load)(ts)
-    return loads, *jax.vmap(lambda load: strip(scene.support, found, load))(loads)
-
-
 def _limit_values(scene: Scene, limit: LimitSolution) -> dict[str, np.ndarray]:
-    load, lower, upper = _strips(scene, limit.ts)
+    found = coefficients_jit(scene.potential)
+    rho = float(found.rho_plus), float(found.rho_minus)
+    load, lower, upper = strips_at(scene, *rho, np.asarray(limit.ts))
     values = {
         "z_limit": limit.z,
         "dissipation_limit": limit.dissipation,

@@ -12,7 +12,7 @@ ROOT = Path(frictionjax.__file__).parent
 # Units on one floor know nothing of each other; a folder is one unit.
 FLOORS = [
     {"arguments"},
-    {"outcomes", "compilation"},
+    {"outcomes", "compilation", "programs"},
     {"roots", "taylor", "extrema", "trigonometry"},
     {"profiles", "bristles", "supports", "loads"},
     {"potentials"},
@@ -20,6 +20,7 @@ FLOORS = [
     {"admissibility"},
     {"friction_law"},
     {"scene", "measured"},
+    {"strip"},
     {"certificate_curve"},
     {"certificate_passages", "certificate_tube"},
     {"limit_system", "wiggly", "certificate"},

@@ -2,14 +2,13 @@
 
 from typing import Any
 
-import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from ..coefficients import Coefficients
+from ..programs import Program
 from ..supports import AbstractSupport
 from .style import (
     GUIDE,
@@ -54,14 +53,14 @@ def draw(
     return figure
 
 
-@eqx.filter_jit
+@Program
 def _force(support: AbstractSupport, load, z):
     return load - jax.vmap(support.force)(z)
 
 
 def friction_force(support: AbstractSupport, load, z) -> np.ndarray:
     """`l - Phi'(z)` in N, shapes (time,): what friction holds against."""
-    return np.asarray(_force(support, jnp.asarray(load), jnp.asarray(z)))
+    return np.asarray(_force(support, np.asarray(load), np.asarray(z)))
 
 
 def _coefficients(axes: Any, found: Coefficients) -> None:

@@ -3,7 +3,6 @@
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from ..arguments import known_numbers, require
 
@@ -78,6 +77,8 @@ def _refine(
     """Best period near 1/`frequency` and the variance that it leaves."""
     span = float(np.ptp(x))
     fits = min(harmonics, _MOST, max(1, int(0.5 * (x.size - 1) / (frequency * span)) - 1))
+    from scipy.optimize import minimize_scalar  # 0.3 s, for measured surfaces only
+
     search = minimize_scalar(
         lambda period: _misfit(x, heights, period, fits),
         bounds=(1 / (frequency + 0.5 / span), 1 / max(frequency - 0.5 / span, 1.5 / span)),

@@ -6,16 +6,18 @@ from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
 from ..arguments import Real
+from ..coefficients import Coefficients, coefficients_jit
 from ..potentials import AbstractPotential, BristlePotential
+from ..profiles import AbstractProfile
+from ..programs import Program
 from ..scene import Scene
 from .evaluation import Answers, Found, evaluate
 from .forgetting import lag_forces
-from .lanes import Arrivals, Cells, Jobs, LaneScene, Legs, march
+from .lanes import Arrivals, Cells, Jobs, LaneScene, Legs, Room, march, prepare
 from .layout import Layout, Needs, cost_of, lay_out, wells_of
 from .path import Path, path_of, slopes_at, states_at
 from .rides import Ride, Rider, Seen, ride_through
@@ -24,7 +26,7 @@ from .rodas5p import Rodas5P
 from .rosenbrock import Tableau
 from .series_bristle import series_of
 from .status import Status
-from .tolerance import Folds, plan_steps
+from .tolerance import Folds, plan_steps, pull_of
 from .tolerance import Plan as StepPlan
 from .windows import Ground, Plan, Starts, Windows, gaps_of, plan_windows, starts_of
 
@@ -40,7 +42,9 @@ _BATCH = 1e5  # wells: a few seconds, between two reports
 _AFFORDABLE = 2e5
 _FASTER = 1.5  # how much slides may have been faster, squared, where lanes set off
 _TIGHT = 3e-5  # tolerance below which the scheme of order 5 is the cheaper one
-_CELLS = 64
+_CELLS = 16  # at least, in a compiled call: 64 take 4 ms, 16 one
+# Accuracy below which the tolerance is below `_TIGHT`, and values worth a guess at rooms.
+_LIKELY_TIGHT, _FEW = 100 * _TIGHT, 500
 # Windows that set off so many wells earlier, in slides so long, are worth a slip map.
 _LONG_MEMORY, _LONG_SLIDE = 100.0, 300.0
 # Tolerance of the lanes that measure a slip map; errors of the map at its start, as lanes
@@ -53,20 +57,29 @@ _NOISE, _MOST_CHECKED = 0.03, 400.0
 Report = Callable[[float], None]
 
 
-@eqx.filter_jit
-def _controls(scene: Scene, eps: Array, gamma: Array, accuracy: Real) -> StepPlan:
-    return jax.vmap(lambda e, g: plan_steps(scene, e, g, accuracy))(eps, gamma)
+@Program
+def _plans(scene, rho_plus, rho_minus, eps, gamma, accuracy) -> StepPlan:
+    pull = pull_of(scene, Coefficients(rho_plus, rho_minus))
+    return jax.vmap(lambda e, g: plan_steps(scene, e, g, accuracy, pull))(eps, gamma)
 
 
-def _fixed(values: np.ndarray) -> jnp.ndarray:
+def _controls(scene, eps, gamma, accuracy, rho: tuple | None = None) -> StepPlan:
+    """Step control of all cells. `rho`: plus and minus, N, where they are known."""
+    if rho is None:
+        found = coefficients_jit(scene.potential)
+        rho = found.rho_plus, found.rho_minus
+    return _plans(scene, *map(np.asarray, rho), eps, gamma, np.asarray(accuracy))
+
+
+def _fixed(values: np.ndarray) -> np.ndarray:
     """Values of the cells padded to few different sizes."""
     size = _CELLS
     while size < values.size:
         size *= 4
-    return jnp.asarray(np.pad(values, (0, size - values.size), mode="edge"))
+    return np.pad(values, (0, size - values.size), mode="edge")
 
 
-@eqx.filter_jit
+@Program
 def _tips(potential: AbstractPotential, z0: Real, eps: Array):
     return jax.vmap(lambda e: potential.tip(z0, e))(eps)
 
@@ -101,12 +114,17 @@ def _no_rides(count: int) -> np.ndarray:
     return rides
 
 
+@Program
+def _heights(profile: AbstractProfile, places: Array) -> Array:
+    return jax.vmap(profile)(places)
+
+
 def lane_scene(scene: Scene, highest: float) -> LaneScene:
     """The scene as lanes see it, with the bristle as a series where one converges."""
     potential = scene.potential
     if isinstance(potential, BristlePotential):
-        scan = jnp.arange(potential.points) / potential.points
-        height = float(jnp.max(jnp.abs(jax.vmap(potential.profile)(scan))))
+        scan = np.arange(potential.points) / potential.points
+        height = float(np.max(np.abs(_heights(potential.profile, scan))))
         bristle = series_of(potential.bristle, 1.01 * highest * height)
         potential = BristlePotential(potential.profile, bristle)
     return LaneScene(potential, scene.support, scene.load)
@@ -143,7 +161,7 @@ class _Engine(NamedTuple):
     report: Report
 
     def run(self, windows: Windows, wells: np.ndarray, back: np.ndarray) -> Round:
-        """March all windows, started `wells` of the path before them, `back` of a ride (W,)."""
+        """March all windows, from `wells` of the path or `back` of a ride before them."""
         where = windows.cell, windows.begin, wells, back
         starts = starts_of(self.scene, self.path, self.ground, *where)
         return self.march_from(windows, starts)
@@ -371,9 +389,11 @@ def integrate_cells(
     if path is None:
         return None
     lanes = lane_scene(scene, float(eps.max()))
+    _prepare(lanes, eps.size, ts.size, accuracy, balanced)
     # The bristle as a series compiles faster too.
     smooth = eqx.tree_at(lambda s: s.potential, scene, lanes.potential)
-    control = _controls(smooth, _fixed(eps), _fixed(gamma), jnp.asarray(accuracy))
+    rho = path.rho_plus, path.rho_minus
+    control = _controls(smooth, _fixed(eps), _fixed(gamma), accuracy, rho)
     control = _some(control, np.arange(eps.size))
     ground = ground_of(scene, path, eps, gamma, control.folds)
     needs = _choose(path, eps, _needs(control, ground, path, accuracy), ts.size, method)
@@ -424,8 +444,8 @@ def find_rides(
     """Put the rides of some cells into the engine's ground."""
     ground, folds = engine.ground, engine.ground.folds
     sides = {
-        1.0: (folds.place_plus, folds.force_plus),
-        -1.0: (folds.place_minus, folds.force_minus),
+        1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
+        -1.0: (np.asarray(folds.place_minus), np.asarray(folds.force_minus)),
     }
     rider = Rider(engine.scene, engine.path, ground.eps, viscosity, sides, engine.accuracy)
 
@@ -517,6 +537,13 @@ def _summed(engine: _Engine, ride: Ride, drift, pace, gap: float) -> np.ndarray:
         errors.append(max(error, after, _LEAST_ERROR * engine.accuracy))
         error = after
     return np.array(errors) * np.minimum(pace, 1.0)
+
+
+def _prepare(lanes: LaneScene, cells: int, times: int, accuracy: float, balanced) -> None:
+    """Have the loop compiled beside the planning, where its scheme is known already."""
+    if accuracy < _LIKELY_TIGHT and cells * times > _FEW:
+        legs = cells * times // _WORKERS
+        prepare(lanes, Rodas5P.tableau, Room(cells, legs // 2, legs), balanced)
 
 
 def _affordable(path: Path, cells: _Cellwise) -> np.ndarray:

@@ -2,20 +2,29 @@
 
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from ..arguments import Real
+from ..programs import Program, in_chunks
 from ..scene import Scene
 from .lanes import Arrivals, Legs
 from .layout import Layout, Slide
 from .path import Path, states_at
 from .status import Status
-from .survey import Survey, survey_of
+from .survey import (
+    AHEAD,
+    BEHIND,
+    DEFICIT,
+    RESIDUAL,
+    SURPLUS,
+    VISCOUS,
+    WORK,
+    Survey,
+    surveys_of,
+)
 
-_LEAST = 1024  # stops of one compiled call
+_CHUNK = 2048  # stops of one compiled call
 _RESIDUAL_SHARE = 0.05  # of the energy dissipated; solutions leave about 1e-6 of it
 
 
@@ -38,10 +47,10 @@ class Answers(NamedTuple):
     """Values of all cells; (cells, n) at the requested times, else (cells,).
 
     `tolerance`: of steps, in periods. `how`: 0 where one lane has integrated every slip
-    since z0, 1 where a bracket has closed, 2 where one has set off from a slip map. `gap`: how closely, in eps. `sampled`: share of
-    the path's way in slides of which only some periods were measured. `survey_error`,
-    `survey_work_error`: estimates of the errors that this makes in `sup_error` (m) and in
-    the dissipation (J).
+    since z0, 1 where a bracket has closed, 2 where one has that set off from a slip map.
+    `gap`: how closely, in eps. `sampled`: share of the path's way in slides of which only
+    some periods were measured. `survey_error`, `survey_work_error`: estimates of the
+    errors that this makes in `sup_error` (m) and in the dissipation (J).
     """
 
     z: np.ndarray
@@ -63,7 +72,7 @@ class Answers(NamedTuple):
     tolerance: np.ndarray
 
 
-@eqx.filter_jit
+@Program
 def _energies(scene: Scene, eps, well, tip, t, guide):
     """z in m at stops, and E_eps of z less E of the guide, in J."""
 
@@ -77,30 +86,19 @@ def _energies(scene: Scene, eps, well, tip, t, guide):
 
 
 def _states(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, np.ndarray]:
-    size = _LEAST
-    while size < eps.size:
-        size *= 4
-    columns = (
-        np.pad(c, (0, size - c.size), mode="edge") for c in (eps, well, tip, t, guide)
-    )
-    z, energy = _energies(scene, *(jnp.asarray(c) for c in columns))
-    return np.asarray(z)[: eps.size], np.asarray(energy)[: eps.size]
+    z, energy = in_chunks(_energies, _CHUNK, (scene,), (eps, well, tip, t, guide))
+    return z, energy
 
 
 class _Stops(NamedTuple):
-    """What the sums need of every stop, shape (S,)."""
+    """What the sums need of every stop, shape (S,); `sums` (3, S), `extremes` (4, S)."""
 
     time: np.ndarray
     z: np.ndarray
     energy: np.ndarray
-    work: np.ndarray
-    viscous: np.ndarray
-    residual: np.ndarray
+    sums: np.ndarray
     beyond: np.ndarray
-    surplus: np.ndarray
-    deficit: np.ndarray
-    ahead: np.ndarray
-    behind: np.ndarray
+    extremes: np.ndarray
     sliding: np.ndarray
 
 
@@ -110,66 +108,64 @@ def _stops(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> _Stop
     z, energy = _states(scene, size, a.well, a.tip, windows.stop, legs.guide1)
     rise = legs.guide1 - legs.guide0
     moved = legs.end > legs.start
+    ways, surpluses = (a.ahead, a.behind), (a.surplus, a.deficit)
     return _Stops(
         time=windows.stop,
         z=z,
         energy=energy,
-        work=a.work,
-        viscous=a.viscous,
-        residual=a.residual,
+        sums=np.stack([a.work, a.viscous, a.residual]),
         beyond=a.viscous - legs.friction * rise,
-        surplus=a.surplus,
-        deficit=a.deficit,
-        ahead=np.where(moved, a.ahead, 0.0),
-        behind=np.where(moved, a.behind, 0.0),
+        extremes=np.stack([*(np.where(moved, v, 0.0) for v in ways), *surpluses]),
         sliding=np.sign(rise),
     )
 
 
-def _survey(slide: Slide, stops: _Stops) -> Survey:
-    """Curves through the periods measured in one slide."""
-    at = slide.stops
-    start = -(stops.energy[at] + stops.work[at] + stops.beyond[at])
-    sums = {"work": stops.work, "viscous": stops.viscous, "residual": stops.residual}
-    extremes = {
-        "ahead": stops.ahead[at],
-        "behind": stops.behind[at],
-        "surplus": stops.surplus[at] + start,
-        "deficit": stops.deficit[at] + start,
-    }
-    return survey_of(
-        slide.low,
-        slide.high,
-        slide.starts,
-        slide.ends,
-        {name: value[at] for name, value in sums.items()},
-        extremes,
-    )
+def _surveys(slides: list[Slide], stops: _Stops) -> dict[int, Survey]:
+    """Curves through the periods measured in each slide, by the number of the slide."""
+    found: dict[int, Survey] = {}
+    counts = np.array([slide.stops.size for slide in slides])
+    for count in np.unique(counts):
+        mine = np.flatnonzero(counts == count)
+        some = [slides[i] for i in mine]
+        at = np.stack([slide.stops for slide in some])
+        sums = stops.sums[:, at].swapaxes(0, 1)
+        extremes = stops.extremes[:, at].swapaxes(0, 1)
+        start = stops.energy[at] + sums[:, WORK] + stops.beyond[at]
+        extremes[:, SURPLUS:] -= start[:, None]
+        low, high = np.array([(slide.low, slide.high) for slide in some]).T
+        starts = np.stack([slide.starts for slide in some])
+        ends = np.stack([slide.ends for slide in some])
+        fits = surveys_of(low, high, starts, ends, sums, extremes)
+        found |= zip(mine.tolist(), fits, strict=True)
+    return found
 
 
 class _Cell(NamedTuple):
-    """One cell's way through [0, T]: its chain of stops, and its surveyed slides."""
+    """One cell's way through [0, T]: its chain of stops, and its surveyed slides.
+
+    `totals` (3, chain): running sums in J at the chain's stops, slides before them
+    included. `before` (slides, 3): integrals from 0 to the begin of each slide.
+    """
 
     chain: np.ndarray
     slides: list[Slide]
     surveys: list[Survey]
+    totals: np.ndarray
+    before: np.ndarray
 
-    def total(self, name: str, stops: _Stops) -> np.ndarray:
-        """Running sum at the chain's stops, slides before them included."""
-        sums = np.cumsum(getattr(stops, name)[self.chain])
-        for survey in self.surveys:
-            whole = survey.integral(getattr(survey, name), np.array([survey.high]))[0]
-            sums = sums + np.where(stops.time[self.chain] > survey.low, whole, 0.0)
-        return sums
 
-    def before(self, survey: Survey, stops: _Stops, name: str = "work") -> float:
-        """Integral in J from 0 to the begin of a surveyed slide."""
-        earlier = stops.time[self.chain] <= survey.low
-        total = float(np.sum(getattr(stops, name)[self.chain[earlier]]))
-        for other in self.surveys:
-            if other.high <= survey.low:
-                total += other.integral(getattr(other, name), np.array([other.high]))[0]
-        return total
+def _cell_of(
+    chain: np.ndarray, slides: list[Slide], surveys: list[Survey], stops: _Stops
+) -> _Cell:
+    own, time = stops.sums[:, chain], stops.time[chain]
+    totals, before = np.cumsum(own, axis=1), np.zeros((len(slides), 3))
+    running = np.concatenate([np.zeros((3, 1)), totals], axis=1)
+    for k, survey in enumerate(surveys):
+        before[k] = running[:, np.searchsorted(time, survey.low, side="right")]
+        before[k] += sum(other.whole for other in surveys if other.high <= survey.low)
+    for survey in surveys:
+        totals += np.where(time > survey.low, survey.whole[:, None], 0.0)
+    return _Cell(chain, slides, surveys, totals, before)
 
 
 def _dissipation_of_path(path: Path, times: np.ndarray, states: np.ndarray) -> np.ndarray:
@@ -197,12 +193,13 @@ def evaluate(
     guides = states_at(scene, path, ts)
     of_path = _dissipation_of_path(path, ts, guides)
     whole = float(path.travel[-1])
+    surveys = _surveys(layout.slides, stops)
     rows = []
     for c in range(count):
-        slides = sorted(
-            (s for s in layout.slides if s.cell == c), key=lambda slide: slide.low
-        )
-        cell = _Cell(layout.chain[c], slides, [_survey(s, stops) for s in slides])
+        mine = [i for i, slide in enumerate(layout.slides) if slide.cell == c]
+        mine.sort(key=lambda i: layout.slides[i].low)
+        own = [layout.slides[i] for i in mine], [surveys[i] for i in mine]
+        cell = _cell_of(layout.chain[c], *own, stops)
         energetics = _no_energetics(ts.size)
         if balanced:
             of = layout, layout.output[c], energy0[c], of_path, path
@@ -244,16 +241,15 @@ def _outputs(cell: _Cell, stops: _Stops, layout: Layout, output: np.ndarray) -> 
     return _Outputs(output, place[output], survey, begin)
 
 
-def _running(cell: _Cell, stops: _Stops, outputs: _Outputs, name: str) -> np.ndarray:
-    """Integral in J from 0 to each requested time."""
+def _running(cell: _Cell, stops: _Stops, outputs: _Outputs) -> np.ndarray:
+    """Integrals in J from 0 to each requested time, (3, n)."""
     in_chain = (outputs.place >= 0) & (outputs.stop >= 0)
-    sums = cell.total(name, stops)
-    found = np.where(in_chain, sums[np.maximum(outputs.place, 0)], 0.0)
+    found = np.where(in_chain, cell.totals[:, np.maximum(outputs.place, 0)], 0.0)
     for k, survey in enumerate(cell.surveys):
         mine = np.flatnonzero(~in_chain & (outputs.stop >= 0) & (outputs.survey == k))
-        done = survey.integral(getattr(survey, name), outputs.begin[mine])
-        own = getattr(stops, name)[outputs.stop[mine]]
-        found[mine] = cell.before(survey, stops, name) + done + own
+        done = survey.integrals(outputs.begin[mine])
+        own = stops.sums[:, outputs.stop[mine]]
+        found[:, mine] = cell.before[k][:, None] + done + own
     return found
 
 
@@ -264,14 +260,14 @@ def _energetics(cell, stops, layout, output, energy0, of_path, path):
     z - path add to it; the direct sum is an independent second value.
     """
     outputs = _outputs(cell, stops, layout, output)
-    work = _running(cell, stops, outputs, "work")
+    running = _running(cell, stops, outputs)
     energy = np.where(output >= 0, stops.energy[output], energy0)
-    beyond = energy0 - stops.energy[cell.chain] - cell.total("work", stops)
+    beyond = energy0 - stops.energy[cell.chain] - cell.totals[WORK]
     final = beyond[-1] + _spent(cell, stops, path)
     return (
-        of_path + energy0 - energy - work,
-        _running(cell, stops, outputs, "residual"),
-        cell.total("residual", stops)[-1],
+        of_path + energy0 - energy - running[WORK],
+        running[RESIDUAL],
+        cell.totals[RESIDUAL, -1],
         _second_opinion(cell, stops, final),
         _worst_dissipation(cell, stops, energy0, beyond),
     )
@@ -285,8 +281,8 @@ def _second_opinion(cell: _Cell, stops: _Stops, final: float) -> float:
     """
     if cell.surveys:
         guessed = sum(survey.error_work for survey in cell.surveys)
-        return guessed + float(cell.total("residual", stops)[-1])
-    return abs(float(cell.total("viscous", stops)[-1]) - final)
+        return guessed + float(cell.totals[RESIDUAL, -1])
+    return abs(float(cell.totals[VISCOUS, -1]) - final)
 
 
 def _no_energetics(size: int) -> tuple:
@@ -296,32 +292,31 @@ def _no_energetics(size: int) -> tuple:
 
 def _spent(cell: _Cell, stops: _Stops, path: Path) -> float:
     """The path's dissipation in J over [0, T], from the legs and slides of the cell."""
-    legs = float(np.sum((stops.viscous - stops.beyond)[cell.chain]))
+    legs = float(np.sum(stops.sums[VISCOUS, cell.chain] - stops.beyond[cell.chain]))
     return legs + sum(path.rho[s.piece] * s.way for s in cell.slides)
 
 
 def _worst_dissipation(cell, stops, energy0, beyond) -> float:
     start = beyond - stops.beyond[cell.chain]
-    high = np.max(start + stops.surplus[cell.chain], initial=0.0)
-    low = np.min(start + stops.deficit[cell.chain], initial=0.0)
-    for survey in cell.surveys:
-        fine = survey.fine()
-        done = cell.before(survey, stops) + survey.integral(survey.work, fine)
-        high = max(high, np.max(energy0 - done + survey.curve(survey.surplus, fine)))
-        low = min(low, np.min(energy0 - done + survey.curve(survey.deficit, fine)))
+    surplus, deficit = stops.extremes[SURPLUS:, cell.chain]
+    high = np.max(start + surplus, initial=0.0)
+    low = np.min(start + deficit, initial=0.0)
+    for before, survey in zip(cell.before, cell.surveys, strict=True):
+        left = energy0 - before[WORK] - survey.work
+        high = max(high, np.max(left + survey.extremes[SURPLUS]))
+        low = min(low, np.min(left + survey.extremes[DEFICIT]))
     return float(max(high, -low))
 
 
 def _deviations(cell: _Cell, stops: _Stops) -> tuple[float, float]:
     """Largest |z - path|, and by how much z lags outside the strip, in m."""
-    ahead, behind = stops.ahead[cell.chain], stops.behind[cell.chain]
+    ahead, behind = stops.extremes[:SURPLUS, cell.chain]
     sliding = stops.sliding[cell.chain]
     lags = np.where(sliding > 0, -behind, np.where(sliding < 0, ahead, 0.0))
     far, lag = np.max(np.maximum(ahead, -behind)), np.max(lags, initial=0.0)
     for slide, survey in zip(cell.slides, cell.surveys, strict=True):
-        fine = survey.fine()
-        high = float(np.max(survey.curve(survey.ahead, fine)))
-        low = float(np.min(survey.curve(survey.behind, fine)))
+        high = float(np.max(survey.extremes[AHEAD]))
+        low = float(np.min(survey.extremes[BEHIND]))
         far = max(far, high, -low)
         sign = stops.sliding[slide.stops[0]]
         lag = max(lag, -low if sign > 0 else high if sign < 0 else 0.0)
@@ -343,8 +338,7 @@ def _status(cell, stops, layout, found, output, path, eps, balanced) -> int:
         return int(bad[0]) if np.isfinite(bad[0]) else int(Status.NOT_FINITE)
     if balanced:
         slip = eps * (path.rho_plus - path.rho_minus)
-        viscous = cell.total("viscous", stops)[-1]
-        residual = cell.total("residual", stops)[-1]
+        _, viscous, residual = cell.totals[:, -1]
         if not residual <= _RESIDUAL_SHARE * (slip + viscous):
             return int(Status.UNBALANCED)
     return int(Status.OK)

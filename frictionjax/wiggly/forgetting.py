@@ -1,13 +1,12 @@
 """How far the tip can lag behind the strip's edge on a slide."""
 
-import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from ..arguments import Real
 from ..potentials import AbstractPotential
+from ..programs import Program
 from .tolerance import Folds
 
 # Half of the grid over a well, graded towards the fold by e-folds that resolve folds down
@@ -17,7 +16,7 @@ _GRID = 0.5 * np.concatenate([-_GRADED[:0:-1], _GRADED])
 FORCES = np.logspace(-24, 4, 85)
 
 
-@eqx.filter_jit
+@Program
 def _forces(potential: AbstractPotential, eps: Real, places: Float[Array, " n"]):
     return jax.vmap(lambda y: potential.tip_force(y, eps))(places)
 
@@ -32,7 +31,7 @@ def passage_integrals(
     """
     scan = np.arange(potential.points) / potential.points
     force, stretch = _forces(
-        potential, jnp.asarray(eps), jnp.asarray(np.concatenate([place + _GRID, scan]))
+        potential, np.asarray(eps), np.concatenate([place + _GRID, scan])
     )
     force, stretch = side * np.asarray(force), np.asarray(stretch)[: _GRID.size]
     heights, top = force[_GRID.size :], force[_GRID.size // 2]

@@ -1,6 +1,8 @@
 """Lanes: many short integrations of the wiggly system, side by side in one loop."""
 
+import contextlib
 import threading
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -12,6 +14,7 @@ from jaxtyping import Array, Bool, Float, Int
 from ..arguments import Real
 from ..loads import AbstractLoad
 from ..potentials import AbstractPotential
+from ..programs import Program
 from ..supports import AbstractSupport
 from .balance import Balance, advance, end_slope
 from .extent import Extent, Guide, spend, widen
@@ -235,10 +238,10 @@ def _extent(
 class _Tables(NamedTuple):
     """Jobs, legs and cells as rows of numbers: one gather fetches a row."""
 
-    cells: Float[Array, "cells 5"]
-    jobs: Float[Array, "jobs 6"]
-    legs: Float[Array, "legs 8"]
-    waiting: Int[Array, ""]
+    cells: Any  # Float[Array, "cells 5"]
+    jobs: Any  # Float[Array, "jobs 6"]
+    legs: Any  # Float[Array, "legs 8"]
+    waiting: Any  # Int[Array, ""], jobs in the queue
 
 
 class _Work(NamedTuple):
@@ -338,7 +341,7 @@ def _refill(tables: _Tables, work: _Work) -> tuple[_Task, _Motion, Int[Array, ""
     return moved, set_off, next_job
 
 
-@eqx.filter_jit
+@Program
 def _march(
     scene: LaneScene, tableau: Tableau, balanced: bool, width: int, tables: _Tables
 ) -> Float[Array, "legs 13"]:
@@ -368,36 +371,88 @@ def _march(
     return jax.lax.while_loop(go_on, look, start).found
 
 
-def _padded(rows: np.ndarray, size: int) -> np.ndarray:
-    return np.concatenate([rows, np.ones((size - rows.shape[0], rows.shape[1]))])
+class Room(NamedTuple):
+    """Rows of the tables of a compiled loop."""
+
+    cells: int
+    jobs: int
+    legs: int
+
+    def holds(self, needed: "Room") -> bool:
+        """Whether that many rows fit, and not into a hundredth of the legs."""
+        fits = all(a >= b for a, b in zip(self, needed, strict=True))
+        return fits and self.legs <= _SPARE * max(needed.legs, _ROOM.legs)
 
 
-def _room(count: int, least: int) -> int:
-    """A power of four: few sizes, so few compilations."""
-    size = least
-    while size < count:
-        size *= 4
+# Each size of the tables costs 0.4 s to trace and load, 2 s to compile, an empty row
+# nothing: so few sizes, and a loop that is there already is taken where it is larger.
+_ROOM, _SPARE = Room(64, 2048, 4096), 16
+
+
+def room_for(needed: Room) -> Room:
+    """Room for that many rows: all sizes grow together, by fours."""
+    size = _ROOM
+    while not all(a >= b for a, b in zip(size, needed, strict=True)):
+        size = Room(*(4 * rows for rows in size))
     return size
 
 
-def _compiled_once(tables: _Tables, program: tuple) -> Array:
-    """Run the loop; two threads that need the same new program compile it once."""
-    scene, tableau, balanced, width = program
-    leaves, structure = jax.tree_util.tree_flatten(
-        eqx.filter((scene, tables), eqx.is_array)
-    )
-    shapes = tuple((leaf.shape, str(leaf.dtype)) for leaf in leaves)
-    key = structure, shapes, tableau, balanced, width
-    if key in _KNOWN:
-        return _march(scene, tableau, balanced, width, tables)
-    with _COMPILING:
-        found = _march(scene, tableau, balanced, width, tables)
-        _KNOWN.add(key)
-        return found
+def _padded(rows: np.ndarray, size: int) -> np.ndarray:
+    padded = np.ones((size, rows.shape[1]))
+    padded[: rows.shape[0]] = rows
+    return padded
 
 
-_COMPILING = threading.Lock()
-_KNOWN: set = set()
+class _Loops:
+    """Loops compiled so far, by what they simulate; two threads compile one once."""
+
+    def __init__(self) -> None:
+        self._known: dict[Any, dict[Room, threading.Lock]] = {}
+        self._lock = threading.Lock()
+        self._done: set = set()
+
+    def run(self, program: tuple, needed: Room, fill: Callable[[Room], _Tables]) -> Array:
+        """Run the loop on tables of a room that `fill` makes."""
+        kind = _kind(program)
+        with self._lock:
+            rooms = self._known.setdefault(kind, {})
+            fitting = [room for room in rooms if room.holds(needed)]
+            room = min(fitting, key=lambda r: r.legs) if fitting else room_for(needed)
+            compiling = rooms.setdefault(room, threading.Lock())
+        if (kind, room) in self._done:
+            return _march(*program, fill(room))
+        with compiling:
+            found = _march(*program, fill(room))
+            self._done.add((kind, room))
+            return found
+
+
+def _kind(program: tuple) -> tuple:
+    """What a compiled loop depends on, numbers left out."""
+    leaves, structure = jax.tree_util.tree_flatten(program)
+    shapes = (x.shape if eqx.is_array(x) else x for x in leaves)
+    return structure, *shapes
+
+
+_LOOPS = _Loops()
+
+
+def prepare(
+    scene: LaneScene, tableau: Tableau, needed: Room, balanced: bool = True
+) -> None:
+    """Compile the loop that `march` will want, in the background; a guess may be wrong."""
+
+    def nothing(room: Room) -> _Tables:
+        widths = (len(Cells._fields), len(Jobs._fields), len(Legs._fields))
+        tables = (np.ones((n, w)) for n, w in zip(room, widths, strict=True))
+        return _Tables(*tables, waiting=np.asarray(0))
+
+    def compile_quietly() -> None:
+        # What cannot be compiled fails again in `march`, where somebody hears of it.
+        with contextlib.suppress(Exception):
+            _LOOPS.run((scene, tableau, balanced, WIDTH), needed, nothing)
+
+    threading.Thread(target=compile_quietly).start()
 
 
 def march(
@@ -413,13 +468,12 @@ def march(
     NumPy arrays in and out. What a lane finds does not depend on the others.
     """
     tables = [np.stack([np.asarray(c, float) for c in t], -1) for t in (cells, jobs, legs)]
-    least = (64, 1024, 4096)
-    sized = [
-        _padded(t, _room(t.shape[0], size)) for t, size in zip(tables, least, strict=True)
-    ]
-    cells_, jobs_, legs_ = (jnp.asarray(t) for t in sized)
-    count = jnp.asarray(tables[1].shape[0])
-    width = NARROW if tables[1].shape[0] <= NARROW else WIDTH
-    every = _Tables(cells_, jobs_, legs_, count)
-    found = _compiled_once(every, (scene, tableau, balanced, width))
-    return Arrivals(*np.asarray(found)[: tables[2].shape[0]].T)
+    needed = Room(*(len(t) for t in tables))
+
+    def fill(room: Room) -> _Tables:
+        rows = (_padded(t, size) for t, size in zip(tables, room, strict=True))
+        return _Tables(*rows, waiting=np.asarray(needed.jobs))
+
+    width = NARROW if needed.jobs <= NARROW else WIDTH
+    found = _LOOPS.run((scene, tableau, balanced, width), needed, fill)
+    return Arrivals(*np.asarray(found)[: needed.legs].T)

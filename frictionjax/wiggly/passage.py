@@ -7,7 +7,6 @@ integrand is smooth and hardly stiff, where `y'` as a function of time is both.
 
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -15,8 +14,9 @@ from jaxtyping import Array, Float
 
 from ..arguments import Real
 from ..potentials import AbstractPotential
+from ..programs import Program, in_chunks, room
 from ..scene import Scene
-from .sizes import fitted, room
+from ..strip import CHUNK
 
 _POINTS = 10  # Gauss nodes of a panel
 _X, _W = np.polynomial.legendre.leggauss(_POINTS)
@@ -27,6 +27,7 @@ _ROUGH = 1e-8  # of the whole integral: last coefficients of a panel that is spl
 # Sweeps of Newton's method from a guess that keeps the force constant, and from the
 # times of a passage nearby.
 _SWEEPS, _AGAIN = 5, 2
+_NEAR = 256  # Taylor series of one compiled call
 TOGETHER = 12  # passages of a track side by side
 
 
@@ -46,8 +47,8 @@ class Track(NamedTuple):
     """The wiggly force along one period, as a fast tip meets it; C cells, M nodes.
 
     Counted in the direction of motion, from a lattice point: at the extreme fold, where
-    the tip is slowest. `way` (C, M): z in m since that point. `against` (C, M): V_eps' in N, its
-    sign turned for slides to the left. `weight` (C, M): `eps G` times half the width of
+    the tip is slowest. `way` (C, M): z in m since that point. `against` (C, M): V_eps' in
+    N, its sign turned for slides to the left. `weight` (C, M): `eps G` times half the width of
     the node's panel, in m. `sign` (C,): 1 or -1.
     """
 
@@ -80,7 +81,7 @@ class Passage(NamedTuple):
     shortest: np.ndarray
 
 
-@eqx.filter_jit
+@Program
 def _wiggles(potential: AbstractPotential, eps, places):
     def one(eps: Real, y: Real):
         return *potential.tip_force(y, eps), potential.offset(y, eps)
@@ -90,9 +91,9 @@ def _wiggles(potential: AbstractPotential, eps, places):
 
 def wiggles_at(potential: AbstractPotential, eps: np.ndarray, places: np.ndarray):
     """`V_eps'` in N, G, and A in m at tip coordinates, all of one shape."""
-    flat = fitted(1024, np.broadcast_to(eps, places.shape).ravel(), places.ravel())
-    found = _wiggles(potential, *flat)
-    return [np.asarray(v)[: places.size].reshape(places.shape) for v in found]
+    columns = np.broadcast_to(eps, places.shape).ravel(), places.ravel()
+    found = in_chunks(_wiggles, CHUNK, (potential,), columns)
+    return [v.reshape(places.shape) for v in found]
 
 
 class Stretch(NamedTuple):
@@ -224,9 +225,10 @@ def _passages(way, against, weight, sign, load, support, viscosity, times, sweep
 
 
 def passages(track: Track, pull: Pull, viscosity: np.ndarray, times=None) -> Passage:
-    """Passages of one well from the lattice point; `pull` has shape (C, n), (C,) `viscosity`.
+    """Passages of one well from n lattice points of each cell; `pull` has shape (C, n).
 
-    `times` (C, n, M): a guess; None where the pull stays the same. `viscosity`: eps^gamma.
+    `times` (C, n, M): a guess; None where the pull stays the same. `viscosity` (C,):
+    eps^gamma.
     """
     sweeps = _AGAIN if times is not None else _SWEEPS
     if times is None:
@@ -243,7 +245,7 @@ def one_passage(track: Track, pull: Pull, viscosity: np.ndarray) -> np.ndarray:
     return passages(track, many, viscosity).length[:, 0]
 
 
-@eqx.filter_jit
+@Program
 def _series(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"]):
     def derivatives(fn):
         first = jax.grad(fn)
@@ -258,5 +260,6 @@ def _series(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"])
 
 def pull_at(scene: Scene, times: np.ndarray, states: np.ndarray) -> Pull:
     """Taylor series of l and Phi' at times in s and states in m of one shape."""
-    found = _series(scene, *fitted(256, times.ravel(), states.ravel()))
-    return Pull(*(np.asarray(v)[: times.size].reshape(*times.shape, 4) for v in found))
+    columns = times.ravel(), states.ravel()
+    found = in_chunks(_series, _NEAR, (scene,), columns)
+    return Pull(*(v.reshape(*times.shape, 4) for v in found))

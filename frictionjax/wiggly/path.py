@@ -6,19 +6,16 @@ and known starts decide which values are accepted.
 
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real
 from ..coefficients import coefficients_jit
-from ..roots import bracketed_root
+from ..programs import Program, in_chunks
+from ..roots import find_root
 from ..scene import Scene
-from .sizes import fitted
-
-_LEAST = 256  # times of one compiled call
+from ..strip import CHUNK, strips_at
 
 
 class Path(NamedTuple):
@@ -48,47 +45,31 @@ class Path(NamedTuple):
         return np.clip(found, 0, self.direction.size - 1)
 
 
-@eqx.filter_jit
-def _edges(scene: Scene, rho_plus: Real, rho_minus: Real, times: Float[Array, " n"]):
-    """Both edges of the strip in m at each time."""
-    loads = jax.vmap(scene.load)(times)
-    ends = jax.vmap(scene.support.state_of)
-    return ends(loads - rho_plus), ends(loads - rho_minus)
+@Program
+def _turns(scene: Scene) -> Array:
+    return scene.turning_points()
 
 
-@eqx.filter_jit
+@Program
 def _rates(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"]):
     """l' in N/s at the times and Phi'' in N/m at the states."""
     slopes = jax.vmap(scene.load.slope)(times)
     return slopes, jax.vmap(scene.support.stiffness_at)(states)
 
 
-@eqx.filter_jit
+@Program
 def _times_at(scene: Scene, states, rho, early, late):
     """Time in [early, late] at which the edge that belongs to `rho` is at each state."""
-
-    def one(state: Real, rho: Real, early: Real, late: Real) -> Real:
-        wanted = scene.support.force(state) + rho
-        rising = jnp.where(scene.load(late) >= scene.load(early), 1.0, -1.0)
-        return bracketed_root(lambda t: rising * (scene.load(t) - wanted), early, late)
-
-    return jax.vmap(one)(states, rho, early, late)
+    load = jax.vmap(scene.load)
+    wanted = jax.vmap(scene.support.force)(states) + rho
+    rising = jnp.where(load(late) >= load(early), 1.0, -1.0)
+    return (find_root(lambda t: rising * (load(t) - wanted), early, late),)
 
 
-@eqx.filter_jit
+@Program
 def _state_under(scene: Scene, times: Float[Array, " n"], pull: Float[Array, " n"]):
-    return jax.vmap(lambda t, f: scene.support.state_of(scene.load(t) - f))(times, pull)
-
-
-def _edges_at(
-    scene: Scene, rho_plus: float, rho_minus: float, times: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """`z_minus` and `z_plus` in m at each time."""
-    if times.size == 0:
-        return times, times
-    rho = jnp.asarray(rho_plus), jnp.asarray(rho_minus)
-    lower, upper = _edges(scene, *rho, *fitted(_LEAST, times))
-    return np.asarray(lower)[: times.size], np.asarray(upper)[: times.size]
+    loads = jax.vmap(scene.load)(times)
+    return (jax.vmap(scene.support.state_of)(loads - pull),)
 
 
 def times_at(scene: Scene, path: Path, piece: np.ndarray, states: np.ndarray) -> np.ndarray:
@@ -96,7 +77,7 @@ def times_at(scene: Scene, path: Path, piece: np.ndarray, states: np.ndarray) ->
     if states.size == 0:
         return states
     columns = states, path.rho[piece], path.touch[piece], path.edges[piece + 1]
-    found = np.asarray(_times_at(scene, *fitted(_LEAST, *columns)))[: states.size]
+    (found,) = in_chunks(_times_at, CHUNK, (scene,), columns)
     return np.clip(found, columns[2], columns[3])
 
 
@@ -104,20 +85,19 @@ def arrivals_at(
     scene: Scene, states: np.ndarray, pull: np.ndarray, early: np.ndarray, late: np.ndarray
 ) -> np.ndarray:
     """Time in [early, late] at which `l - Phi'` is `pull` (N) at each state."""
-    found = _times_at(scene, *fitted(_LEAST, states, pull, early, late))
-    return np.asarray(found)[: states.size]
+    columns = states, pull, early, late
+    return in_chunks(_times_at, CHUNK, (scene,), columns)[0]
 
 
 def state_under(scene: Scene, times: np.ndarray, pull: np.ndarray) -> np.ndarray:
     """State in m at which `l - Phi'` is `pull` (N) at each time."""
-    found = _state_under(scene, *fitted(_LEAST, times, pull))
-    return np.asarray(found)[: times.size]
+    return in_chunks(_state_under, CHUNK, (scene,), (times, pull))[0]
 
 
 def states_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
     """The path's state in m at each time."""
     piece = path.piece_of(times)
-    lower, upper = _edges_at(scene, path.rho_plus, path.rho_minus, times)
+    _, lower, upper = strips_at(scene, path.rho_plus, path.rho_minus, times)
     edge = np.where(path.direction[piece] > 0, lower, upper)
     slides = (path.direction[piece] != 0) & (times > path.touch[piece])
     ends = np.sort(np.stack([path.states[piece], path.states[piece + 1]]), axis=0)
@@ -132,9 +112,8 @@ def slopes_at(
         return times
     piece = path.piece_of(times)
     slides = (path.direction[piece] != 0) & (times > path.touch[piece])
-    slope, stiffness = _rates(scene, *fitted(_LEAST, times, states))
-    speed = np.asarray(slope)[: times.size] / np.asarray(stiffness)[: times.size]
-    return np.where(slides, speed, 0.0)
+    slope, stiffness = in_chunks(_rates, CHUNK, (scene,), (times, states))
+    return np.where(slides, slope / stiffness, 0.0)
 
 
 def _speeds(scene: Scene, path: Path) -> tuple[float, float]:
@@ -144,20 +123,20 @@ def _speeds(scene: Scene, path: Path) -> tuple[float, float]:
     times = (start + (end - start) * share).ravel()
     states = states_at(scene, path, times)
     speeds = slopes_at(scene, path, times, states)
-    _, stiffness = _rates(scene, *fitted(_LEAST, times, states))
+    _, stiffness = in_chunks(_rates, CHUNK, (scene,), (times, states))
     return float(np.max(np.abs(speeds))), float(np.min(stiffness))
 
 
 def path_of(scene: Scene) -> Path | None:
     """The path of a scene; None where the load turns more often than there is room for."""
-    turns = np.asarray(scene.turning_points())
+    turns = np.asarray(_turns(scene))
     duration = float(scene.duration)
     if np.any(np.isnan(turns)):
         return None
     edges = np.unique(np.concatenate([[0.0], turns[turns < duration], [duration]]))
     found = coefficients_jit(scene.potential)
     rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
-    lower, upper = _edges_at(scene, rho_plus, rho_minus, edges)
+    _, lower, upper = strips_at(scene, rho_plus, rho_minus, edges)
     states = np.empty(edges.size)
     states[0] = np.clip(float(scene.z0), lower[0], upper[0])
     for i in range(1, edges.size):

@@ -180,7 +180,7 @@ class Rider(NamedTuple):
 
 
 def _set_off(rider: Rider, cells: np.ndarray, piece: int) -> np.ndarray:
-    """Seconds from a touch of the strip's edge in a piece until the first wells are passed."""
+    """Seconds from a touch of the strip's edge until the first wells are passed."""
     path, scene = rider.path, rider.scene
     touch = np.array([path.touch[piece]])
     inside = touch + 1e-6 * (path.edges[piece + 1] - touch)

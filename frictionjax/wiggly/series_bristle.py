@@ -1,6 +1,5 @@
 """A bristle as power series over the heights that its tip meets."""
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -8,6 +7,7 @@ from jaxtyping import Array, Float
 
 from ..arguments import Real
 from ..bristles import AbstractBristle
+from ..programs import Program
 
 _NODES = 16
 # Degrees that get a program of their own: one for each would compile too often. The
@@ -41,7 +41,7 @@ class SeriesBristle(AbstractBristle):
         return self._integral(self.climb, eta)
 
 
-@eqx.filter_jit
+@Program
 def _slopes(bristle: AbstractBristle, etas: Array) -> tuple[Array, Array]:
     return jax.vmap(jax.grad(bristle.offset))(etas), jax.vmap(jax.grad(bristle.energy))(
         etas
@@ -51,7 +51,7 @@ def _slopes(bristle: AbstractBristle, etas: Array) -> tuple[Array, Array]:
 def series_of(bristle: AbstractBristle, highest: float) -> AbstractBristle:
     """The bristle as a series for |eta| <= `highest` (m); itself where none converges."""
     nodes = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
-    values = [np.asarray(v) for v in _slopes(bristle, jnp.asarray(nodes * highest))]
+    values = [np.asarray(v) for v in _slopes(bristle, nodes * highest)]
     vandermonde = np.polynomial.chebyshev.chebvander(nodes, _NODES - 1)
     found = [np.linalg.solve(vandermonde, v) for v in values]
     sizes = [max(float(np.max(np.abs(v))), 1e-300) for v in values]

@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..programs import room
 from ..scene import Scene
 from .passage import TOGETHER, Passage, Pull, Track, one_passage, passages, pull_at
 from .path import arrivals_at, state_under
-from .sizes import room
 
 DEGREE = TOGETHER
 _X = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
@@ -72,8 +72,8 @@ class Curve(NamedTuple):
     """Times of passage of one slide, as Chebyshev series on panels of wells.
 
     `edges` (K+1,): numbers of lattice points. `starts` (K+1,): times there, s. `series`
-    (K, DEGREE+1): of T less the panel's start. `tail` (K,): its last coefficients, in wells.
-    `kept` (K,): share of a shift that a well leaves of it.
+    (K, DEGREE+1): of T less the panel's start. `tail` (K,): its last coefficients,
+    in wells. `kept` (K,): share of a shift that a well leaves of it.
     """
 
     edges: np.ndarray
@@ -162,9 +162,9 @@ def _panel(scene: Scene, slides: Slides, first, time, span, accuracy, wanted) ->
     states = slides.origin[:, None] + (slides.track.sign * slides.eps)[:, None] * number
     wide = np.ones_like(number)
     force = (slides.track.sign * pull)[:, None] * wide
-    flat = [a.ravel() for a in (states, force, time[:, None] * wide)]
-    late = (slides.late[:, None] * wide).ravel()
-    guess = arrivals_at(scene, *flat, late).reshape(number.shape).copy()
+    early, late = time[:, None] * wide, slides.late[:, None] * wide
+    flat = states.ravel(), force.ravel(), early.ravel(), late.ravel()
+    guess = arrivals_at(scene, *flat).reshape(number.shape).copy()
     guess[:, 0] = time
     times, found, size = _newton(scene, slides, number, guess, span, wanted)
     series = (times - times[:, :1]) @ _TO_SERIES.T

@@ -8,8 +8,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
 from ..arguments import Real
-from ..coefficients import coefficients
-from ..extrema import periodic_extrema
+from ..coefficients import Coefficients, coefficients
+from ..extrema import periodic_extrema, slope_of
 from ..potentials import AbstractPotential
 from ..scene import Scene, load_range
 
@@ -76,13 +76,15 @@ def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
         return potential.tip_force(y, eps)[0]
 
     extrema = periodic_extrema(force, points)
-    bend = jax.grad(jax.grad(force))
     grid = (jnp.arange(points) + 0.5) / points
-    slopes = jax.vmap(jax.grad(force))(grid)
-    stretches = jax.vmap(lambda y: potential.tip_force(y, eps)[1])(grid)
+    one = jnp.ones_like(grid)
+    every = jax.vmap(lambda y: potential.tip_force(y, eps))
+    (_, stretches), (slopes, _) = jax.jvp(every, (grid,), (one,))
     top, bottom = extrema.argmax, extrema.argmin
     states = [eps * y + potential.offset(y, eps) for y in (top, bottom)]
-    curvatures = jnp.abs(jnp.stack([bend(top), bend(bottom)]))
+    # Forward twice: reverse mode takes twice as long to trace.
+    bend = slope_of(slope_of(jax.vmap(force)))
+    curvatures = jnp.abs(bend(jnp.stack([top, bottom])))
     return Landscape(
         fold_curvature=jnp.max(curvatures),
         steepest=jnp.max(jnp.abs(slopes)),
@@ -98,33 +100,36 @@ def _narrowest_run(slopes: Float[Array, " n"]) -> Real:
     Rounding noise on flat stretches counts as rising.
     """
     falling: Bool[Array, " twice"] = jnp.tile(slopes < -1e-9 * jnp.max(jnp.abs(slopes)), 2)
-    index = jnp.arange(falling.shape[0])
-    turns = jnp.where(falling != jnp.roll(falling, 1), index, 0)
-    before = jax.lax.cummax(turns)[:-1]
-    complete = (turns[1:] > 0) & (before > 0)
-    widths = jnp.where(complete, index[1:] - before, falling.shape[0])
+    index, twice = jnp.arange(falling.shape[0]), falling.shape[0]
+    turns = (falling != jnp.roll(falling, 1)) & (index > 0)
+    # Sorted to the front (a running maximum instead compiles three times as long).
+    places = jnp.sort(jnp.where(turns, index, 2 * twice))
+    widths = jnp.where(places[1:] < twice, jnp.diff(places), twice)
     return jnp.maximum(jnp.min(widths), 2)
 
 
-def _fastest_load(scene: Scene) -> Real:
-    """Largest |l'| on [0, T], sampled between the turning points."""
+class Pull(NamedTuple):
+    """How hard a scene pulls: largest |l'| on [0, T] in N/s, smallest Phi'' in N/m."""
+
+    fastest: Real
+    softest: Real
+
+
+def pull_of(scene: Scene, found: Coefficients) -> Pull:
+    """The same for all cells: sampled between turning points, and over reached states."""
     ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
     edges = jnp.sort(jnp.concatenate([ends, scene.turning_points()]))
     share = (jnp.arange(_SAMPLES) + 0.5) / _SAMPLES
-    times = edges[:-1, None] + jnp.diff(edges)[:, None] * share
-    return jnp.max(jnp.abs(jax.vmap(scene.load.slope)(times.ravel())))
-
-
-def _softest_support(scene: Scene) -> Real:
-    """Smallest Phi'' over a few states that the load reaches."""
-    found = coefficients(scene.potential)
+    times = (edges[:-1, None] + jnp.diff(edges)[:, None] * share).ravel()
+    slopes = jax.vmap(scene.load.slope)(times)
     low, high = load_range(scene)
     forces = jnp.linspace(low - found.rho_plus, high - found.rho_minus, 9)
     states = jax.vmap(scene.support.state_of)(forces)
-    return jnp.min(jax.vmap(scene.support.stiffness_at)(states))
+    stiffness = jax.vmap(scene.support.stiffness_at)(states)
+    return Pull(jnp.max(jnp.abs(slopes)), jnp.min(stiffness))
 
 
-def remembered_slips(ground: Landscape, scene: Scene, eps: Real, gamma: Real) -> Real:
+def remembered_slips(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real:
     """How many slips back a disturbance still matters, in the scene's fastest slide.
 
     Averaging over a well, a slide at speed v lags by a force that is quadratic in
@@ -133,13 +138,12 @@ def remembered_slips(ground: Landscape, scene: Scene, eps: Real, gamma: Real) ->
     benchmark scene at any eps (a slip leaves 0.975 of a disturbance, as measured), one or
     less at gamma = 1.
     """
-    stiffness = _softest_support(scene)
-    speed = _fastest_load(scene) / stiffness
+    speed = pull.fastest / pull.softest
     bend = jnp.maximum(ground.fold_curvature, 1e-300)
-    return 4 * jnp.pi**2 * speed**2 * eps ** (2 * gamma - 1) / (bend * stiffness)
+    return 4 * jnp.pi**2 * speed**2 * eps ** (2 * gamma - 1) / (bend * pull.softest)
 
 
-def _way_to_fold(ground: Landscape, scene: Scene, eps: Real, gamma: Real) -> Real:
+def _way_to_fold(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real:
     """How near in periods the tip is to a fold when its slip is half a percent away.
 
     At rest the force is quadratic in the distance, which so shrinks like sqrt(eps). Where
@@ -147,23 +151,27 @@ def _way_to_fold(ground: Landscape, scene: Scene, eps: Real, gamma: Real) -> Rea
     the curvature, has the scale `(eps^(gamma+1) l')^(1/3) b^(-2/3)`.
     """
     bend = jnp.maximum(0.5 * ground.fold_curvature, 1e-300)
-    at_rest = jnp.sqrt(0.005 * _softest_support(scene) * eps / bend)
-    passage = jnp.cbrt(eps ** (gamma + 1) * _fastest_load(scene) / bend**2)
+    at_rest = jnp.sqrt(0.005 * pull.softest * eps / bend)
+    passage = jnp.cbrt(eps ** (gamma + 1) * pull.fastest / bend**2)
     return jnp.maximum(at_rest, 0.3 * passage)
 
 
-def plan_steps(scene: Scene, eps: Real, gamma: Real, accuracy: Real) -> Plan:
+def plan_steps(
+    scene: Scene, eps: Real, gamma: Real, accuracy: Real, pull: Pull | None = None
+) -> Plan:
     """Step control for an error of `accuracy` eps in z at times outside slips.
 
     Errors of the slips remembered add up with mixed signs: as the root of their number.
     (As the number itself: tolerances 6 times smaller at gamma = 1/2, for errors that were
-    10 times below the target already.)
+    10 times below the target already.) `pull`: that of the scene, where it is known.
     """
+    if pull is None:
+        pull = pull_of(scene, coefficients(scene.potential))
     ground = landscape(scene.potential, eps)
-    memory = remembered_slips(ground, scene, eps, gamma)
+    memory = remembered_slips(ground, pull, eps, gamma)
     stretch = jnp.maximum(1.0, ground.stretch)
     tolerance = accuracy / (_SAFETY * jnp.sqrt(1 + memory) * stretch)
-    at_folds = _FOLD * _way_to_fold(ground, scene, eps, gamma)
+    at_folds = _FOLD * _way_to_fold(ground, pull, eps, gamma)
     tolerance = jnp.minimum(tolerance, at_folds)
     relaxation = eps ** (gamma + 1) / ground.steepest
     shortest = _DOUBLE_SPACING * scene.duration

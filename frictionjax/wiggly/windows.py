@@ -21,8 +21,9 @@ _SLOW = 0.03  # of the largest speed: what counts as a slip on a path that rests
 class Ground(NamedTuple):
     """What windows need to know of each cell, shape (cells,) each.
 
-    `rides`: tuples of `Ride`, in time. `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
+    `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
     most. `shift_plus`, `shift_minus`: by how much in m folds at this eps differ from rho.
+    `rides`: tuples of `Ride`, in time.
     """
 
     eps: np.ndarray
@@ -295,10 +296,11 @@ def plan_windows(
 def _legs(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Legs:
     """Legs with the path as their guide; slopes from inside each leg."""
     length = np.maximum(end - start, 0.0)
-    guide0, guide1 = states_at(scene, path, start), states_at(scene, path, end)
+    guides = states_at(scene, path, np.concatenate([start, end]))
     aside = _ASIDE * length
-    slope0 = slopes_at(scene, path, start + aside, guide0)
-    slope1 = slopes_at(scene, path, end - aside, guide1)
+    inside = np.concatenate([start + aside, end - aside])
+    slopes = slopes_at(scene, path, inside, guides)
+    (guide0, guide1), (slope0, slope1) = np.split(guides, 2), np.split(slopes, 2)
     middle = path.piece_of(0.5 * (start + end))
     friction = np.where(path.direction[middle] != 0, path.rho[middle], 0.0)
     none = np.zeros(start.size)
