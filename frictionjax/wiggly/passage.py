@@ -23,10 +23,10 @@ _X, _W = np.polynomial.legendre.leggauss(_POINTS)
 _LEGENDRE = np.polynomial.legendre.legvander(_X, _POINTS - 1)
 _TO_SERIES = np.linalg.inv(_LEGENDRE)
 _DEPTH = 26  # halvings of the period: folds narrower than 1e-8 of it are not resolved
-_ROUGH = 1e-8  # of the whole integral: last coefficients of a panel that is split
+_ROUGH = 1e-6  # of the whole integral: last coefficients of a panel that is split
 # Sweeps of Newton's method from a guess that keeps the force constant, and from the
 # times of a passage nearby.
-_SWEEPS, _AGAIN = 5, 2
+_SWEEPS, _AGAIN = 5, 1
 _NEAR = 256  # Taylor series of one compiled call
 TOGETHER = 12  # passages of a track side by side
 
@@ -47,9 +47,9 @@ class Track(NamedTuple):
     """The wiggly force along one period, as a fast tip meets it; C cells, M nodes.
 
     Counted in the direction of motion, from a lattice point: at the extreme fold, where
-    the tip is slowest. `way` (C, M): z in m since that point. `against` (C, M): V_eps' in
-    N, its sign turned for slides to the left. `weight` (C, M): `eps G` times half the width of
-    the node's panel, in m. `sign` (C,): 1 or -1.
+    the tip is slowest. `way` (C, M): z in m since that point. `against` (C, M): V_eps'
+    in N, its sign turned for slides to the left. `weight` (C, M): `eps G` times half the
+    width of the node's panel, in m. `sign` (C,): 1 or -1.
     """
 
     way: np.ndarray
@@ -156,7 +156,7 @@ def _graded(potential, some: Stretch) -> tuple[np.ndarray, ...]:
 def track_of(potential: AbstractPotential, some: Stretch) -> Track:
     """The force along stretches of a period, resolved for the excess.
 
-    Panels are halved until the last Legendre coefficients of 1/force are below 1e-8 of
+    Panels are halved until the last Legendre coefficients of 1/force are below 1e-6 of
     the whole integral; cells with fewer panels get empty ones.
     """
     cell, left, width = _graded(potential, some)

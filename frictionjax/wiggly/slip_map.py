@@ -17,14 +17,15 @@ from numpy.polynomial import chebyshev
 
 from ..programs import room
 from ..scene import Scene
-from .passage import TOGETHER, Passage, Pull, Track, one_passage, passages, pull_at
+from .passage import TOGETHER, Pull, Track, one_passage, passages, pull_at
 from .path import arrivals_at, state_under
 
 DEGREE = TOGETHER
 _X = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_X, DEGREE))
 _NEWTON = 6
-_CONVERGED = 1e-7  # wells: the last correction of Newton's method
+_CONVERGED = 1e-4  # wells: the last correction of Newton's method, which is quadratic
+_INVERSE = 6  # sweeps of Newton's method for the number at a time
 # A slide is slow where a passage forgets more than this of a shift: tips nearly rest at
 # folds, and windows started a few slips earlier do as well.
 _SLOW = 0.3
@@ -93,15 +94,27 @@ class Curve(NamedTuple):
         return self.starts[panel] + np.sum(self.series[panel] * np.cos(angles), axis=1)
 
     def number_at(self, time: np.ndarray) -> np.ndarray:
-        """Lattice point that is passed at each time, by bisection; between the ends."""
+        """Lattice point that is passed at each time between the ends."""
         panel = np.searchsorted(self.starts, time, side="right") - 1
         panel = np.clip(panel, 0, self.tail.size - 1)
-        low, high = self.edges[panel].copy(), self.edges[panel + 1].copy()
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            later = self.time_of(middle) > time
-            low, high = np.where(later, low, middle), np.where(later, middle, high)
-        return 0.5 * (low + high)
+        since, whole = time - self.starts[panel], np.diff(self.starts)[panel]
+        x = np.clip(2 * since / whole - 1, -1.0, 1.0)
+        series, order = self.series[panel], np.arange(DEGREE + 1)
+        slopes = _derivatives(series)
+        for _ in range(_INVERSE):
+            angle = np.arccos(x)[:, None]
+            value = np.sum(series * np.cos(angle * order), axis=1)
+            slope = np.sum(slopes * np.cos(angle * order), axis=1)
+            x = np.clip(x - (value - since) / slope, -1.0, 1.0)
+        low, high = self.edges[panel], self.edges[panel + 1]
+        return low + 0.5 * (x + 1) * (high - low)
+
+
+def _derivatives(series: np.ndarray) -> np.ndarray:
+    """Chebyshev series of the derivatives of the rows of `series`."""
+    slopes = np.zeros_like(series)
+    slopes[:, :-1] = chebyshev.chebder(series.T).T
+    return slopes
 
 
 class _Panel(NamedTuple):
@@ -129,13 +142,11 @@ def _excess(scene: Scene, slides: Slides, number: np.ndarray, times: np.ndarray)
     return slides.track.sign * (pull.load[:, 0, 0] - pull.support[:, 0, 0])
 
 
-def _newton(scene: Scene, slides: Slides, number, times, span, wanted):
+def _newton(scene: Scene, slides: Slides, number, times, span):
     """Times at the nodes 1 to DEGREE so that the recursion holds there."""
     powers = (2 / span)[:, None] ** np.arange(1, DEGREE + 1)
     shift = np.einsum("ck,kij->cij", powers, _SHIFTS)[:, 1:]
-    found: Passage | None = None
     guess = None
-    size = np.full(span.size, np.inf)
     for _ in range(_NEWTON):
         pull = _pull(scene, slides, number[:, 1:], times[:, 1:])
         found = passages(slides.track, pull, slides.viscosity, guess)
@@ -150,31 +161,35 @@ def _newton(scene: Scene, slides: Slides, number, times, span, wanted):
         length = np.abs(times[:, -1] - times[:, 0]) / span
         size = np.max(np.abs(change), axis=1) / length
         guess = found.times
-        if not np.any(wanted & (size > _CONVERGED)):
+        if not np.any(size > _CONVERGED):
             break
-    assert found is not None
     return times, found, size
 
 
-def _panel(scene: Scene, slides: Slides, first, time, span, accuracy, wanted) -> _Panel:
+def _panel(scene: Scene, slides: Slides, now, first, time, span, accuracy) -> _Panel:
+    """The next panel of the slides `now`."""
+    whose = _repeated(now)
+    some = _chosen(slides, whose)
+    first, time, span = first[whose], time[whose], span[whose]
     number = first[:, None] + 0.5 * span[:, None] * (_X + 1)
-    pull = _excess(scene, slides, first, time)
-    states = slides.origin[:, None] + (slides.track.sign * slides.eps)[:, None] * number
+    pull = _excess(scene, some, first, time)
+    states = some.origin[:, None] + (some.track.sign * some.eps)[:, None] * number
     wide = np.ones_like(number)
-    force = (slides.track.sign * pull)[:, None] * wide
-    early, late = time[:, None] * wide, slides.late[:, None] * wide
+    force = (some.track.sign * pull)[:, None] * wide
+    early, late = time[:, None] * wide, some.late[:, None] * wide
     flat = states.ravel(), force.ravel(), early.ravel(), late.ravel()
     guess = arrivals_at(scene, *flat).reshape(number.shape).copy()
     guess[:, 0] = time
-    times, found, size = _newton(scene, slides, number, guess, span, wanted)
+    times, found, size = _newton(scene, some, number, guess, span)
     series = (times - times[:, :1]) @ _TO_SERIES.T
     length = (times[:, -1] - times[:, 0]) / span
     tail = (np.abs(series[:, -1]) + np.abs(series[:, -2])) / length
     noise = _SPACING * np.abs(times[:, -1]) / length
     fine = (size <= np.maximum(_CONVERGED, noise)) & np.all(np.diff(times) > 0, axis=1)
     fine &= tail <= np.maximum(_TAIL * accuracy, noise)
-    fine &= times[:, -1] <= slides.late
-    return _Panel(times, found.kept, found.length[:, -1], fine, tail)
+    fine &= times[:, -1] <= some.late
+    every = times, found.kept, found.length[:, -1], fine, tail
+    return _Panel(*(column[: now.size] for column in every))
 
 
 def _left(scene: Scene, slides: Slides, first, time, pull, length) -> np.ndarray:
@@ -187,8 +202,11 @@ def _left(scene: Scene, slides: Slides, first, time, pull, length) -> np.ndarray
 
 def _passage(scene: Scene, slides: Slides, first, time) -> np.ndarray:
     """Length in s of one passage from each start."""
-    pull = _pull(scene, slides, first[:, None], time[:, None])
-    return one_passage(slides.track, Pull(*(v[:, 0] for v in pull)), slides.viscosity)
+    which = _repeated(np.arange(slides.eps.size))
+    some = _chosen(slides, which)
+    pull = _pull(scene, some, first[which, None], time[which, None])
+    every = one_passage(some.track, Pull(*(v[:, 0] for v in pull)), some.viscosity)
+    return every[: first.size].copy()
 
 
 def follow(scene: Scene, slides: Slides, accuracy: float) -> list[Curve | None]:
@@ -196,40 +214,40 @@ def follow(scene: Scene, slides: Slides, accuracy: float) -> list[Curve | None]:
 
     None where it is slow from the start, or too short.
     """
-    count = slides.eps.size
-    slides = _padded(slides)
     size = slides.eps.size
     first, time = slides.first.copy(), slides.time.copy()
     pull = _excess(scene, slides, first, time)
     length = _passage(scene, slides, first, time)
     span = np.full(size, 2 * _SMALLEST)
     reached, smallest = np.zeros(size), np.full(size, _SMALLEST)
-    going = np.isfinite(length) & (np.arange(size) < count)
+    going = np.isfinite(length)
     panels: list[list[tuple]] = [[] for _ in range(size)]
     for _ in range(_PANELS):
         left = _left(scene, slides, first, time, pull, length)
         going &= (left >= _SMALLEST) & (span >= smallest)
-        if not going.any():
+        now = np.flatnonzero(going)
+        if now.size == 0:
             break
         span = np.floor(np.where(left < 1.3 * span, left, span))
-        found = _panel(scene, slides, first, time, np.maximum(span, 1.0), accuracy, going)
+        found = _panel(scene, slides, now, first, time, span, accuracy)
         calm = np.all((found.kept > _SLOW) & (found.kept < 1 / _SLOW), axis=1)
-        on = going & found.fine & calm
-        for c in np.flatnonzero(on):
-            kept = np.exp(np.mean(np.log(found.kept[c])))
-            row = first[c], time[c], span[c], found.times[c], found.tail[c], kept
-            panels[c].append(row)
+        on = found.fine & calm
+        for i, c in enumerate(now):
+            if on[i]:
+                kept = np.exp(np.mean(np.log(found.kept[i])))
+                row = first[c], time[c], span[c], found.times[i], found.tail[i], kept
+                panels[c].append(row)
         # Where it turns slow on a panel, only a large part of the way is worth having.
-        reached = np.where(on, span, reached)
-        slow = found.fine & ~calm
-        smallest = np.where(slow, np.maximum(_WORTH * reached, _SMALLEST), smallest)
-        first = np.where(on, first + span, first)
-        time = np.where(on, found.times[:, -1], time)
-        length = np.where(on, found.length, length)
-        pull = np.where(on, _excess(scene, slides, first, time), pull)
+        reached[now] = np.where(on, span[now], reached[now])
+        slow = now[found.fine & ~calm]
+        smallest[slow] = np.maximum(_WORTH * reached[slow], _SMALLEST)
+        ahead = now[on]
+        first[ahead] += span[ahead]
+        time[ahead], length[ahead] = found.times[on, -1], found.length[on]
+        pull[ahead] = _excess(scene, slides, first, time)[ahead]
         growth = np.where(found.tail < _ROOMY * _TAIL * accuracy, _GROWTH, _LITTLE)
-        span = span * np.where(on, growth, _SHRINK)
-    return [_curve(panels[c]) for c in range(count)]
+        span[now] *= np.where(on, growth, _SHRINK)
+    return [_curve(panels[c]) for c in range(size)]
 
 
 def _curve(panels: list[tuple]) -> Curve | None:
@@ -242,12 +260,13 @@ def _curve(panels: list[tuple]) -> Curve | None:
     return Curve(edges, np.append(time, times[-1, -1]), series, tail, kept)
 
 
-def _padded(slides: Slides) -> Slides:
-    size = room(slides.eps.size, 4)
-    more = size - slides.eps.size
+def _repeated(which: np.ndarray) -> np.ndarray:
+    """Indices, the last one repeated up to one of few sizes."""
+    more = room(which.size, 4, 2) - which.size
+    return np.concatenate([which, np.repeat(which[-1:], more)])
 
-    def pad(column: np.ndarray) -> np.ndarray:
-        return np.concatenate([column, np.repeat(column[-1:], more, axis=0)])
 
-    track = Track(*(pad(c) for c in slides.track))
-    return Slides(track, *(pad(c) for c in slides[1:]))
+def _chosen(slides: Slides, which: np.ndarray) -> Slides:
+    """Some slides."""
+    track = Track(*(column[which] for column in slides.track))
+    return Slides(track, *(column[which] for column in slides[1:]))
