@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.wiggly import engine
+from frictionjax.wiggly import engine, rounds
 from frictionjax.wiggly.path import path_of, states_at, times_at
+from frictionjax.wiggly.windows import starts_of
 
 TIMES = np.linspace(0.0, 3.0, 31)
 SINE = fx.loads.Sine(1.0488, 3.0)
@@ -130,7 +131,8 @@ def test_brackets_hold_the_tip():
     folds = jax.tree_util.tree_map(lambda v: np.asarray(v)[:1], control.folds)
     ground = engine.ground_of(scene, path, np.array([eps]), np.array([gamma]), folds)
     begin = np.linspace(0.1, 2.9, 200)
-    starts = engine.starts_of(scene, path, ground, np.zeros(200, int), begin, 3.0)
+    far = np.full(200, 3.0)
+    starts = starts_of(scene, path, ground, np.zeros(200, int), begin, far, far)
     slides = np.flatnonzero(~starts.known)
     assert slides.size > 150
     time = np.unique(starts.time[slides])
@@ -192,8 +194,8 @@ def test_solve_says_how_values_were_obtained():
 
 def test_too_much_to_integrate_is_a_status(monkeypatch):
     """A bracket that stays open, at an eps where every slip is too many."""
-    monkeypatch.setattr(engine, "_ROUNDS", 1)
-    monkeypatch.setattr(engine, "_CLOSED", 0.0)
+    monkeypatch.setattr(rounds, "ROUNDS", 1)
+    monkeypatch.setattr(rounds, "CLOSED", 0.0)
     found = cells(scene_of(), 1e-7, 1.0, "windowed")
     assert found.status[0] == fx.Status.OPEN_BRACKET
     assert np.all(np.isnan(found.z))

@@ -14,6 +14,10 @@ _ASIDE = 1e-6  # of a leg: where one-sided slopes are taken
 _GAP = 1e-6  # of a well: rounding of z/eps
 # Steps are 10 to 200 a well; lags let lanes pass through more wells than the path.
 _STEPS_A_WELL, _SOME_WELLS = 2000, 100
+_FASTER = 1.5  # how much slides may have been faster, squared, where lanes set off
+# Wells: lags that are longer are taken at the speed of the moment. (At the largest speed
+# always: lanes of 300 wells in slow parts of slides at gamma = 0.4, where ten do.)
+_LONG_LAG = 5.0
 _WHOLE = 1e-4  # wells: rounding of times, in numbers of wells
 _SLOW = 0.03  # of the largest speed: what counts as a slip on a path that rests
 
@@ -151,30 +155,35 @@ def starts_of(
     slide = np.flatnonzero(~known)
     time = np.zeros(begin.size)
     time[slide] = times_at(scene, path, piece[slide], level[slide])
-    lanes = _brackets(ground, cell, direction, level, known)
+    share = np.ones(begin.size)
+    share[slide] = slow_share(scene, path, time[slide], level[slide])
+    share = np.where(lag > _LONG_LAG * eps, share, 1.0)
+    lanes = _brackets(ground, cell, direction, level, known, share)
     plain = Starts(time, known, np.zeros(begin.size, dtype=bool), *lanes)
-    reach = wells * eps + 2 * lag
+    reach = wells * eps + 2 * share * lag
     return _ridden(scene, path, ground, cell, begin, plain, back, reach)
 
 
 def _ridden(
     scene: Scene, path: Path, ground: Ground, cell, begin, plain: Starts, back, way
 ):
-    """The same starts, from the last ride before each window where that is nearer.
+    """The same starts, from the last ride where it holds the window or ends nearer to it.
 
     `way` (W,): m that a lane of the bracket goes until the window begins, its lag included.
     """
     ridden = Starts(*(column.copy() for column in plain))
     ridden.time[:] = -np.inf
+    inside = np.zeros(begin.size, dtype=bool)
     for c in np.unique(cell):
         for ride in ground.rides[c]:
             mine = np.flatnonzero((cell == c) & (begin >= ride.begin))
             if mine.size:
                 _set_off(ride, mine, begin[mine], back[mine], ridden)
+                inside[mine] = begin[mine] <= ride.end
     some = np.flatnonzero(ridden.ridden)
     both = np.concatenate([begin[some], ridden.time[some]])
     late, early = np.split(way_at(scene, path, both), 2)
-    nearer = plain.known[some] | (late - early <= way[some])
+    nearer = plain.known[some] | inside[some] | (late - early <= way[some])
     chosen = np.isin(np.arange(begin.size), some[nearer])
     return Starts(*(np.where(chosen, r, p) for r, p in zip(ridden, plain, strict=True)))
 
@@ -191,7 +200,18 @@ def _set_off(ride: Ride, mine: np.ndarray, begin, back, starts: Starts) -> None:
         column[mine] = row
 
 
-def _brackets(ground: Ground, cell, direction, level, known) -> tuple[np.ndarray, ...]:
+def slow_share(scene: Scene, path: Path, time: np.ndarray, state: np.ndarray) -> np.ndarray:
+    """Share of the lag and memory of the fastest slide that there is at these times.
+
+    Both grow with the square of the speed; slides may have been faster a moment before.
+    """
+    before = time - _ASIDE * path.edges[-1]  # a slide may end at full speed, in a kink
+    both = [slopes_at(scene, path, t, state) for t in (time, np.maximum(before, 0.0))]
+    speed = np.max(np.abs(both), axis=0)
+    return np.minimum(_FASTER * (speed / path.speed) ** 2, 1.0)
+
+
+def _brackets(ground: Ground, cell, direction, level, known, share):
     """Well and tip of the lanes behind and ahead of the edge at `level`."""
     up, eps, folds = direction > 0, ground.eps[cell], ground.folds
 
@@ -201,7 +221,7 @@ def _brackets(ground: Ground, cell, direction, level, known) -> tuple[np.ndarray
     place = side(folds.place_plus, folds.place_minus)
     fold = side(folds.state_plus, folds.state_minus)
     shift = side(ground.shift_plus, ground.shift_minus)
-    lag = side(ground.lag_plus, ground.lag_minus)
+    lag = share * side(ground.lag_plus, ground.lag_minus)
     # Mirrored for slides to the left, so that the tip moves up in both.
     sign = np.where(up, 1.0, -1.0)
     at = sign * (level - fold) / eps

@@ -1,0 +1,116 @@
+"""Rides of a sweep: the slip map between looks through lanes, and measured by lanes."""
+
+import numpy as np
+
+from .lanes import Arrivals
+from .rides import Ride, Rider, Seen, ride_through
+from .rounds import EARLIER, ROUNDS, Rounds, run_ups
+from .windows import Plan, Starts, Windows
+
+# Tolerance of the lanes that measure a slip map; errors of the map at its start, as lanes
+# leave it, and at least, of the accuracy.
+_TIGHT_RIDE, _SET_OFF, _LEAST_ERROR = 1e-10, 0.1, 0.01
+# Share of the accuracy that rounding of times may take in a measurement of a slip map, and
+# wells that lanes go through for it at most.
+_NOISE, _MOST_CHECKED = 0.03, 400.0
+
+
+def find_rides(
+    rounds: Rounds, cells: np.ndarray, viscosity: np.ndarray, warm: np.ndarray
+) -> None:
+    """Put the rides of some cells into the ground of the rounds."""
+    ground, folds = rounds.ground, rounds.ground.folds
+    sides = {
+        1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
+        -1.0: (np.asarray(folds.place_minus), np.asarray(folds.force_minus)),
+    }
+    rider = Rider(rounds.scene, rounds.path, ground.eps, viscosity, sides, rounds.accuracy)
+
+    def look(cell: np.ndarray, begin: np.ndarray, stop: np.ndarray) -> Seen:
+        paired, one = np.ones(cell.size, dtype=bool), np.arange(cell.size)
+        windows = Windows(cell, np.minimum(begin, stop), paired, one, stop)
+        wells, back = run_ups(rounds, windows, warm), np.ones(cell.size)
+        for _ in range(ROUNDS):
+            plan, found = rounds.run(windows, wells, back)
+            seen = Seen(*_at_stops(rounds, plan, found, cell))
+            if np.all(seen.gap <= _SET_OFF * rounds.accuracy):
+                break
+            wells, back = wells * EARLIER, back * EARLIER
+        return seen
+
+    def check(cells, rides, gaps) -> list[np.ndarray]:
+        return _errors(rounds, cells, rides, gaps)
+
+    def keep(cell: int, ride: Ride) -> None:
+        ground.rides[cell] = (*ground.rides[cell], ride)
+
+    ride_through(rider, cells, look, check, keep)
+
+
+def _at_stops(rounds: Rounds, plan: Plan, found: Arrivals, cell: np.ndarray):
+    """Well, tip and gap in wells of time at the one stop of each window."""
+    a, b = plan.behind, np.maximum(plan.ahead, 0)
+    way = (found.well[b] - found.well[a]) + (found.tip[b] - found.tip[a])
+    gap = np.where(plan.ahead >= 0, np.abs(way), 0.0)
+    pace = np.abs(found.speed[a]) / rounds.path.speed
+    gap = np.where(np.isnan(gap), np.inf, gap / np.clip(pace, 1e-300, 1.0))
+    return found.well[a], found.tip[a], gap
+
+
+def _wells_checked(rounds: Rounds, cell: int, ride: Ride) -> np.ndarray:
+    """Wells that lanes go through on each panel: more where rounding of times adds up."""
+    curve = ride.curve
+    length = np.diff(curve.starts) / np.diff(curve.edges)
+    noise = np.finfo(float).eps * curve.starts[1:] / length
+    memory = 1 / np.maximum(np.abs(1 - curve.kept), 1e-12)
+    wanted = noise * memory / (_NOISE * rounds.accuracy)
+    return np.minimum(np.clip(np.ceil(wanted), 2, _MOST_CHECKED), np.diff(curve.edges))
+
+
+def _errors(
+    rounds: Rounds, cells: list[int], rides: list[Ride], gaps: list[float]
+) -> list[np.ndarray]:
+    """Errors in the tip on the panels of rides: what lanes find in some wells, summed up.
+
+    Counted in wells of time, which are as many periods of the tip as it is slow there.
+    `gaps`: of each ride's start, in wells of time.
+    """
+    pairs = list(zip(cells, rides, strict=True))
+    number = [ride.curve.edges[:-1] for ride in rides]
+    wells = [_wells_checked(rounds, cell, ride) for cell, ride in pairs]
+    begin = [r.curve.time_of(n) for r, n in zip(rides, number, strict=True)]
+    past = [n + w for n, w in zip(number, wells, strict=True)]
+    stop = [r.curve.time_of(n) for r, n in zip(rides, past, strict=True)]
+    tips = [np.full(n.size, r.tip) for r, n in zip(rides, number, strict=True)]
+    well = np.concatenate([r.wells_at(n) for r, n in zip(rides, number, strict=True)])
+    aim = np.concatenate([r.wells_at(n) for r, n in zip(rides, past, strict=True)])
+    sizes = [n.size for n in number]
+    begin_, stop_, tip, count = (np.concatenate(c) for c in (begin, stop, tips, wells))
+    whose, known = np.repeat(cells, sizes), np.ones(tip.size, dtype=bool)
+    starts = Starts(begin_, known, ~known, well, tip, well, tip)
+    tight = np.where(np.isin(np.arange(rounds.ground.eps.size), cells), _TIGHT_RIDE, 1.0)
+    tight = np.minimum(tight, rounds.cells.tolerance)
+    exact = rounds._replace(cells=rounds.cells._replace(tolerance=tight))
+    windows = Windows(whose, begin_, known, np.arange(tip.size), stop_)
+    plan, found = exact.march_from(windows, starts)
+    at = plan.behind
+    place = found.well[at] + (found.tip[at] - tip) - aim
+    # In wells of time: at its fold the tip is far slower than on the average.
+    pace = np.abs(found.speed[at]) * (stop_ - begin_) / (count * rounds.ground.eps[whose])
+    drift = np.abs(place) / np.maximum(pace, 1e-300) / count
+    ends = np.cumsum(sizes)[:-1]
+    parts = zip(rides, np.split(drift, ends), np.split(pace, ends), gaps, strict=True)
+    return [_summed(rounds, *part) for part in parts]
+
+
+def _summed(rounds: Rounds, ride: Ride, drift, pace, gap: float) -> np.ndarray:
+    """Errors that grow by `drift` a well and are forgotten as shifts in time are."""
+    curve = ride.curve
+    error, errors = max(gap, _SET_OFF * rounds.accuracy), []
+    for k, wells in enumerate(np.diff(curve.edges)):
+        left = curve.kept[k] ** wells
+        grown = (1 - left) / (1 - curve.kept[k]) if curve.kept[k] != 1 else wells
+        after = error * left + drift[k] * grown + curve.tail[k]
+        errors.append(max(error, after, _LEAST_ERROR * rounds.accuracy))
+        error = after
+    return np.array(errors) * np.minimum(pace, 1.0)

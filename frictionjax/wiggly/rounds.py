@@ -1,0 +1,176 @@
+"""Rounds of windows through the lanes, further back each time until brackets close."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+
+from ..scene import Scene
+from .evaluation import Found
+from .lanes import Arrivals, Cells, Jobs, LaneScene, Legs, march
+from .layout import Layout, Needs
+from .path import Path, states_at
+from .rosenbrock import Tableau
+from .windows import (
+    Ground,
+    Plan,
+    Starts,
+    Windows,
+    gaps_of,
+    plan_windows,
+    slow_share,
+    starts_of,
+)
+
+WORKERS = 2  # XLA runs each queue of lanes on one core
+CLOSED = 0.5  # of the accuracy: gaps of brackets accepted
+ROUNDS = 3
+EARLIER = 4  # times as far back in each round
+MARGIN = 3  # wells: one to fall behind, one to catch up, one to forget
+LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast slides are
+_BATCH = 1e5  # wells: a few seconds, between two reports
+
+Report = Callable[[float], None]
+
+
+def _merged(one: Arrivals, other: Arrivals) -> Arrivals:
+    """Each leg from the queue that ran it."""
+    pairs = zip(one, other, strict=True)
+    return Arrivals(*(np.where(np.isnan(a), b, a) for a, b in pairs))
+
+
+def _nothing(legs: Legs) -> Arrivals:
+    return Arrivals(*[np.full(legs.start.size, np.nan)] * len(Arrivals._fields))
+
+
+class Round(NamedTuple):
+    """What one round of windows has found."""
+
+    plan: Plan
+    found: Arrivals
+
+
+class Rounds(NamedTuple):
+    """What all rounds of one sweep share."""
+
+    scene: Scene
+    lanes: LaneScene
+    path: Path
+    ground: Ground
+    cells: Cells
+    tableau: Tableau
+    balanced: bool
+    accuracy: float
+    report: Report
+
+    def run(self, windows: Windows, wells: np.ndarray, back: np.ndarray) -> Round:
+        """March all windows, from `wells` of the path or `back` of a ride before them."""
+        where = windows.cell, windows.begin, wells, back
+        starts = starts_of(self.scene, self.path, self.ground, *where)
+        return self.march_from(windows, starts)
+
+    def march_from(self, windows: Windows, starts: Starts) -> Round:
+        """March all windows from their starts."""
+        plan = plan_windows(self.scene, self.path, self.ground, windows, starts)
+        return Round(plan, self._march(plan))
+
+    def _march(self, plan: Plan) -> Arrivals:
+        """Deal the jobs to the cores, the longest first."""
+        jobs, legs = plan.jobs, plan.legs
+        eps = self.ground.eps[jobs.cell]
+        way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])
+        wells = (way[jobs.past_leg] - way[jobs.first_leg]) / eps
+        cost = wells + 1 + 0.3 * (jobs.past_leg - jobs.first_leg)
+        order = np.argsort(-cost, kind="stable")
+        batches = int(np.ceil(cost.sum() / _BATCH))
+        found = _nothing(legs)
+        with ThreadPoolExecutor(WORKERS) as pool:
+            for batch in range(batches):
+                queues = [
+                    order[batch + i * batches :: batches * WORKERS] for i in range(WORKERS)
+                ]
+                for part in pool.map(lambda q: self._queue(jobs, legs, q), queues):
+                    found = _merged(found, part)
+                self.report(1 / batches)
+        return found
+
+    def _queue(self, jobs: Jobs, legs: Legs, chosen: np.ndarray) -> Arrivals:
+        if chosen.size == 0:
+            return _nothing(legs)
+        mine = Jobs(*(np.asarray(column)[chosen] for column in jobs))
+        # Rows of this queue's legs only, in the order of its jobs.
+        count = mine.past_leg - mine.first_leg
+        past = np.cumsum(count)
+        rows = np.repeat(mine.first_leg - (past - count), count) + np.arange(count.sum())
+        mine = mine._replace(first_leg=past - count, past_leg=past)
+        some = Legs(*(column[rows] for column in legs))
+        found = march(self.lanes, self.cells, mine, some, self.tableau, self.balanced)
+        return Arrivals(*(_spread(v, rows, legs.start.size) for v in found))
+
+
+def _spread(values: np.ndarray, rows: np.ndarray, size: int) -> np.ndarray:
+    out = np.full(size, np.nan)
+    out[rows] = values
+    return out
+
+
+def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.ndarray]:
+    """Rounds of windows, further back each time; and windows that never closed."""
+    windows = layout.windows
+    size = windows.stop.size
+    values = np.full((len(Arrivals._fields), size), np.nan)
+    legs = np.full((len(Legs._fields), size), np.nan)
+    gap, how = np.full(size, np.inf), np.zeros(size, dtype=int)
+    cells = rounds.ground.eps.size
+    steps, rejected = np.zeros(cells), np.zeros(cells)
+    open_ = np.arange(windows.cell.size)
+    wells = run_ups(rounds, windows, needs.warm)
+    back = np.ones(wells.size)
+    for _ in range(ROUNDS):
+        some = windows.chosen(open_)
+        place = np.flatnonzero(np.isin(windows.owner, open_))
+        place = place[np.argsort(windows.owner[place], kind="stable")]
+        plan, found = rounds.run(some, wells[open_], back[open_])
+        speed = rounds.path.speed
+        gaps = gaps_of(found, plan.legs, plan.behind, plan.ahead, speed)
+        meets = gaps_of(found, plan.legs, plan.meet_behind, plan.meet_ahead, speed)
+        # Stops that one lane alone has reached count as closed as their window's begin.
+        alone = plan.ahead < 0
+        gaps = np.where(alone, meets[some.owner], gaps)
+        values[:, place] = np.stack([v[plan.behind] for v in found])
+        legs[:, place] = np.stack([v[plan.behind] for v in plan.legs])
+        gap[place] = gaps
+        how[place] = np.where(plan.known, 0, 1 + plan.ridden)[some.owner]
+        owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
+        steps += np.bincount(owner, np.nan_to_num(found.steps), cells)
+        rejected += np.bincount(owner, np.nan_to_num(found.rejected), cells)
+        worst = np.zeros(some.cell.size)
+        np.maximum.at(worst, some.owner, np.nan_to_num(gaps, nan=np.inf))
+        # Lanes that met before a stop part again for a moment where it is at a slip: the
+        # start is forgotten all the same, and the gap is reported as it is.
+        worst = np.minimum(worst, np.nan_to_num(meets, nan=np.inf))
+        open_ = open_[worst > CLOSED * rounds.accuracy]
+        if open_.size == 0:
+            break
+        wells[open_] *= EARLIER
+        back[open_] *= EARLIER
+    result = Found(Arrivals(*values), Legs(*legs), gap, how, steps, rejected)
+    return result, open_
+
+
+def run_ups(rounds: Rounds, windows: Windows, warm: np.ndarray) -> np.ndarray:
+    """Wells that each window starts earlier: fewer where its slide is slow, (W,).
+
+    Slides remember in proportion to the square of their speed.
+    """
+    wells = warm[windows.cell].astype(float)
+    if not np.any((wells > LONG_MEMORY) & np.isfinite(wells)):
+        return wells
+    near = np.full(wells.size, MARGIN + 1.0)
+    where = windows.cell, windows.begin, near, near
+    starts = starts_of(rounds.scene, rounds.path, rounds.ground, *where)
+    states = states_at(rounds.scene, rounds.path, starts.time)
+    share = slow_share(rounds.scene, rounds.path, starts.time, states)
+    share = np.where(starts.ridden, 1.0, share)
+    return np.ceil(MARGIN + share * (wells - MARGIN))
