@@ -3,6 +3,8 @@
 import jax
 import numpy as np
 import pytest
+from reference import System, sine
+from reference import solve as solve_plainly
 
 import frictionjax as fx
 from frictionjax.wiggly import engine, rounds
@@ -190,6 +192,24 @@ def test_solve_says_how_values_were_obtained():
     every = fx.solve(scene_of(), 1e-2, ts=TIMES, method="resolved")
     assert "every slip" in every.stats["values"]
     assert every.stats["sampled"] == 0
+
+
+@pytest.mark.parametrize("z0", [-0.5, 0.5])
+def test_a_far_start_is_not_forgotten_before_it_has_relaxed(z0):
+    """While z0 comes back to the strip, brackets around its edge do not hold it."""
+    times, eps, gamma = np.linspace(0.0, 0.3, 91), 1.1e-3, 0.8
+    plain = System(
+        sine(0.1),
+        lambda eta: (0.0, 0.0, 1.0 + eta),
+        lambda z: z,
+        lambda t: 1.0488 * np.sin(2 * np.pi * t / 3),
+        3.0,
+    )
+    truth = solve_plainly(plain, eps, gamma, z0, times)
+    found = fx.solve(scene_of(z0=z0), eps, gamma, times, method="windowed")
+    error = np.abs(np.asarray(found.z) - truth.z)
+    assert np.max(error[~truth.in_slip]) < 1e-3 * eps
+    assert found.ok
 
 
 def test_too_much_to_integrate_is_a_status(monkeypatch):

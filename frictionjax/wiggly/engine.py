@@ -34,6 +34,7 @@ _NODES, _MOST_NODES, _SURVEYS = 17, 65, 3
 # Wells that one lane alone goes through at most: a minute or two.
 _AFFORDABLE = 2e5
 _TIGHT = 3e-5  # tolerance below which the scheme of order 5 is the cheaper one
+_NEAR_STRIP = 1e-3  # wells
 _CELLS = 16  # at least, in a compiled call: 64 take 4 ms, 16 one
 # Accuracy below which the tolerance is below `_TIGHT`, and values worth a guess at rooms.
 _LIKELY_TIGHT, _FEW = 100 * _TIGHT, 500
@@ -88,8 +89,16 @@ def ground_of(
         shift_minus=shifts[1],
         start_well=np.asarray(well)[: eps.size],
         start_tip=np.asarray(tip)[: eps.size],
+        relaxed=_relaxation(scene, path, eps, gamma),
         rides=_no_rides(eps.size),
     )
+
+
+def _relaxation(scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray):
+    """Time in s until z0 is within a thousandth of a well of the strip (Lemma 7)."""
+    far = abs(float(scene.z0) - path.states[0])
+    folds = np.log(np.maximum(far / (_NEAR_STRIP * eps), 1.0))
+    return folds * eps**gamma / path.stiffness
 
 
 def _no_rides(count: int) -> np.ndarray:

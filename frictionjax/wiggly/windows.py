@@ -27,6 +27,7 @@ class Ground(NamedTuple):
 
     `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
     most. `shift_plus`, `shift_minus`: by how much in m folds at this eps differ from rho.
+    `relaxed`: time in s from which on a start outside the strip is forgotten, by Lemma 7.
     `rides`: tuples of `Ride`, in time.
     """
 
@@ -38,6 +39,7 @@ class Ground(NamedTuple):
     shift_minus: np.ndarray
     start_well: np.ndarray
     start_tip: np.ndarray
+    relaxed: np.ndarray
     rides: np.ndarray
 
 
@@ -142,7 +144,9 @@ def starts_of(
     eps = ground.eps[cell]
     lag = np.maximum(ground.lag_plus, ground.lag_minus)[cell]
     wanted = way_at(scene, path, begin) - wells * eps
-    clear = lag[:, None] + 2 * eps[:, None] - _run_up(path)
+    # A start outside the strip rests where it has relaxed to, off the path by this much.
+    astray = path.speed * ground.relaxed[cell]
+    clear = (lag + astray + 2 * eps)[:, None] - _run_up(path)
     opens = path.travel[:-1] + np.maximum(clear, 0.0)
     closes = path.travel[1:]
     usable = (path.direction != 0) & (opens <= closes) & (opens <= wanted[:, None])
@@ -155,6 +159,9 @@ def starts_of(
     slide = np.flatnonzero(~known)
     time = np.zeros(begin.size)
     time[slide] = times_at(scene, path, piece[slide], level[slide])
+    known |= time < ground.relaxed[cell]
+    time[known] = 0.0
+    slide = np.flatnonzero(~known)
     share = np.ones(begin.size)
     share[slide] = slow_share(scene, path, time[slide], level[slide])
     share = np.where(lag > _LONG_LAG * eps, share, 1.0)
