@@ -29,7 +29,7 @@ _MEANING = {
     "dissipation": ("J", "energy dissipated since t = 0, int eps^gamma z'^2"),
     "dissipation_error": ("J", "sup over [0, T] of |dissipation - dissipation_limit|"),
     "dissipation_gap": ("J", "estimate of the error of the dissipation at T"),
-    "how": ("1", "1 where a bracket has closed, 0 where every slip since z0 is integrated"),
+    "how": ("1", "0: every slip since z0; 1: a bracket has closed; 2: from a slip map"),
     "bracket": ("1", "how closely brackets have closed, in units of eps"),
     "sampled": ("1", "share of the way known from some of its slips"),
     "survey_error": ("m", "estimate of what sampling slips adds to the error of sup_error"),

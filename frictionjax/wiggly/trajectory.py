@@ -26,8 +26,9 @@ class Solution(eqx.Module):
     energy-dissipation balance; both are None where dissipation was not asked for. `ok`:
     every number can be trusted. `stats`: steps, rejected steps, tolerance in periods, how
     values were obtained, and `dissipation_gap`, the distance in J at the end between the
-    dissipation and an independent second value of it. From lanes also `how` (n,): 1 where a
-    bracket from below and above has closed, 0 where every slip since z0 is integrated;
+    dissipation and an independent second value of it. From lanes also `how` (n,): 0 where
+    every slip since z0 is integrated, 1 where a bracket from below and above has closed, 2
+    where one has that set off from a slip map, as wide as the map's measured error;
     `bracket` (n,): how closely, in eps; `sampled`: share of the way that is known from some
     of its slips.
     """
@@ -124,6 +125,8 @@ def _in_words(how: np.ndarray, sampled: float) -> str:
     if not how.any():
         return "resolved, every slip since z0, by one lane"
     share = f"{np.mean(how > 0):.0%} of them from brackets that closed"
+    if np.any(how == 2):
+        share += f", {np.mean(how == 2):.0%} set off from a slip map"
     if sampled:
         return f"windowed, {share}; {sampled:.0%} of the way known from some of its slips"
     return f"resolved, every slip, in tiles; {share}"
