@@ -13,35 +13,26 @@ compared at the end.
 import os
 import time
 
+import equinox as eqx
+import jax
+import jax.numpy as jnp
 import numpy as np
+from numba import njit
+from scalar import REACH, SLIPS, integrator, lanes, load, point, rate
+from scenes import AMPLITUDE, PERIOD, SLOPE, TWO_PI, scene
 
+import frictionjax as fx
+from frictionjax.wiggly.field import TipField
+from frictionjax.wiggly.job_queue import Jobs, Legs
+from frictionjax.wiggly.lane import Cells, LaneScene
+from frictionjax.wiggly.lanes import WIDTH, march
+from frictionjax.wiggly.rodas4p2 import Rodas4P2
+from frictionjax.wiggly.rosenbrock import Linearised, rosenbrock_step
+
+# Before JAX starts its threads, which it does with the first computation.
 os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-
-import frictionjax as fx  # noqa: E402
-
 fx.use_fast_cpu()
-
-import equinox as eqx  # noqa: E402
-import jax  # noqa: E402
-import jax.numpy as jnp  # noqa: E402
-from numba import njit  # noqa: E402
-
 jax.config.update("jax_enable_x64", True)
-
-from scalar import REACH, SLIPS, integrator, lanes, load, point, rate  # noqa: E402
-from scenes import AMPLITUDE, PERIOD, SLOPE, TWO_PI, scene  # noqa: E402
-
-from frictionjax.wiggly.field import TipField  # noqa: E402
-from frictionjax.wiggly.lanes import (  # noqa: E402
-    WIDTH,
-    Cells,
-    Jobs,
-    LaneScene,
-    Legs,
-    march,
-)
-from frictionjax.wiggly.rodas4p2 import Rodas4P2  # noqa: E402
-from frictionjax.wiggly.rosenbrock import Linearised, rosenbrock_step  # noqa: E402
 
 EPS, GAMMA, STEP, COUNT = 1e-3, 1.0, 1e-6, 10_000
 TOLERANCE, LANES = 1e-4, 2048

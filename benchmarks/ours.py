@@ -1,21 +1,17 @@
-"""Our own solver as benchmarks call it; imported before JAX starts, for its flags."""
+"""Our own solver as benchmarks call it, with its flags: set before JAX starts."""
 
 import time
 from typing import Any, NamedTuple
 
+import jax
 import numpy as np
+from scenes import TIMES
 
 import frictionjax as fx
+from frictionjax.wiggly.engine import integrate_cells
 
 fx.use_fast_cpu()
-
-import jax  # noqa: E402
-
 jax.config.update("jax_enable_x64", True)
-
-from scenes import TIMES  # noqa: E402
-
-from frictionjax.wiggly.engine import integrate_cells  # noqa: E402
 
 _LONG = 5.0  # s of one run, beyond which two repeats are enough
 

@@ -9,22 +9,20 @@ Rodas5P at 1e-11 (lanes that end inside a slip are in the 99%). Seconds: one cor
 
 import time
 
+import jax
 import numpy as np
+from scenes import AMPLITUDE, PERIOD, SLOPE, TWO_PI, scene
 
 import frictionjax as fx
+from frictionjax.wiggly.job_queue import Jobs, Legs
+from frictionjax.wiggly.lane import Cells, LaneScene
+from frictionjax.wiggly.lanes import march
+from frictionjax.wiggly.rodas4p2 import Rodas4P2
+from frictionjax.wiggly.rodas5p import Rodas5P
+from frictionjax.wiggly.rosenbrock import Tableau
 
-fx.use_fast_cpu()
-
-import jax  # noqa: E402
-
+fx.use_fast_cpu()  # before JAX computes anything
 jax.config.update("jax_enable_x64", True)
-
-from scenes import AMPLITUDE, PERIOD, SLOPE, TWO_PI, scene  # noqa: E402
-
-from frictionjax.wiggly.lanes import Cells, Jobs, LaneScene, Legs, march  # noqa: E402
-from frictionjax.wiggly.rodas4p2 import Rodas4P2  # noqa: E402
-from frictionjax.wiggly.rodas5p import Rodas5P  # noqa: E402
-from frictionjax.wiggly.rosenbrock import Tableau  # noqa: E402
 
 # A. Sandu et al., Benchmarking stiff ODE solvers for atmospheric chemistry problems II,
 # Atmospheric Environment 31:20 (1997).

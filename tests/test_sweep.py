@@ -102,7 +102,7 @@ def test_one_compilation_for_any_values(data):
     fx.sweep(scene_of(0.08, 0.97, 0.3), [0.08, 0.06, 0.04], [0.6, 1.1, 1.7], ts, 1e-2)
     assert compiled == []
     fx.sweep(scene_of(0.07), np.geomspace(0.09, 0.03, 5), [0.6, 0.9, 1.1, 1.7], ts)
-    assert len(compiled) <= 3  # checks and plans of more cells, never the trajectories
+    assert len(compiled) <= 2  # checks of the other number of eps, never the trajectories
 
 
 def test_netcdf_without_loss(data, tmp_path):

@@ -11,17 +11,18 @@ from ..arguments import Real
 from ..coefficients import Coefficients, coefficients_jit
 from ..potentials import AbstractPotential, BristlePotential
 from ..profiles import AbstractProfile
-from ..programs import Program
+from ..programs import Program, room
 from ..scene import Scene
 from .evaluation import Answers, evaluate
 from .forgetting import lag_forces
-from .lanes import Cells, LaneScene, Room, prepare
+from .lane import Cells, LaneScene
+from .lanes import Room, prepare
 from .layout import Needs, cost_of, lay_out, wells_of
 from .path import Path, path_of
 from .riding import find_rides
 from .rodas4p2 import Rodas4P2
 from .rodas5p import Rodas5P
-from .rosenbrock import Tableau
+from .rosenbrock import AbstractRosenbrock, Tableau
 from .rounds import CLOSED, LONG_MEMORY, MARGIN, WORKERS, Report, Rounds, collect
 from .series_bristle import series_of
 from .status import Status
@@ -35,7 +36,7 @@ _NODES, _MOST_NODES, _SURVEYS = 17, 65, 3
 _AFFORDABLE = 2e5
 _TIGHT = 3e-5  # tolerance below which the scheme of order 5 is the cheaper one
 _NEAR_STRIP = 1e-3  # wells
-_CELLS = 16  # at least, in a compiled call: 64 take 4 ms, 16 one
+_CELLS = 32  # at least, in a compiled call: 64 take 4 ms, 32 two
 # Accuracy below which the tolerance is below `_TIGHT`, and values worth a guess at rooms.
 _LIKELY_TIGHT, _FEW = 100 * _TIGHT, 500
 # Wells of a slide that are worth a slip map, where windows set off far back.
@@ -56,12 +57,14 @@ def _controls(scene, eps, gamma, accuracy, rho: tuple | None = None) -> StepPlan
     return _plans(scene, *map(np.asarray, rho), eps, gamma, np.asarray(accuracy))
 
 
+def scheme_of(tolerance: float) -> type[AbstractRosenbrock]:
+    """The scheme that lanes take at a tolerance (periods of the surface)."""
+    return Rodas5P if tolerance < _TIGHT else Rodas4P2
+
+
 def _fixed(values: np.ndarray) -> np.ndarray:
     """Values of the cells padded to few different sizes."""
-    size = _CELLS
-    while size < values.size:
-        size *= 4
-    return np.pad(values, (0, size - values.size), mode="edge")
+    return np.pad(values, (0, room(values.size, _CELLS) - values.size), mode="edge")
 
 
 @Program
@@ -97,8 +100,8 @@ def ground_of(
 def _relaxation(scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray):
     """Time in s until z0 is within a thousandth of a well of the strip (Lemma 7)."""
     far = abs(float(scene.z0) - path.states[0])
-    folds = np.log(np.maximum(far / (_NEAR_STRIP * eps), 1.0))
-    return folds * eps**gamma / path.stiffness
+    efolds = np.log(np.maximum(far / (_NEAR_STRIP * eps), 1.0))
+    return efolds * eps**gamma / path.stiffness
 
 
 def _no_rides(count: int) -> np.ndarray:
@@ -246,7 +249,7 @@ def integrate_cells(
     control = _some(control, np.arange(eps.size))
     ground = ground_of(scene, path, eps, gamma, control.folds)
     needs = _choose(path, eps, _needs(control, ground, path, accuracy), ts.size, method)
-    scheme = Rodas5P if np.min(control.tolerance) < _TIGHT else Rodas4P2
+    scheme = scheme_of(float(np.min(control.tolerance)))
     cells = Cells(eps, eps**gamma, control.tolerance, control.reach, control.first_step)
     every = _Cellwise(eps, ground, cells, needs)
     sweep = _Sweep(scene, path, lanes, scheme.tableau, ts, accuracy, balanced, report)

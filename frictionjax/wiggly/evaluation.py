@@ -8,7 +8,7 @@ import numpy as np
 from ..arguments import Real
 from ..programs import Program, in_chunks
 from ..scene import Scene
-from .lanes import Arrivals, Legs
+from .job_queue import Arrivals, Legs
 from .layout import Layout, Slide
 from .path import Path, states_at
 from .status import Status

@@ -121,16 +121,21 @@ def _path_parts(scene: Scene, path: Path, eps, needs: Needs, rides) -> _Inner:
     cell, piece = np.nonzero(inner)
     first = np.ceil(needs.settle)[cell]
     last = first + inner[cell, piece]
+    nodes = needs.nodes[cell]
+    return _between(scene, path, eps, needs, cell, piece, first, last, nodes)
+
+
+def _between(scene, path, eps, needs: Needs, cell, piece, first, last, nodes) -> _Inner:
+    """Parts between wells of the path."""
     levels = [_level(path, eps, needs, cell, piece, well) for well in (first, last)]
-    low, high = np.split(
-        times_at(scene, path, np.tile(piece, 2), np.concatenate(levels)), 2
-    )
-    none, nodes = np.full(cell.size, -1), needs.nodes[cell]
+    both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
+    low, high = np.split(both, 2)
+    none = np.full(cell.size, -1)
     return _Inner(cell, piece, first, last, low, high, none, nodes)
 
 
 def _ridden_parts(needs: Needs, rides: np.ndarray) -> list[tuple]:
-    """Each panel of a ride is one part; and so is what is left of its slide behind it."""
+    """Each panel of a ride that is long enough to be known from some of its wells."""
     rows = []
     for c in range(needs.nodes.size):
         # Panels hold times that are polynomials already: half the nodes do.
@@ -160,7 +165,7 @@ def _rests_of_slides(scene: Scene, path: Path, eps, needs: Needs, rides) -> list
             last = np.floor(way - needs.offset[c, piece]) - _TAIL
             if ride.end > path.touch[piece] and last - first > _FEW * needs.nodes[c]:
                 # Slides turn from fast to slow there: 17 nodes leave 6e-4 eps.
-                rows.append((c, piece, first, last, -1, 2 * needs.nodes[c]))
+                rows.append((c, piece, first, last, 2 * needs.nodes[c]))
     return rows
 
 
@@ -171,13 +176,8 @@ def _inner_parts(scene: Scene, path: Path, eps, needs: Needs, rides: np.ndarray)
         parts.append(_Inner(*(np.array(column) for column in zip(*ridden, strict=True))))
     rest = _rests_of_slides(scene, path, eps, needs, rides)
     if rest:
-        cell, piece, first, last, none, nodes = (
-            np.array(column) for column in zip(*rest, strict=True)
-        )
-        levels = [_level(path, eps, needs, cell, piece, well) for well in (first, last)]
-        both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
-        low, high = np.split(both, 2)
-        parts.append(_Inner(cell, piece, first, last, low, high, none, nodes))
+        columns = (np.array(column) for column in zip(*rest, strict=True))
+        parts.append(_between(scene, path, eps, needs, *columns))
     return _Inner(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 

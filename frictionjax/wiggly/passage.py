@@ -72,13 +72,12 @@ class Passage(NamedTuple):
     """Passages over one well: `length` in s, `kept`, and `times` at the nodes (..., M).
 
     `kept`: the share of a shift in time at the start that is left at the end. All NaN
-    where the force vanishes on the way. `shortest`: the smallest force on the way, N.
+    where the force vanishes on the way.
     """
 
     length: np.ndarray
     kept: np.ndarray
     times: np.ndarray
-    shortest: np.ndarray
 
 
 @Program
@@ -218,10 +217,9 @@ def _passages(way, against, weight, sign, load, support, viscosity, times, sweep
     force, rate, bend = slopes(times)
     _, length = running(rate)
     _, grown = running(bend)
-    shortest = jnp.min(jnp.where(pace > 0, force, jnp.inf), axis=-1)
-    bad = ~(shortest > 0)
-    blank = jnp.where(bad, jnp.nan, 0.0)
-    return length + blank, jnp.exp(grown) + blank, times, shortest
+    smallest = jnp.min(jnp.where(pace > 0, force, jnp.inf), axis=-1)
+    blank = jnp.where(smallest > 0, 0.0, jnp.nan)
+    return length + blank, jnp.exp(grown) + blank, times
 
 
 def passages(track: Track, pull: Pull, viscosity: np.ndarray, times=None) -> Passage:

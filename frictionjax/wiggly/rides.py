@@ -126,11 +126,15 @@ class Rider(NamedTuple):
         _, force = self._fold(some)
         return Stretch(self.eps[some.cell], start, length, some.sign, force, excess)
 
+    def states(self, cell: np.ndarray, well: np.ndarray, tip: np.ndarray) -> np.ndarray:
+        """z in m of tips."""
+        offset = wiggles_at(self.scene.potential, self.eps[cell], tip)[2]
+        return self.eps[cell] * (well + tip) + offset
+
     def _beyond(self, some: Candidates) -> np.ndarray:
         """Force in N beyond the fold where the candidates are."""
-        eps = self.eps[some.cell]
-        offset = wiggles_at(self.scene.potential, eps, some.tip)[2]
-        pull = pull_at(self.scene, some.time, eps * (some.well + some.tip) + offset)
+        states = self.states(some.cell, some.well, some.tip)
+        pull = pull_at(self.scene, some.time, states)
         _, force = self._fold(some)
         return some.sign * (pull.load[:, 0] - pull.support[:, 0] - force)
 
@@ -139,10 +143,8 @@ class Rider(NamedTuple):
         place, _ = self._fold(some)
         way = np.mod(some.sign * (place - some.tip), 1.0)
         track = track_of(self.scene.potential, self._stretch(some, some.tip, way, excess))
-        eps = self.eps[some.cell]
-        offset = wiggles_at(self.scene.potential, eps, some.tip)[2]
-        state = eps * (some.well + some.tip) + offset
-        pull = pull_at(self.scene, some.time, state)
+        states = self.states(some.cell, some.well, some.tip)
+        pull = pull_at(self.scene, some.time, states)
         length = one_passage(track, pull, self.viscosity[some.cell])
         well = np.round(some.well + some.tip + some.sign * way - place)
         return some.time + length, well
@@ -166,8 +168,7 @@ class Rider(NamedTuple):
         place, time, well = place[fits], time[fits], well[fits]
         one = np.ones(able.size)
         track = track_of(self.scene.potential, self._stretch(some, place, one, least))
-        offset = wiggles_at(self.scene.potential, eps, place)[2]
-        origin = eps * (well + place) + offset
+        origin = self.states(some.cell, well, place)
         slides = Slides(
             track, eps, self.viscosity[some.cell], origin, 0 * one, time, some.late
         )
@@ -208,11 +209,9 @@ def _touches(rider: Rider, look: Look, cells: np.ndarray, piece: int) -> np.ndar
     if piece == 0:
         return touch
     seen = look(cells, touch, touch)
-    eps, sign = rider.eps[cells], rider.path.direction[piece]
-    tip = np.where(np.isfinite(seen.tip), seen.tip, 0.0)
-    offset = wiggles_at(rider.scene.potential, eps, tip)[2]
-    states = eps * (np.where(np.isfinite(seen.well), seen.well, 0.0) + tip) + offset
-    force = rider.folds[float(sign)][1][cells]
+    # Lanes that failed stay candidates no longer than their gap is looked at.
+    states = rider.states(cells, np.nan_to_num(seen.well), np.nan_to_num(seen.tip))
+    force = rider.folds[float(rider.path.direction[piece])][1][cells]
     late = np.full(cells.size, rider.path.edges[piece + 1])
     return arrivals_at(rider.scene, states, force, touch, late)
 

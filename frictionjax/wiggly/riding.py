@@ -1,8 +1,10 @@
 """Rides of a sweep: the slip map between looks through lanes, and measured by lanes."""
 
+import functools
+
 import numpy as np
 
-from .lanes import Arrivals
+from .job_queue import Arrivals
 from .rides import Ride, Rider, Seen, ride_through
 from .rounds import EARLIER, ROUNDS, Rounds, run_ups
 from .windows import Plan, Starts, Windows
@@ -38,13 +40,10 @@ def find_rides(
             wells, back = wells * EARLIER, back * EARLIER
         return seen
 
-    def check(cells, rides, gaps) -> list[np.ndarray]:
-        return _errors(rounds, cells, rides, gaps)
-
     def keep(cell: int, ride: Ride) -> None:
         ground.rides[cell] = (*ground.rides[cell], ride)
 
-    ride_through(rider, cells, look, check, keep)
+    ride_through(rider, cells, look, functools.partial(_errors, rounds), keep)
 
 
 def _at_stops(rounds: Rounds, plan: Plan, found: Arrivals, cell: np.ndarray):

@@ -8,7 +8,9 @@ import numpy as np
 
 from ..scene import Scene
 from .evaluation import Found
-from .lanes import Arrivals, Cells, Jobs, LaneScene, Legs, march
+from .job_queue import Arrivals, Jobs, Legs
+from .lane import Cells, LaneScene
+from .lanes import march
 from .layout import Layout, Needs
 from .path import Path, states_at
 from .rosenbrock import Tableau

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
-from .lanes import Arrivals, Jobs, Legs
+from .job_queue import Arrivals, Jobs, Legs
 from .path import Path, slopes_at, states_at, times_at
 from .rides import Ride
 from .tolerance import Folds
@@ -137,9 +137,9 @@ def starts_of(
 
     On a slide the tip cannot be past the first fold beyond the strip's edge: it would have
     had to climb it against a force. Nor can it be further behind than a steady slide at
-    the largest speed of the scene. Both hold once the path has come further than the lag
-    of the slide before in the other direction. Where no such place is left, lanes start
-    from z0; and from a ride where one comes later than that.
+    the largest speed of the scene; where that is many wells, of the moment. Both hold once
+    the path has come further than the lag of the slide before in the other direction.
+    Where no such place is left, lanes start from z0; from a ride where one is nearer.
     """
     eps = ground.eps[cell]
     lag = np.maximum(ground.lag_plus, ground.lag_minus)[cell]
@@ -191,7 +191,8 @@ def _ridden(
     both = np.concatenate([begin[some], ridden.time[some]])
     late, early = np.split(way_at(scene, path, both), 2)
     nearer = plain.known[some] | inside[some] | (late - early <= way[some])
-    chosen = np.isin(np.arange(begin.size), some[nearer])
+    chosen = np.zeros(begin.size, dtype=bool)
+    chosen[some[nearer]] = True
     return Starts(*(np.where(chosen, r, p) for r, p in zip(ridden, plain, strict=True)))
 
 

@@ -1,0 +1,211 @@
+"""A queue of jobs for lanes side by side: each takes the next when it is through."""
+
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, Int
+
+from ..programs import Program
+from .balance import Balance
+from .extent import Extent, Guide
+from .field import Point
+from .lane import Cells, LaneScene, Motion, Task, field_of, keep, step_of_lane
+from .rosenbrock import Tableau
+from .step_sizes import level_below
+
+# Steps between two looks at which lanes are done: a look costs about two steps, and a
+# lane that is done idles for half of this.
+_CHUNK = 16
+
+
+class Jobs(NamedTuple):
+    """Where lanes start, shape (jobs,), and the range of legs that each runs through.
+
+    At the time `origin` (s) the tip is at `tip` in the well number `well`.
+    """
+
+    cell: Any
+    origin: Any
+    well: Any
+    tip: Any
+    first_leg: Any
+    past_leg: Any
+
+
+class Legs(NamedTuple):
+    """Stretches of a lane's way between two stops, shape (legs,).
+
+    `start`, `end`: times in s. The guide goes from the state `guide0` (m) with the slope
+    `slope0` (m/s) to `guide1` with `slope1`, and dissipates `friction` (N per m). `budget`:
+    steps after which a lane gives up.
+    """
+
+    start: Any
+    end: Any
+    guide0: Any
+    guide1: Any
+    slope0: Any
+    slope1: Any
+    friction: Any
+    budget: Any
+
+
+class Arrivals(NamedTuple):
+    """What lanes found at the end of each leg and on the way, shape (legs,).
+
+    `well`, `tip`, `speed` (m/s): at the stop. `work`: int l' (z - guide), `viscous` and
+    `residual` as in `Balance`, J. The rest as in `Extent`, and counts.
+    """
+
+    well: Any
+    tip: Any
+    speed: Any
+    work: Any
+    viscous: Any
+    residual: Any
+    ahead: Any
+    behind: Any
+    surplus: Any
+    deficit: Any
+    steps: Any
+    rejected: Any
+    code: Any
+
+
+class Tables(NamedTuple):
+    """Jobs, legs and cells as rows of numbers: one gather fetches a row."""
+
+    cells: Any  # Float[Array, "cells 5"]
+    jobs: Any  # Float[Array, "jobs 6"]
+    legs: Any  # Float[Array, "legs 8"]
+    waiting: Any  # Int[Array, ""], jobs in the queue
+
+
+class _Work(NamedTuple):
+    """All lanes under way, the next job of the queue, and what has been found."""
+
+    task: Task
+    motion: Motion
+    next_job: Int[Array, ""]
+    found: Float[Array, "legs 13"]
+
+
+def _idle(tables: Tables, width: int) -> tuple[Task, Motion]:
+    zero, one = jnp.zeros(width), jnp.ones(width)
+    none = jnp.full(width, tables.jobs.shape[0], dtype=int)
+    past = jnp.full(width, tables.legs.shape[0], dtype=int)
+    task = Task(
+        none, past, Cells(*[one] * 5), zero, Guide(*[one] * 7), zero, zero, budget=zero
+    )
+    motion = Motion(
+        tip=zero,
+        time=zero,
+        point=Point(*[zero] * 5),
+        level=zero,
+        before=zero,
+        sums=Balance(*[zero] * 3),
+        extent=Extent(*[zero] * 4),
+        steps=zero,
+        rejected=zero,
+        code=zero,
+    )
+    return task, motion
+
+
+def _report(task: Task, motion: Motion) -> Float[Array, "width 13"]:
+    """Rows of `Arrivals` for all lanes; NaN where a lane has failed."""
+    blank = jnp.where(motion.code == 0, 0.0, jnp.nan)
+    speed = task.cell.eps * motion.point.stretch * motion.point.velocity
+    values = (task.well, motion.tip, speed, *motion.sums, *motion.extent)
+    counts = (motion.steps, motion.rejected, motion.code)
+    return jnp.stack([*(v + blank for v in values), *counts], axis=-1)
+
+
+def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
+    """Give lanes that are through their leg the next one, or the next job."""
+    task, motion = work.task, work.motion
+    jobs, legs, cells, count = tables.jobs, tables.legs, tables.cells, tables.waiting
+    idle = task.job >= count
+    done = idle | (motion.time >= task.stop) | (motion.code != 0)
+    past_leg = jobs[jnp.minimum(task.job, jobs.shape[0] - 1), 5]
+    same_job = done & ~idle & (task.leg + 1 < past_leg)
+    wants = done & ~same_job
+    turn = work.next_job + jnp.cumsum(wants) - 1
+    job = jnp.where(wants, jnp.minimum(turn, count), task.job)
+    fresh = wants & (job < count)
+    next_job = jnp.minimum(work.next_job + jnp.sum(wants), count)
+    cell, origin, well, tip, first_leg, _ = jobs[jnp.minimum(job, jobs.shape[0] - 1)].T
+    cell_row = Cells(*cells[cell.astype(int)].T)
+    leg = jnp.where(same_job, task.leg + 1, task.leg)
+    leg = jnp.where(fresh, first_leg.astype(int), leg)
+    leg = jnp.where(wants & ~fresh, legs.shape[0], leg)
+    start, end, guide0, guide1, slope0, slope1, friction, budget = legs[
+        jnp.minimum(leg, legs.shape[0] - 1)
+    ].T
+    length = jnp.where(end > start, end - start, 1.0)
+    change = same_job | fresh
+    rise = guide1 - guide0
+    origin = jnp.where(fresh, origin, task.origin)
+    guide = Guide(start - origin, length, guide0, rise, slope0, slope1, friction)
+    # Positions are counted from the nearest well, so that `tip` keeps its digits.
+    tip = jnp.where(fresh, tip, motion.tip)
+    shift = jnp.where(jnp.isfinite(tip), jnp.round(tip), 0.0)
+    moved = Task(
+        job=job,
+        leg=leg,
+        cell=keep(fresh, cell_row, task.cell),
+        origin=origin,
+        guide=keep(change, guide, task.guide),
+        well=jnp.where(fresh, well, task.well) + shift,
+        budget=jnp.where(change, budget, task.budget),
+        stop=jnp.where(change, end - origin, jnp.where(wants, -1.0, task.stop)),
+    )
+    zero = jnp.zeros_like(tip)
+    empty = jnp.full_like(tip, jnp.inf)
+    nothing = Extent(-empty, empty, zero, zero)
+    time = jnp.where(fresh, 0.0, motion.time)
+    set_off = motion._replace(
+        tip=tip - shift,
+        time=time,
+        level=jnp.where(fresh, level_below(cell_row.first_step), motion.level),
+        before=jnp.where(fresh, 0.0, motion.before),
+        sums=keep(change, Balance(zero, zero, zero), motion.sums),
+        extent=keep(change, nothing, motion.extent),
+        steps=jnp.where(change, 0.0, motion.steps),
+        rejected=jnp.where(change, 0.0, motion.rejected),
+        code=jnp.where(fresh, 0.0, motion.code),
+    )
+    return moved, set_off, next_job
+
+
+@Program
+def run_queue(
+    scene: LaneScene, tableau: Tableau, balanced: bool, width: int, tables: Tables
+) -> Float[Array, "legs 13"]:
+    step = jax.vmap(
+        lambda task, motion: step_of_lane(scene, tableau, balanced, task, motion)
+    )
+    point = jax.vmap(lambda task, time, tip: field_of(scene, task).point(time, tip))
+
+    def look(work: _Work) -> _Work:
+        task, motion, next_job = _refill(tables, work)
+        # From the right of a kink on which the last leg ended.
+        motion = motion._replace(point=point(task, motion.time, motion.tip))
+        motion = jax.lax.fori_loop(0, _CHUNK, lambda _, m: step(task, m), motion)
+        through = (motion.time >= task.stop) | (motion.code != 0)
+        place = jnp.where(through & (task.job < tables.waiting), task.leg, past)
+        found = work.found.at[place].set(_report(task, motion), mode="drop")
+        return _Work(task, motion, next_job, found)
+
+    def go_on(work: _Work) -> Bool[Array, ""]:
+        task, motion = work.task, work.motion
+        past_leg = tables.jobs[jnp.minimum(task.job, tables.jobs.shape[0] - 1), 5]
+        stands = (motion.time >= task.stop) | (motion.code != 0)
+        ended = (task.job >= tables.waiting) | (stands & (task.leg + 1 >= past_leg))
+        return (work.next_job < tables.waiting) | ~jnp.all(ended)
+
+    past = tables.legs.shape[0]
+    found = jnp.full((past, len(Arrivals._fields)), jnp.nan)
+    start = _Work(*_idle(tables, width), jnp.zeros((), dtype=int), found)
+    return jax.lax.while_loop(go_on, look, start).found
