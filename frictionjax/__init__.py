@@ -27,6 +27,7 @@ _HOME = {
     "certify": "certificate",
     "sweep": "sweeps",
     "study": "studies",
+    "work_precision": "cost_of_accuracy",
     "load_scene": "scene_files",
     "save_scene": "scene_files",
     "use_fast_cpu": "compilation",
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from .certificate import certify as certify
     from .compilation import keep_compiled as keep_compiled
     from .compilation import use_fast_cpu as use_fast_cpu
+    from .cost_of_accuracy import work_precision as work_precision
     from .friction_law import friction as friction
     from .limit_system import solve_limit as solve_limit
     from .potentials import GivenPotential as GivenPotential

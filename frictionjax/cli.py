@@ -175,6 +175,56 @@ def study(
 
 
 @main.command()
+@_scene
+@_surface
+@click.option("--eps", help="In m: a list or START:STOP:N. [three of the scene's list]")
+@click.option("--gamma", help="A list or START:STOP:N. [1]")
+@click.option("--accuracies", help="In eps: a list or START:STOP:N. [1e-1 to 1e-6]")
+@click.option(
+    "--methods",
+    help="A list: auto, resolved, windowed, a diffrax solver, LSODA, BDF, Radau.",
+)
+@click.option(
+    "--seconds",
+    type=click.FloatRange(min=0, min_open=True),
+    default=2.0,
+    show_default=True,
+    help="After which a run is ended.",
+)
+@click.option("--out", default="frictionjax-cost", show_default=True, metavar="DIR")
+@click.option("--progress/--no-progress", default=True, help="A bar on standard error.")
+def cost(
+    scene: str | None,
+    eps: str | None,
+    gamma: str | None,
+    accuracies: str | None,
+    methods: str | None,
+    seconds: float,
+    out: str,
+    progress: bool,
+    **surface: Any,
+) -> None:
+    """What accuracy costs in time: this library's methods and general solvers."""
+    _start()
+    from .report.cost import chosen_eps, run_cost
+    from .report.folder import require_folder
+    from .report.job import number_list, read_job
+
+    folder = require_folder(out)
+    job = read_job(scene, **surface)
+    cells = {
+        "eps": number_list("eps", eps) if eps else chosen_eps(job.scene, job.study["eps"]),
+        "gamma": number_list("gamma", gamma) if gamma else [1.0],
+    }
+    job = job._replace(study=job.study | cells)
+    asked = number_list("accuracies", accuracies) if accuracies else None
+    names = [name.strip() for name in methods.split(",")] if methods else None
+    options = names, asked, seconds, progress
+    click.echo(_interruptible(lambda: run_cost(job, folder, *options)))
+    click.echo(f"\nWritten to {folder}")
+
+
+@main.command()
 @click.option("--out", default="frictionjax-figures", show_default=True, metavar="DIR")
 def figures(out: str) -> None:
     """Figures of the paper: coefficients against the angle of the bristle."""

@@ -57,25 +57,35 @@ def scene_text(scene: Scene) -> str:
     return eqx.tree_pformat(numbers, short_arrays=False, width=88)
 
 
-def describe(data: xr.Dataset, scene: Scene, **facts: Any) -> xr.Dataset:
-    """Attach units, long names, CF flags and provenance to the data set of a sweep."""
+def explain(data: xr.Dataset, meanings: dict[str, tuple[str | None, str]]) -> None:
+    """Attach units and long names, and CF flags to `status`."""
     for name, variable in data.variables.items():
-        units, meaning = _MEANING[str(name)]
+        units, meaning = meanings[str(name)]
         variable.attrs["long_name"] = meaning
         if units is not None:
             variable.attrs["units"] = units
     status = data.variables["status"].attrs
     status["flag_values"] = np.array(FLAGS["flag_values"], dtype=np.int8)
     status["flag_meanings"] = FLAGS["flag_meanings"]
+
+
+def origin(title: str, scene: Scene, **facts: Any) -> dict[str, Any]:
+    """Where a data set comes from: the scene, versions, and more facts."""
     known = _versions(*_PACKAGES)
-    data.attrs = {
-        "title": "Convergence of a wiggly viscous system to directional dry friction",
+    return {
+        "title": title,
         "source": f"frictionjax {_versions('frictionjax')[0]}",
         "scene": scene_text(scene),
         "dtype": "float64",
-        "method": facts.pop("solver"),
         "versions": ", ".join(map(" ".join, zip(_PACKAGES, known, strict=True))),
         "python": platform.python_version(),
         **facts,
     }
+
+
+def describe(data: xr.Dataset, scene: Scene, accuracy: float, solver: str) -> xr.Dataset:
+    """Attach units, long names, CF flags and provenance to the data set of a sweep."""
+    explain(data, _MEANING)
+    title = "Convergence of a wiggly viscous system to directional dry friction"
+    data.attrs = origin(title, scene, method=solver, accuracy=accuracy)
     return data

@@ -213,3 +213,21 @@ def test_ctrl_c_is_quiet(tmp_path):
     assert out == b""
     assert b"Traceback" not in err
     assert not (tmp_path / "out").exists()
+
+
+def test_cost_measures_methods(tmp_path):
+    folder = tmp_path / "cost"
+    small = ["--eps", "0.09", "--accuracies", "1e-2", "--methods", "auto,LSODA"]
+    result = run("cost", *small, "--no-progress", "--out", folder)
+    assert result.exit_code == 0, result.stderr
+    assert "eps = 0.09 m" in result.stdout
+    names = {path.name for path in folder.iterdir()}
+    assert names == {"cost.nc", "tables.txt", "scene.toml", "work_precision.png"}
+    with xr.open_dataset(folder / "cost.nc", engine="h5netcdf") as data:
+        assert list(data.solver.values) == ["auto", "LSODA"]
+        assert float(data.error.sel(solver="auto").squeeze()) < 1e-2
+
+
+def test_cost_refuses_unknown_methods(tmp_path):
+    result = run("cost", "--methods", "magic", "--out", tmp_path)
+    assert "method = 'magic'" in error_line(result)

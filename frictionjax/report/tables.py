@@ -102,7 +102,7 @@ def _with_meanings(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 def sweep_table(dataset: xr.Dataset) -> str:
     """One line a cell: errors, residual, steps, status."""
-    names = _flag_names(dataset.status)
+    names = flag_names(dataset.status)
     rows = []
     for gamma in dataset.gamma.values:
         for eps in dataset.eps.values:
@@ -112,10 +112,10 @@ def sweep_table(dataset: xr.Dataset) -> str:
                 (
                     f"{gamma:.4g}",
                     f"{eps:.4g}",
-                    _number(error),
-                    _number(error / eps),
-                    _number(_value(cell, "dissipation_error")),
-                    _number(_value(cell, "residual")),
+                    number(error),
+                    number(error / eps),
+                    number(_value(cell, "dissipation_error")),
+                    number(_value(cell, "residual")),
                     f"{int(cell.steps)}",
                     names[int(cell.status)],
                 )
@@ -145,8 +145,8 @@ def order_table(orders: xr.Dataset) -> str:
                 f"{float(line.beta):.3g}",
                 _window(line),
                 f"{int(line.points)}",
-                _number(float(line.C0)),
-                _number(float(line.C)),
+                number(float(line.C0)),
+                number(float(line.C)),
                 _interval(line, "dissipation_"),
                 _verdict(orders, line),
             )
@@ -176,7 +176,8 @@ def failed_table(failed: Sequence[dict[str, Any]]) -> str:
     return _with_meanings(("gamma", "eps/m", "status", "why"), rows)
 
 
-def _flag_names(variable: xr.DataArray) -> dict[int, str]:
+def flag_names(variable: xr.DataArray) -> dict[int, str]:
+    """Names of the integers of a CF flag variable."""
     values = np.atleast_1d(variable.attrs["flag_values"])
     names = variable.attrs["flag_meanings"].split()
     return {int(value): name for value, name in zip(values, names, strict=True)}
@@ -184,7 +185,7 @@ def _flag_names(variable: xr.DataArray) -> dict[int, str]:
 
 def _verdict(orders: xr.Dataset, line: xr.Dataset) -> str:
     known = [name for name in ("verdict", "dissipation_verdict") if name in orders]
-    words = [_flag_names(orders[name])[int(line[name])] for name in known]
+    words = [flag_names(orders[name])[int(line[name])] for name in known]
     return " / ".join(words).replace("_", " ")
 
 
@@ -192,7 +193,8 @@ def _value(cell: xr.Dataset, name: str) -> float:
     return float(cell[name]) if name in cell else float("nan")
 
 
-def _number(value: float) -> str:
+def number(value: float) -> str:
+    """Three digits, or a dash where there is no number."""
     return f"{value:.3g}" if np.isfinite(value) else "-"
 
 

@@ -151,7 +151,9 @@ def _advance(field, plan, solver, recorder, max_steps, adjoint):
     def advance(front: Front, stop: Real) -> Front:
         # A front that failed, or is a rounding away from the stop (a time asked for and a
         # kink, written differently), stays where it is: no length, no step.
-        go_on = (front.code == Status.OK) & (stop - front.t > plan.shortest_step)
+        ahead = stop - front.t > plan.shortest_step
+        spent = ahead & (front.steps >= max_steps) & (front.code == Status.OK)
+        go_on = (front.code == Status.OK) & ahead & ~spent
         stop = jnp.where(go_on, stop, front.t)
         found = diffrax.diffeqsolve(
             terms,
@@ -168,11 +170,12 @@ def _advance(field, plan, solver, recorder, max_steps, adjoint):
         )
         ended = jax.tree_util.tree_map(lambda leaf: leaf[0], found.ys)
         *y, step = ended
+        code = jnp.where(front.code == Status.OK, _code(found.result), front.code)
         return Front(
             t=stop,
             y=tuple(y),
             step=jax.lax.stop_gradient(step),
-            code=jnp.where(front.code == Status.OK, _code(found.result), front.code),
+            code=jnp.where(spent, int(Status.MAX_STEPS), code),
             steps=front.steps + found.stats["num_steps"],
             rejected=front.rejected + found.stats["num_rejected_steps"],
         )

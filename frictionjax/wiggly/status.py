@@ -15,6 +15,8 @@ class Status(Outcome):
     TOO_MANY_TURNS = 6, "the load turns more often than the scene has room for"
     OPEN_BRACKET = 7, "starts are not forgotten, and every slip is too many to integrate"
     ROUGH_SURVEY = 8, "a slide changes too fast to be known from some of its slips"
+    TOO_SLOW = 9, "the run was ended at the seconds allowed"
+    NOT_TRIED = 10, "not run: the method was too slow at a looser accuracy"
 
 
 _BY_CODE = {int(status): status for status in Status}

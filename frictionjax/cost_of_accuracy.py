@@ -1,0 +1,198 @@
+"""What accuracy costs in time: methods, accuracies and cells, measured side by side."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from tqdm import tqdm
+
+from .admissibility import require_reach
+from .arguments import require, require_numbers, require_real, require_x64
+from .coefficients import coefficients_jit
+from .error_measures import errors_of
+from .provenance import explain, origin
+from .references import Reference, instants, reference
+from .scene import Scene, require_times
+from .timed_runs import runner, timed
+from .wiggly.general import SCIPY
+from .wiggly.methods import solver_of
+from .wiggly.status import Status
+from .wiggly.trajectory import require_accuracy
+
+METHODS = ("auto", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau")
+ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+_TIMES = 61
+_WRONG = 0.5  # eps: further off than that at a time outside slips is another well
+
+_MEANING = {
+    "seconds": ("s", "median time of a warm run"),
+    "seconds_low": ("s", "fastest warm run"),
+    "seconds_high": ("s", "slowest warm run"),
+    "runs": ("1", "warm runs timed"),
+    "compile_seconds": ("s", "what the first run took longer: tracing and compilation"),
+    "error": ("1", "largest error of z outside slips, in eps"),
+    "slip_error": ("1", "mean error of z over a whole slip period, in eps"),
+    "end_error": ("1", "error of z at the last time, in eps"),
+    "dissipation_error": ("1", "largest error of the dissipation over its final value"),
+    "residual": ("1", "residual of the energy-dissipation balance over that of one slip"),
+    "mescd": ("1", "-log10(|z - z_ref|/(eps + |z_ref|)) at the last time"),
+    "steps": ("1", "steps tried"),
+    "rejected": ("1", "steps rejected"),
+    "evaluations": ("1", "evaluations of the field"),
+    "jacobians": ("1", "evaluations of its Jacobian"),
+    "status": (None, "how the run ended"),
+    "wrong": ("1", "1 where success is reported half an eps or more away"),
+    "reference_error": ("1", "distance of the reference from a second one, in eps"),
+    "reference_slip_error": ("1", "the same over a whole slip period"),
+    "reference_end_error": ("1", "the same at the last time"),
+    "reference_dissipation_error": ("1", "the same for the dissipation"),
+    "reference_ways": (None, "methods of the two references"),
+    "eps": ("m", "period of the surface, length scale eps"),
+    "gamma": ("1", "exponent of the viscosity eps^gamma"),
+    "solver": (None, "method"),
+    "accuracy": ("1", "accuracy asked for: error of z in eps; rtol and atol of SciPy's"),
+}
+
+
+def _cell(run, residual, times, truth, when, eps, scale) -> dict[str, float]:
+    values = times | errors_of(run.z, run.dissipation, truth, when, eps)
+    counts = ("steps", "rejected", "evaluations", "jacobians")
+    values |= {name: getattr(run, name) for name in counts}
+    if run.status not in _USABLE:
+        values |= dict.fromkeys(_ERRORS, float("nan"))
+    wrong = run.status == Status.OK and values["error"] >= _WRONG
+    return values | {
+        "residual": residual / scale,
+        "status": int(run.status),
+        "wrong": float(wrong),
+    }
+
+
+def _required(methods: Any, accuracies: Any, repeats: Any, seconds: Any):
+    names = [methods] if isinstance(methods, str) else list(methods)
+    require(bool(names), "methods", methods, "at least one method")
+    for name in names:
+        if name not in SCIPY:
+            solver_of(name)
+    labels = [m if isinstance(m, str) else _label(m) for m in names]
+    unique = len(set(labels)) == len(labels)
+    require(unique, "methods", ", ".join(labels), "each method once")
+    asked = np.unique(np.atleast_1d(np.asarray(accuracies, dtype=float)))[::-1]
+    for value in asked:
+        require_accuracy(float(value))
+    require_real("repeats", repeats, "repeats >= 1", lambda r: r >= 1)
+    require_real("seconds", seconds, "seconds > 0", lambda s: s > 0)
+    return names, labels, asked
+
+
+def _label(method: Any) -> str:
+    return method.__name__ if isinstance(method, type) else type(method).__name__
+
+
+def work_precision(
+    scene: Scene,
+    eps: Any = 1e-2,
+    gamma: Any = 1.0,
+    methods: Sequence[Any] = METHODS,
+    accuracies: Any = ACCURACIES,
+    ts: Any = None,
+    *,
+    repeats: int = 5,
+    seconds: float = 10.0,
+    progress: bool = False,
+) -> xr.Dataset:
+    """Measure what accuracy costs: time and error of methods, cell by cell.
+
+    `eps` in m and `gamma`: numbers or lists. `methods`: as `method` of `solve`, and
+    SciPy's "LSODA", "BDF" and "Radau" without any guard. `accuracies`: asked of each,
+    rtol and atol (in periods) of SciPy's. `ts`: times in s at which errors are measured,
+    61 evenly spaced ones where None; 32 more over one slip period are added. `repeats`: at
+    most so many warm runs are timed. `seconds`: runs that take longer are ended, and
+    tighter accuracies of that method are not tried.
+
+    Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
+    `seconds_low`, `seconds_high`, `runs`, `compile_seconds`; errors `error` (largest
+    outside slips, in eps), `slip_error`, `end_error`, `dissipation_error`, `mescd` (as the
+    Test Set for IVP Solvers, with atol/rtol = eps); `residual` of the energy-dissipation
+    balance; `steps`, `rejected`, `evaluations` and `jacobians` (NaN where a solver does
+    not tell); `status`, and `wrong`: success reported half an eps or more off. Over
+    (gamma, eps) what is known of the reference: `reference_error` and so on is its
+    distance from a second one made otherwise; no error below it means anything.
+
+    Failures stay in the table with their status and errors of NaN.
+
+    Raises `ValueError` for arguments out of range, as `solve` does. Source of mescd: F.
+    Mazzia and C. Magherini, Test Set for Initial Value Problem Solvers, release 2.4
+    (2008).
+    """
+    require_x64(scene)
+    for name, value in (("eps", eps), ("gamma", gamma)):
+        require_numbers(name, value, f"{name} > 0, a number or a list", lambda v: v > 0)
+    names, labels, asked = _required(methods, accuracies, repeats, seconds)
+    eps = np.unique(np.atleast_1d(np.asarray(eps, dtype=float)))[::-1]
+    gamma = np.unique(np.atleast_1d(np.asarray(gamma, dtype=float)))
+    require_reach(scene.potential, eps)
+    ts = np.asarray(require_times(scene, ts, _TIMES))
+    cells, truths = [], []
+    count = gamma.size * eps.size * len(names) * asked.size
+    with tqdm(total=count, disable=not progress, desc="runs") as bar:
+        for g in map(float, gamma):
+            for e in map(float, eps):
+                when = instants(scene, e, ts)
+                truth = reference(scene, e, g, when, float(asked[-1]))
+                truths.append(truth)
+                for name in names:
+                    options = scene, e, g, when, truth, asked, name, repeats, seconds
+                    cells += _column(*options, bar)
+    shape = gamma.size, eps.size, len(names), asked.size
+    data = _dataset(cells, truths, shape)
+    data = data.assign_coords(gamma=gamma, eps=eps, solver=labels, accuracy=asked)
+    return _described(data, scene)
+
+
+def _column(scene, eps, gamma, when, truth, asked, method, repeats, seconds, bar) -> list:
+    """One method in one cell, from the loosest accuracy to the tightest."""
+    cells, given_up = [], False
+    law = coefficients_jit(scene.potential)
+    scale = eps * float(law.rho_plus - law.rho_minus)
+    for accuracy in map(float, asked):
+        if given_up:
+            cells.append(_NOTHING)
+        else:
+            run = runner(scene, eps, gamma, when.ts, accuracy, method, seconds)
+            (found, residual), times = timed(run, int(repeats), float(seconds))
+            cells.append(_cell(found, residual, times, truth, when, eps, scale))
+            given_up = found.status == Status.TOO_SLOW or times["seconds"] > seconds
+        bar.update()
+    return cells
+
+
+# Part of a trajectory is no trajectory: the errors of other runs are NaN.
+_USABLE = (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY)
+_ERRORS = ("error", "slip_error", "end_error", "dissipation_error", "mescd")
+_RUN = [n for n in _MEANING if not n.startswith("reference")][:-4]
+_NOTHING = dict.fromkeys(_RUN, float("nan")) | {
+    "status": int(Status.NOT_TRIED),
+    "wrong": 0.0,
+    "runs": 0,
+}
+_TRUTH = ("error", "slip_error", "end_error", "dissipation_error", "ways")
+
+
+def _dataset(cells: list[dict], truths: list[Reference], shape: tuple) -> xr.Dataset:
+    dims = ("gamma", "eps", "solver", "accuracy")
+    data = xr.Dataset()
+    for name in _RUN:
+        data[name] = dims, np.array([cell[name] for cell in cells]).reshape(shape)
+    for name in _TRUTH:
+        values = np.array([getattr(truth, name) for truth in truths])
+        data[f"reference_{name}"] = dims[:2], values.reshape(shape[:2])
+    return data
+
+
+def _described(data: xr.Dataset, scene: Scene) -> xr.Dataset:
+    data["status"] = data["status"].astype(np.int8)
+    explain(data, _MEANING)
+    data.attrs = origin("What accuracy costs in time", scene)
+    return data

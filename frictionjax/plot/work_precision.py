@@ -1,0 +1,133 @@
+"""What accuracy costs in time: error against time, asked against reached."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from .style import GUIDE, LIMIT, choose_gamma, colour, marker, new_figure, styled
+
+_MOST = 1e3  # eps: further off is as wrong
+_LINES = ("-", "--", ":", "-.")
+_KEY = (
+    "grey band: Pareto front; crosses: success reported, but in another well; "
+    "errors beyond 1000 eps are drawn there"
+)
+
+
+@styled
+def draw(
+    dataset: xr.Dataset, eps: float | None = None, gamma: float | None = None
+) -> Figure:
+    """Draw a data set of `work_precision`.
+
+    Left: error against seconds in one cell, one line a method, the Pareto front as a
+    band; right: accuracy reached against accuracy asked for. The cell: the smallest eps
+    and gamma = 1 where none is named. With more cells than one, below: seconds, and error
+    over accuracy, against eps, at the accuracy in the middle.
+    """
+    gamma = choose_gamma(dataset, gamma)
+    eps = float(dataset.eps.min()) if eps is None else eps
+    cell = dataset.sel(gamma=gamma).sel(eps=eps, method="nearest")
+    many = dataset.eps.size * dataset.gamma.size > 1
+    rows = 2 if many and dataset.eps.size > 1 else 1
+    figure, grid = new_figure(rows, 2, 11.0, 4.9 * rows)
+    _times(grid[0, 0], cell)
+    _calibration(grid[0, 1], cell)
+    if rows == 2:
+        _over_eps(grid[1], dataset)
+    figure.supxlabel(_KEY, fontsize=9, color="#666666")
+    return figure
+
+
+def _look(index: int) -> dict[str, Any]:
+    """Later lines are smaller: where two methods do the same, both are seen."""
+    size = max(4.0, 9.0 - 1.5 * index)
+    return {"color": colour(index), "marker": marker(index), "markersize": size}
+
+
+def _known(line: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Seconds, errors and which are in another well, of the runs that ended."""
+    good = np.isfinite(line.error.values) & (line.error.values > 0)
+    errors = np.minimum(line.error.values[good], _MOST)
+    return line.seconds.values[good], errors, line.wrong.values[good] > 0
+
+
+def _times(axes: Any, cell: xr.Dataset) -> None:
+    points = []
+    for index, name in enumerate(cell.solver.values):
+        line = cell.sel(solver=name)
+        seconds, errors, wrong = _known(line)
+        axes.plot(seconds, errors, **_look(index), label=_label(line, seconds))
+        axes.plot(seconds[wrong], errors[wrong], "x", color=LIMIT, markersize=10)
+        points.append(np.stack([seconds, errors]))
+    front = _front(np.concatenate(points, axis=1))
+    if front.size:
+        look = {"linewidth": 9, "alpha": 0.35, "color": GUIDE, "zorder": 1}
+        axes.plot(*front, solid_capstyle="round", **look)
+    axes.set(xscale="log", yscale="log", xlabel="seconds of a warm run")
+    axes.set(ylabel="largest error of z outside slips ($\\epsilon$)")
+    axes.set_title(f"$\\epsilon$ = {float(cell.eps):.3g} m, $\\gamma$ = {cell.gamma:.3g}")
+    _floor(axes, float(cell.reference_error))
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
+
+
+def _label(line: xr.Dataset, seconds: np.ndarray) -> str:
+    failed = line.accuracy.size - seconds.size
+    name = str(line.solver.item())
+    return f"{name} ({failed} of {line.accuracy.size} not done)" if failed else name
+
+
+def _front(points: np.ndarray) -> np.ndarray:
+    """Points that no other beats in both, in the order of their times."""
+    order = np.lexsort(points[::-1])
+    ordered = points[:, order]
+    best = np.minimum.accumulate(ordered[1])
+    better = np.ones(order.size, dtype=bool)
+    better[1:] = ordered[1, 1:] < best[:-1]
+    return ordered[:, better]
+
+
+def _floor(axes: Any, error: float) -> None:
+    """Below the reference's own error nothing is known."""
+    low, high = axes.get_ylim()
+    if low < error < high:
+        axes.axhspan(low, error, color="#eeeeee", zorder=0)
+        axes.set_ylim(low, high)
+
+
+def _calibration(axes: Any, cell: xr.Dataset) -> None:
+    asked = cell.accuracy.values
+    for index, name in enumerate(cell.solver.values):
+        errors = np.minimum(cell.sel(solver=name).error.values, _MOST)
+        axes.plot(asked, errors, **_look(index))
+    ends = np.array([asked.min() / 2, asked.max() * 2])
+    axes.plot(ends, ends, color=LIMIT, linewidth=1)
+    axes.set(xscale="log", yscale="log", xlim=ends, ylabel="error reached ($\\epsilon$)")
+    low, high = axes.get_ylim()
+    axes.fill_between(ends, ends, high, color="#fbe9e1", zorder=0)
+    axes.set_ylim(low, high)
+    axes.set_xlabel("accuracy asked for ($\\epsilon$)")
+    axes.set_title("Reached against asked for: above the line is too little")
+
+
+def _over_eps(row: Any, dataset: xr.Dataset) -> None:
+    middle = dataset.isel(accuracy=dataset.accuracy.size // 2)
+    asked = float(middle.accuracy)
+    for index, name in enumerate(dataset.solver.values):
+        for gamma, style in zip(dataset.gamma.values, _LINES, strict=False):
+            line = middle.sel(solver=name, gamma=gamma)
+            look = _look(index) | {"linestyle": style}
+            good = np.isfinite(line.error.values)
+            eps, error = line.eps.values[good], np.minimum(line.error.values[good], _MOST)
+            row[0].plot(eps, line.seconds.values[good], **look)
+            row[1].plot(eps, error / asked, **look)
+    for gamma, style in zip(dataset.gamma.values, _LINES, strict=False):
+        row[0].plot([], [], style, color=LIMIT, label=f"$\\gamma$ = {gamma:.3g}")
+    row[0].set(ylabel="seconds of a warm run", title=f"Time at accuracy {asked:.0e}")
+    row[1].set(ylabel="error reached over asked for", title="Is the accuracy kept?")
+    row[1].axhline(1.0, color=LIMIT, linewidth=1)
+    row[0].legend()
+    for axes in row:
+        axes.set(xscale="log", yscale="log", xlabel="$\\epsilon$ (m)")

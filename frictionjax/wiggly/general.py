@@ -1,0 +1,133 @@
+"""General stiff solvers of SciPy on the wiggly system: what one has without the library."""
+
+import itertools
+import time
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from scipy import integrate as scipy_integrate
+
+from ..programs import Program
+from ..scene import Scene
+from .integration import field_of
+from .status import Status
+
+SCIPY = ("LSODA", "BDF", "Radau")
+
+
+class Run(NamedTuple):
+    """What a solver gave: `z` (m) and `dissipation` (J) at the times, shapes (n,).
+
+    NaN from where it gave up. `rejected`, which SciPy does not tell, is NaN.
+    """
+
+    z: np.ndarray
+    dissipation: np.ndarray
+    status: Status
+    steps: float
+    rejected: float
+    evaluations: float
+    jacobians: float
+
+
+def _rate_pair(field, t, state):
+    """`y'` and `eps^gamma z'^2`."""
+    force, stretch = field.driving_force(t, state[0])
+    pace = force / (field.viscosity * field.eps * stretch)
+    return jnp.stack([pace, force**2 / field.viscosity])
+
+
+@Program
+def _rates(field, t, state):
+    return _rate_pair(field, t, state)
+
+
+@Program
+def _jacobian(field, t, state):
+    return jax.jacfwd(lambda s: _rate_pair(field, t, s))(state)
+
+
+@Program
+def _states(field, tips):
+    return field.state(tips)
+
+
+class _Counter:
+    """Steps, evaluations and Jacobians of the stretches of one run."""
+
+    def __init__(self) -> None:
+        self.steps = self.evaluations = self.jacobians = 0
+
+    def add(self, solver: Any) -> None:
+        self.evaluations += solver.nfev
+        self.jacobians += solver.njev
+
+
+def run_scipy(
+    scene: Scene,
+    eps: float,
+    gamma: float,
+    ts: np.ndarray,
+    tolerance: float,
+    method: str,
+    seconds: float,
+) -> Run:
+    """Solve with SciPy's `method`, stretch by stretch between turning points of the load.
+
+    The tip coordinate y is the unknown, with rtol = atol = `tolerance` (periods), and the
+    dissipation beside it, relative to what a slip dissipates. Exact Jacobian; compiled
+    rates, called from Python. No guard against steps over wells: they are what happens.
+    Ends after `seconds` with the status TOO_SLOW.
+    """
+    field = field_of(scene, jnp.asarray(eps), jnp.asarray(gamma))
+    solver_type = getattr(scipy_integrate, method)
+    start = np.array([float(field.start(scene.z0)), 0.0])
+    found = np.full((ts.size, 2), np.nan)
+    found[ts <= 0.0] = start
+    counter, status, deadline = _Counter(), Status.OK, time.perf_counter() + seconds
+    slip = eps * _force_scale(field)
+    edges = np.union1d(np.asarray(scene.turning_points()), [0.0, float(ts[-1])])
+    edges = edges[(edges >= 0) & (edges <= ts[-1])]
+    for begin, end in itertools.pairwise(edges):
+        solver = solver_type(
+            lambda t, y: np.asarray(_rates(field, np.float64(t), y)),
+            begin,
+            start,
+            end,
+            rtol=max(tolerance, 1e-13),
+            atol=np.array([tolerance, tolerance * slip]),
+            jac=lambda t, y: np.asarray(_jacobian(field, np.float64(t), y)),
+        )
+        status = _stretch(solver, ts, found, counter, deadline)
+        counter.add(solver)
+        if status != Status.OK:
+            break
+        start = solver.y
+    counts = counter.steps, np.nan, counter.evaluations, counter.jacobians
+    z = np.asarray(_states(field, found[:, 0]))
+    if status == Status.OK and not np.all(np.isfinite(z)):
+        status = Status.NOT_FINITE
+    return Run(z, found[:, 1], status, *map(float, counts))
+
+
+def _force_scale(field) -> float:
+    """Largest force of the wiggles over a period, N; a slip dissipates eps times that."""
+    tips = np.linspace(0.0, 1.0, 65)
+    return float(np.max(np.abs(field.potential.tip_force(tips, field.eps)[0])))
+
+
+def _stretch(solver, ts, found, counter, deadline) -> Status:
+    """Step to the end of a stretch; values at the times on the way go into `found`."""
+    while solver.status == "running":
+        message = solver.step()
+        counter.steps += 1
+        if solver.status == "failed":
+            return Status.SOLVER_FAILED if message else Status.STEP_TOO_SMALL
+        passed = (ts > solver.t_old) & (ts <= solver.t)
+        if passed.any():
+            found[passed] = solver.dense_output()(ts[passed]).T
+        if time.perf_counter() > deadline:
+            return Status.TOO_SLOW
+    return Status.OK
