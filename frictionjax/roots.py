@@ -10,6 +10,7 @@ from .arguments import Real
 
 _ROUNDING = 2.0**-51
 _SMALL = 1e-8
+_SHRINK = 32.0
 _MAX_ITERATIONS = 128  # 64 bisections exhaust a float64 bracket; Newton needs under 10
 
 
@@ -71,20 +72,23 @@ def bracketed_root(fn: Callable[[Real], Real], lower: Real, upper: Real) -> Real
 def increasing_root(fn: Callable[[Real], Real], guess: Real) -> Real:
     """Root of the increasing `fn`, unbounded both ways, near no particular place.
 
-    The bracket grows from `guess` by doubling until the sign changes.
+    The bracket around `guess` starts as wide as Newton's step and grows, or shrinks, by
+    factors until the root is in its outer part: in units in which roots are 1e-8 a fixed
+    first width of 1 left them with no digits.
     """
     guess = jax.lax.stop_gradient(jnp.asarray(guess))
 
-    def grow(state):
-        width, _ = state
-        width = 2 * width
-        open_end = (fn(guess - width) > 0) | (fn(guess + width) < 0)
-        return width, open_end
+    def holds(width):
+        return (fn(guess - width) <= 0) & (fn(guess + width) >= 0)
 
-    def go_on(state):
-        width, open_end = state
-        return open_end & (width < 1e150)
-
-    start = (jnp.asarray(0.5), jnp.asarray(True))
-    width, _ = jax.lax.stop_gradient(jax.lax.while_loop(go_on, grow, start))
+    value, slope = jax.jvp(fn, (guess,), (jnp.ones_like(guess),))
+    step = 2 * jnp.abs(value) / jnp.where(slope > 0, slope, 1.0)
+    start = jnp.where((slope > 0) & (step < 1e150), step, 1.0)
+    width = jax.lax.while_loop(
+        lambda w: ~holds(w) & (w > 0) & (w < 1e150), lambda w: 4 * w, start
+    )
+    width = jax.lax.while_loop(
+        lambda w: holds(w / _SHRINK) & (w > 1e-150), lambda w: w / _SHRINK, width
+    )
+    width = jax.lax.stop_gradient(width)
     return bracketed_root(fn, guess - width, guess + width)

@@ -39,6 +39,11 @@ class Path(NamedTuple):
     speed: float = 0.0
     stiffness: float = 1.0
 
+    @property
+    def width(self) -> float:
+        """`rho_plus - rho_minus` in N: times eps, the energy of one slip."""
+        return self.rho_plus - self.rho_minus
+
     def piece_of(self, times: np.ndarray) -> np.ndarray:
         """Index of the piece that holds each time; a turning point opens its piece."""
         found = np.searchsorted(self.edges, times, side="right") - 1

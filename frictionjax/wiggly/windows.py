@@ -215,8 +215,8 @@ def slow_share(scene: Scene, path: Path, time: np.ndarray, state: np.ndarray) ->
     """
     before = time - _ASIDE * path.edges[-1]  # a slide may end at full speed, in a kink
     both = [slopes_at(scene, path, t, state) for t in (time, np.maximum(before, 0.0))]
-    speed = np.max(np.abs(both), axis=0)
-    return np.minimum(_FASTER * (speed / path.speed) ** 2, 1.0)
+    share = np.max(np.abs(both), axis=0) / (path.speed or 1.0)  # nothing slides at 0
+    return np.minimum(_FASTER * share**2, 1.0)
 
 
 def _brackets(ground: Ground, cell, direction, level, known, share):

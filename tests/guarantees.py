@@ -1,0 +1,173 @@
+"""What the mathematics guarantees of any solution, as numbers that may not exceed 1.
+
+Each check takes a case and its solution and returns the violation relative to what is
+allowed. Those that compare two solutions leave out times inside slips, where a shift in
+time that is within the accuracy moves z by a well.
+"""
+
+from collections.abc import Callable
+
+import jax
+import numpy as np
+from hard_scenes import TIMES, Case, reflected, scaled
+
+import frictionjax as fx
+
+ACCURACY = 1e-3
+_SLIP = 0.05  # eps that z moves in 1% of a slip period inside a slip
+
+
+def solved(case: Case, ts=TIMES, **options):
+    """The case by the library's own choice of method."""
+    return fx.solve(case.scene, case.eps, case.gamma, ts, ACCURACY, **options)
+
+
+def outside_slips(case: Case) -> np.ndarray:
+    """Which times are not inside a slip: z moves little in 1% of a slip period."""
+    stiffness = case.numbers["support"]["stiffness"]
+    speed, end = fastest(case) / stiffness, TIMES[-1]
+    shift = 0.005 * case.eps / max(speed, case.eps / end)
+    early = solved(case, np.clip(TIMES - shift, 0, end), dissipation=False)
+    late = solved(case, np.clip(TIMES + shift, 0, end), dissipation=False)
+    moved = np.abs(np.asarray(late.z) - np.asarray(early.z))
+    return moved <= _SLIP * case.eps
+
+
+def found_load(case: Case, ts) -> np.ndarray:
+    """The load at times, N."""
+    return np.asarray(jax.vmap(case.scene.load)(ts))
+
+
+def finite(case: Case, found) -> float:
+    """Numbers where the status is good, and a status where they are not."""
+    numbers = (found.z, found.dissipation, found.residual)
+    whole = all(np.all(np.isfinite(np.asarray(v))) for v in numbers)
+    return 0.0 if whole or not found.ok else np.inf
+
+
+def dissipates(case: Case, found) -> float:
+    """Dissipation never falls, and starts at 0."""
+    spent = np.asarray(found.dissipation)
+    fall = max(0.0, -float(np.diff(spent).min()), abs(float(spent[0])))
+    return fall / (2 * ACCURACY * spent[-1] + 1e-12 * energy(case))
+
+
+def energy(case: Case) -> float:
+    """Energy of one slip, J."""
+    law = fx.friction(case.scene)
+    return case.eps * float(law.rho_plus - law.rho_minus)
+
+
+def balance_closes(case: Case, found) -> float:
+    """The energy-dissipation balance, which no solution violates."""
+    residual = float(found.residual[-1])
+    scale = energy(case) + float(found.dissipation[-1])
+    if residual < -1e-9 * scale:
+        return np.inf
+    return residual / (0.05 * scale)
+
+
+def stays_near_the_strip(case: Case, found) -> float:
+    """Lemma 7, with its constant: `dist(z, strip) <= d(0) + eps^gamma sup|l'|/phi^2`.
+
+    Outside the strip of this eps (extremes of V_eps' instead of rho) the distance shrinks
+    with `phi dist/eps^gamma` and grows no faster than the edges move, `|l'|/phi`.
+    """
+    tips = np.arange(2048) / 2048
+    force = np.array(case.scene.potential.tip_force(tips, case.eps)[0])
+    load = found_load(case, TIMES)
+    low = np.array([inverse_force(case, f) for f in load - force.max()])
+    high = np.array([inverse_force(case, f) for f in load - force.min()])
+    z = np.asarray(found.z)
+    outside = np.maximum(np.maximum(low - z, z - high), 0.0)
+    stiffness = case.numbers["support"]["stiffness"]
+    lag = case.eps**case.gamma * fastest(case) / stiffness**2
+    return float(outside.max() / (outside[0] + lag + 2e-3 * case.eps))
+
+
+def fastest(case: Case) -> float:
+    """sup |l'| in N/s, exact for these loads."""
+    load = case.numbers["load"]
+    if case.kind[2] == "piecewise":
+        return float(np.abs(np.diff(load["values"]) / np.diff(load["times"])).max())
+    factor = 2 * np.pi if case.kind[2] == "sine" else 4.0
+    return abs(float(factor * load["amplitude"] / load["period"]))
+
+
+def inverse_force(case: Case, force: float) -> float:
+    """z with Phi'(z) = force, by bisection."""
+    spring = case.numbers["support"]
+    k, size = spring["stiffness"], spring["size"]
+    if case.kind[1] == "spring":
+        return force / k
+    low, high = sorted((0.0, force / k))
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        ahead = k * (middle + size * np.tanh(middle / size)) < force
+        low, high = (middle, high) if ahead else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _apart(case: Case, found, other: np.ndarray, factor: float = 2.0) -> float:
+    """Largest distance outside slips over `factor` accuracies."""
+    outside = outside_slips(case)
+    gaps = np.abs(np.asarray(found.z) - other)[outside] / case.eps
+    return float(gaps.max(initial=0.0)) / (factor * ACCURACY)
+
+
+def is_accurate(case: Case, found) -> float:
+    """Every slip at a thousandth of the tolerance gives the same."""
+    tight = fx.solve(case.scene, case.eps, case.gamma, TIMES, 1e-6, "resolved")
+    return _apart(case, found, np.asarray(tight.z), 1.0) if tight.ok else np.nan
+
+
+def keeps_order(case: Case, found) -> float:
+    """Solutions never cross: one that starts above stays above."""
+    above = case.change(z0=case.numbers["z0"] + 0.3 * case.eps)
+    other = solved(above)
+    if not other.ok:
+        return np.nan
+    outside = outside_slips(case) & outside_slips(above)
+    under = (np.asarray(found.z) - np.asarray(other.z))[outside] / case.eps
+    return max(0.0, float(under.max(initial=0.0))) / (2 * ACCURACY)
+
+
+def knows_no_origin(case: Case, found) -> float:
+    """A whole number of wells further on, with the load that goes with it."""
+    if case.kind[1] != "spring" or case.kind[2] != "piecewise":
+        return np.nan
+    move = 7 * case.eps
+    load = dict(case.numbers["load"])
+    load["values"] = load["values"] + case.numbers["support"]["stiffness"] * move
+    other = solved(case.change(z0=case.numbers["z0"] + move, load=load))
+    return _apart(case, found, np.asarray(other.z) - move) if other.ok else np.nan
+
+
+def knows_no_left(case: Case, found) -> float:
+    """z -> -z, with the surface, the bristle and the load mirrored."""
+    if case.kind[0] == "angular":
+        return np.nan
+    other = solved(reflected(case))
+    return _apart(case, found, -np.asarray(other.z)) if other.ok else np.nan
+
+
+def knows_no_units(case: Case, found, length: float = 3.7e-6, force: float = 2.9e-4):
+    """Other units of length and force, and of time with them."""
+    other, time = scaled(case, length, force)
+    there = fx.solve(other.scene, other.eps, other.gamma, time * TIMES, ACCURACY)
+    return _apart(case, found, np.asarray(there.z) / length) if there.ok else np.nan
+
+
+ALONE: tuple[Callable, ...] = (
+    finite,
+    dissipates,
+    balance_closes,
+    stays_near_the_strip,
+)
+COMPARED: tuple[Callable, ...] = (
+    is_accurate,
+    keeps_order,
+    knows_no_origin,
+    knows_no_left,
+    knows_no_units,
+)
