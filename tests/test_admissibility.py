@@ -64,7 +64,11 @@ def test_bounds_are_sharp():
             fx.friction(surface, spring)
 
 
-@pytest.mark.parametrize("kind", BRISTLES)
+_LESS = ("homothetic", "vertical", "custom")
+_KINDS = [pytest.param(k, marks=pytest.mark.slow) if k in _LESS else k for k in BRISTLES]
+
+
+@pytest.mark.parametrize("kind", _KINDS)
 def test_no_false_alarm_on_random_parts(kind):
     for seed in range(20, 26):
         surface, bristle = pair("sine", kind, 1, seed)

@@ -85,6 +85,14 @@ CASES = {
     "given": (given, 0.05, 1.0),
 }
 
+_LESS = ("angular", "slide", "10000")  # their trajectories take longest
+
+
+def named(cases):
+    """Names for parametrize, those that take long marked."""
+    slow = pytest.mark.slow
+    return [pytest.param(name, marks=slow) if name in _LESS else name for name in cases]
+
 
 @cache
 def case(name):
@@ -148,7 +156,7 @@ def skipping(scene, eps, gamma, ts, z, sign, barrier_only=False):
     return times[inside], states[inside]
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", named(CASES))
 def test_curves_within_a_hundredth_of_eps_are_accepted(name):
     scene, eps, gamma, ts, z = case(name)
     for kind, deviation in deviations(ts).items():
@@ -158,7 +166,7 @@ def test_curves_within_a_hundredth_of_eps_are_accepted(name):
         assert found.missing_force <= 0.0, kind
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", named(CASES))
 @pytest.mark.parametrize("shift", [0.1, -0.1])
 def test_shifted_curves_are_rejected(name, shift):
     scene, eps, gamma, ts, z = case(name)
@@ -169,7 +177,7 @@ def test_shifted_curves_are_rejected(name, shift):
     assert not fx.certify(scene, eps, gamma, ts, z + eps * (shift + noise)).ok
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", named(CASES))
 @pytest.mark.parametrize("other", [-0.1, 0.1])
 def test_another_gamma_is_rejected(name, other):
     scene, eps, gamma, ts, z = case(name)
@@ -178,7 +186,7 @@ def test_another_gamma_is_rejected(name, other):
     assert found.viscosity == pytest.approx(eps**-other, rel=0.02)
 
 
-@pytest.mark.parametrize("name", MONOTONE)
+@pytest.mark.parametrize("name", named(MONOTONE))
 def test_any_number_of_slips(name):
     scene, eps, gamma, ts, z = monotone(name)
     sign = -1 if name == "down" else 1

@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 # Each kind compiles its own programs; benchmarks/stress.py tries all of them.
 KINDS = [
     ("slanted", "spring", "piecewise"),
-    ("vertical", "stiffening", "sine"),
+    pytest.param(("vertical", "stiffening", "sine"), marks=pytest.mark.slow),
 ]
 GENES = st.lists(st.floats(0, 1, width=16), min_size=hard_scenes.GENES, max_size=24)
 
 
-@pytest.mark.parametrize("kind", KINDS, ids="-".join)
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: "-".join(kind))
 @settings(max_examples=6, deadline=None, derandomize=True, database=None)
 @given(genes=GENES, turn=st.integers(0, len(guarantees.COMPARED) - 1))
 def test_guarantees_hold(kind, genes, turn):

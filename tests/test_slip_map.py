@@ -162,7 +162,12 @@ PLAIN = {
 
 
 @pytest.mark.parametrize(
-    ("name", "gamma"), [("sine", 0.5), ("overshoot", 0.25), ("several folds", 0.4)]
+    ("name", "gamma"),
+    [
+        ("sine", 0.5),
+        pytest.param("overshoot", 0.25, marks=pytest.mark.slow),
+        pytest.param("several folds", 0.4, marks=pytest.mark.slow),
+    ],
 )
 def test_values_are_those_of_lsoda(name, gamma):
     eps = 2.3e-3
@@ -177,6 +182,7 @@ def test_values_are_those_of_lsoda(name, gamma):
     assert np.max(lost) < 1e-3 * plain.dissipation[-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "gamma"), [("convex", 0.5)])
 def test_sums_and_extremes_are_those_of_every_slip(name, gamma):
     eps = np.array([1.7e-3])
@@ -195,7 +201,7 @@ def test_sums_and_extremes_are_those_of_every_slip(name, gamma):
 
 @pytest.mark.parametrize(
     ("name", "gamma"),
-    [("sine", 0.25), ("overshoot", 0.5)],
+    [pytest.param("sine", 0.25, marks=pytest.mark.slow), ("overshoot", 0.5)],
 )
 def test_small_eps_is_no_harder(name, gamma):
     """At a thousand times smaller eps: brackets closed, few steps more."""

@@ -230,7 +230,8 @@ def passages(track: Track, pull: Pull, viscosity: np.ndarray, times=None) -> Pas
     """
     sweeps = _AGAIN if times is not None else _SWEEPS
     if times is None:
-        steady = pull.support[..., 1] / pull.load[..., 1]
+        rate = pull.load[..., 1]  # where it is 0, nothing passes
+        steady = pull.support[..., 1] / np.where(rate == 0, np.nan, rate)
         times = track.way[:, None, :] * steady[..., None]
     found = _passages(*track, pull.load, pull.support, viscosity, times, sweeps)
     return Passage(*(np.asarray(v) for v in found))

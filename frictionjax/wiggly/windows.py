@@ -347,6 +347,6 @@ def gaps_of(
     a, b = np.where(both, ahead, 0), np.where(both, behind, 0)
     wells = (found.well[a] - found.well[b]) + (found.tip[a] - found.tip[b])
     pace = np.maximum(np.abs(found.speed[a]), np.abs(found.speed[b]))
-    usual = np.maximum(np.abs(legs.slope1[b]), _SLOW * max(speed, 1e-300))
-    gap = np.abs(wells) / np.maximum(1.0, pace / (10 * usual))
+    usual = 10 * np.maximum(np.abs(legs.slope1[b]), _SLOW * max(speed, 1e-300))
+    gap = np.abs(wells) * usual / np.maximum(pace, usual)
     return np.where(both, gap, 0.0)
