@@ -5,8 +5,8 @@ python benchmarks/calibration.py [--method auto] [--bristles vertical angular]
 For each bristle and load: eps 1e-1 to 1e-6, gamma 0.5 to 2, accuracy 1e-1 to 1e-6. The
 error is the larger of the largest error of z outside slips, in eps, at 61 times, and that
 of the dissipation, relative. Truth: every slip at accuracy 1e-8 where eps >= 1e-4, windows
-at 1e-8 below; the distance of both from windows at 1e-9 is its own error, and a ratio
-is only counted where that is below a third of the accuracy asked for.
+at 1e-8 below; its distance from the same at 1e-9 is its own error, and a ratio is only
+counted where that is below a third of the accuracy asked for. (Tests compare with LSODA.)
 """
 
 import argparse
@@ -64,7 +64,7 @@ def cells(scene, eps, method):
     keep = np.zeros(when.ts.size, dtype=bool)
     keep[when.asked] = True
     counted &= keep
-    other, other_spent, _ = solved(scene, eps, when, 1e-9, "windowed")
+    other, other_spent, _ = solved(scene, eps, when, 1e-9, way)
     known = gap(other[:, 1], other_spent, z[:, 1], spent, counted, eps)
     for accuracy in ACCURACIES:
         found, lost, status = solved(scene, eps, when, accuracy, method)

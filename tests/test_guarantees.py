@@ -68,7 +68,7 @@ class Changed:
         (guarantees.finite, "z", lambda z: z * np.nan),
         (guarantees.dissipates, "dissipation", lambda d: d[::-1]),
         (guarantees.balance_closes, "residual", lambda r: r + 1e3),
-        (guarantees.stays_near_the_strip, "z", lambda z: z + 1e6 * np.arange(41)),
+        (guarantees.stays_near_the_strip, "z", lambda z: z + 1e15 * np.arange(41)),
         (guarantees.is_accurate, "z", lambda z: z * 1.01),
         (guarantees.keeps_order, "z", lambda z: z + 1e3),
         (guarantees.knows_no_left, "z", lambda z: z * 1.01),

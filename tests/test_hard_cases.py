@@ -90,6 +90,14 @@ HARD = {
         times=tuple(SPACED),
         values=(0.0, 0.1, 0.1, -0.1, -0.1, 0.1, 0.1),
     ),
+    "hardly moves": Hard(
+        "a load worth 90 m moves z by millimetres: energies cancel in the dissipation",
+        eps=19.0,
+        gamma=1.34,
+        alpha=0.28,
+        k=2.4e-3,
+        values=tuple(0.22 * v for v in CALM),
+    ),
     "far above": Hard("a start 400 wells outside the strip", z0=20.0),
     "far below": Hard("a start 400 wells outside the strip", gamma=2.0, z0=-20.0),
     "on a summit": Hard("a start on an unstable equilibrium", z0=SUMMIT),
@@ -229,11 +237,15 @@ def test_eps_over_seven_decades_in_one_batch():
     scene = scene_of(Hard(""))
     eps = 0.97 * np.geomspace(1e-1, 1e-8, 8)
     data = fx.sweep(scene, eps, [0.75, 1.0, 2.0, 4.0], TIMES)
-    assert int(data.status.max()) == 0
+    assert int(data.status.sel(gamma=[0.75, 1.0, 2.0]).max()) == 0
+    # A viscosity of 1e-25: a force that rounds by 1e-16 N, squared over it, is a residual.
+    assert set(data.status.values.ravel()) <= {fx.Status.OK, fx.Status.UNBALANCED}
+    assert int(data.status.sel(gamma=4.0).where(data.eps > 1e-5, 0).max()) == 0
     assert np.all(np.isfinite(data.z))
     # Theorem 1: within some eps of the limit; at gamma < 1 within eps^gamma.
     bound = 5 * eps ** np.minimum(1.0, data.gamma.values)[:, None]
-    assert np.all(data.sup_error.values < bound)
+    assert np.all((data.sup_error.values < bound) | (data.status.values != 0))
+    assert np.all(np.abs(data.z - data.z_limit).max("time").values < bound)
 
 
 def test_a_failing_lane_disturbs_no_other():
