@@ -31,6 +31,7 @@ FLOORS = [
     {"references", "timed_runs"},
     {"error_measures"},
     {"cost_of_accuracy"},
+    {"design"},
     {"plot"},
     {"studies"},
     {"measured"},
