@@ -15,7 +15,7 @@ import jax
 import numpy as np
 
 import frictionjax as fx
-from frictionjax.references import instants
+from frictionjax.instants import instants
 
 fx.use_fast_cpu()
 jax.config.update("jax_enable_x64", True)
@@ -38,13 +38,10 @@ LOADS = {"sine": fx.loads.Sine(1.0488, 3.0), "triangle": fx.loads.Triangle(1.048
 
 def solved(scene, eps, when, accuracy, method):
     """States and dissipation at the instants and around them, over gamma."""
-    around = [np.clip(when.ts + s * when.shift, 0, 3.0) for s in (-1, 0, 1)]
-    order = np.argsort(np.concatenate(around), kind="stable")
-    data = fx.sweep(scene, eps, GAMMA, np.concatenate(around)[order], accuracy, method)
-    back = np.argsort(order, kind="stable")
-    shape = GAMMA.size, 3, when.ts.size
-    z = data.z.values[:, 0][:, back].reshape(shape)
-    spent = data.dissipation.values[:, 0][:, back].reshape(shape)[:, 1]
+    ts, back = when.around(float(scene.duration))
+    data = fx.sweep(scene, eps, GAMMA, ts, accuracy, method)
+    z = data.z.values[:, 0][:, back]
+    spent = data.dissipation.values[:, 0][:, back[1]]
     return z, spent, data.status.values[:, 0]
 
 

@@ -16,7 +16,7 @@ import jax
 import numpy as np
 
 import frictionjax as fx
-from frictionjax.references import slips_of
+from frictionjax.instants import slips_of
 from frictionjax.wiggly.general import SCIPY, run_scipy
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))

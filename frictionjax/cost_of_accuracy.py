@@ -1,21 +1,24 @@
 """What accuracy costs in time: methods, accuracies and cells, measured side by side."""
 
+import itertools
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from tqdm import tqdm
 
 from .admissibility import require_reach
-from .arguments import require, require_numbers, require_real, require_x64
+from .arguments import require, require_real, require_x64
 from .coefficients import coefficients_jit
-from .error_measures import errors_of
+from .error_measures import MEASURES, errors_of
+from .instants import Instants, instants
 from .provenance import explain, origin
-from .references import Reference, instants, reference
+from .references import Reference, reference
 from .scene import Scene, require_times
+from .sweeps import grid_of
 from .timed_runs import runner, timed
-from .wiggly.general import SCIPY
+from .wiggly.general import SCIPY, Run
 from .wiggly.methods import solver_of
 from .wiggly.status import Status
 from .wiggly.trajectory import require_accuracy
@@ -25,7 +28,7 @@ ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 _TIMES = 61
 _WRONG = 0.5  # eps: further off than that at a time outside slips is another well
 
-_MEANING = {
+_RUN = {
     "seconds": ("s", "median time of a warm run"),
     "seconds_low": ("s", "fastest warm run"),
     "seconds_high": ("s", "slowest warm run"),
@@ -43,30 +46,87 @@ _MEANING = {
     "jacobians": ("1", "evaluations of its Jacobian"),
     "status": (None, "how the run ended"),
     "wrong": ("1", "1 where success is reported half an eps or more away"),
+}
+_REFERENCE = {
     "reference_error": ("1", "distance of the reference from a second one, in eps"),
     "reference_slip_error": ("1", "the same over a whole slip period"),
     "reference_end_error": ("1", "the same at the last time"),
     "reference_dissipation_error": ("1", "the same for the dissipation"),
     "reference_ways": (None, "methods of the two references"),
+}
+_COORDINATES = {
     "eps": ("m", "period of the surface, length scale eps"),
     "gamma": ("1", "exponent of the viscosity eps^gamma"),
     "solver": (None, "method"),
     "accuracy": ("1", "accuracy asked for: error of z in eps; rtol and atol of SciPy's"),
 }
+_NOTHING = dict.fromkeys(_RUN, float("nan")) | {
+    "status": int(Status.NOT_TRIED),
+    "wrong": 0.0,
+    "runs": 0,
+}
+# Part of a trajectory is no trajectory: the errors of other runs are NaN.
+_USABLE = (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY)
 
 
-def _cell(run, residual, times, truth, when, eps, scale) -> dict[str, float]:
-    values = times | errors_of(run.z, run.dissipation, truth, when, eps)
+class _Column(NamedTuple):
+    """One method in one cell, at all accuracies."""
+
+    scene: Scene
+    eps: float
+    gamma: float
+    when: Instants
+    truth: Reference
+    method: Any
+
+    @property
+    def slip_energy(self) -> float:
+        law = coefficients_jit(self.scene.potential)
+        return self.eps * float(law.rho_plus - law.rho_minus)
+
+
+class _Effort(NamedTuple):
+    """How long and how often methods may run."""
+
+    accuracies: np.ndarray
+    repeats: int
+    seconds: float
+
+
+def _values(run: Run, times: dict[str, float], column: _Column) -> dict[str, float]:
+    """Everything the data set holds of one run."""
+    truth = column.truth
+    errors = dict.fromkeys(MEASURES, float("nan"))
+    if run.status in _USABLE:
+        true = truth.z, truth.dissipation, truth.in_slip
+        errors = errors_of(run.z, run.dissipation, *true, column.when, column.eps)
     counts = ("steps", "rejected", "evaluations", "jacobians")
-    values |= {name: getattr(run, name) for name in counts}
-    if run.status not in _USABLE:
-        values |= dict.fromkeys(_ERRORS, float("nan"))
-    wrong = run.status == Status.OK and values["error"] >= _WRONG
-    return values | {
-        "residual": residual / scale,
-        "status": int(run.status),
-        "wrong": float(wrong),
-    }
+    wrong = run.status == Status.OK and errors["error"] >= _WRONG
+    return (
+        times
+        | errors
+        | {name: getattr(run, name) for name in counts}
+        | {"residual": run.residual / column.slip_energy}
+        | {"status": int(run.status), "wrong": float(wrong)}
+    )
+
+
+def _measured(column: _Column, effort: _Effort, bar: tqdm) -> list[dict[str, float]]:
+    """From the loosest accuracy to the tightest, until runs take too long."""
+    scene, eps, gamma, when, _, method = column
+    cells: list[dict[str, float]] = []
+    given_up = False
+    for accuracy in map(float, effort.accuracies):
+        if given_up:
+            cells.append(_NOTHING)
+        else:
+            run = runner(scene, eps, gamma, when.ts, accuracy, method, effort.seconds)
+            found, times = timed(run, effort.repeats, effort.seconds)
+            cells.append(_values(found, times, column))
+            slow = times["seconds"] > effort.seconds
+            given_up = found.status == Status.TOO_SLOW or slow
+        bar.update()
+    return cells
 
 
 def _required(methods: Any, accuracies: Any, repeats: Any, seconds: Any):
@@ -127,57 +187,24 @@ def work_precision(
     (2008).
     """
     require_x64(scene)
-    for name, value in (("eps", eps), ("gamma", gamma)):
-        require_numbers(name, value, f"{name} > 0, a number or a list", lambda v: v > 0)
+    eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     names, labels, asked = _required(methods, accuracies, repeats, seconds)
-    eps = np.unique(np.atleast_1d(np.asarray(eps, dtype=float)))[::-1]
-    gamma = np.unique(np.atleast_1d(np.asarray(gamma, dtype=float)))
     require_reach(scene.potential, eps)
     ts = np.asarray(require_times(scene, ts, _TIMES))
+    effort = _Effort(asked, int(repeats), float(seconds))
     cells, truths = [], []
     count = gamma.size * eps.size * len(names) * asked.size
     with tqdm(total=count, disable=not progress, desc="runs") as bar:
-        for g in map(float, gamma):
-            for e in map(float, eps):
-                when = instants(scene, e, ts)
-                truth = reference(scene, e, g, when, float(asked[-1]))
-                truths.append(truth)
-                for name in names:
-                    options = scene, e, g, when, truth, asked, name, repeats, seconds
-                    cells += _column(*options, bar)
+        for g, e in itertools.product(gamma.tolist(), eps.tolist()):
+            when = instants(scene, e, ts)
+            truth = reference(scene, e, g, when, float(asked[-1]))
+            truths.append(truth)
+            for name in names:
+                cells += _measured(_Column(scene, e, g, when, truth, name), effort, bar)
     shape = gamma.size, eps.size, len(names), asked.size
     data = _dataset(cells, truths, shape)
     data = data.assign_coords(gamma=gamma, eps=eps, solver=labels, accuracy=asked)
     return _described(data, scene)
-
-
-def _column(scene, eps, gamma, when, truth, asked, method, repeats, seconds, bar) -> list:
-    """One method in one cell, from the loosest accuracy to the tightest."""
-    cells, given_up = [], False
-    law = coefficients_jit(scene.potential)
-    scale = eps * float(law.rho_plus - law.rho_minus)
-    for accuracy in map(float, asked):
-        if given_up:
-            cells.append(_NOTHING)
-        else:
-            run = runner(scene, eps, gamma, when.ts, accuracy, method, seconds)
-            (found, residual), times = timed(run, int(repeats), float(seconds))
-            cells.append(_cell(found, residual, times, truth, when, eps, scale))
-            given_up = found.status == Status.TOO_SLOW or times["seconds"] > seconds
-        bar.update()
-    return cells
-
-
-# Part of a trajectory is no trajectory: the errors of other runs are NaN.
-_USABLE = (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY)
-_ERRORS = ("error", "slip_error", "end_error", "dissipation_error", "mescd")
-_RUN = [n for n in _MEANING if not n.startswith("reference")][:-4]
-_NOTHING = dict.fromkeys(_RUN, float("nan")) | {
-    "status": int(Status.NOT_TRIED),
-    "wrong": 0.0,
-    "runs": 0,
-}
-_TRUTH = ("error", "slip_error", "end_error", "dissipation_error", "ways")
 
 
 def _dataset(cells: list[dict], truths: list[Reference], shape: tuple) -> xr.Dataset:
@@ -185,14 +212,19 @@ def _dataset(cells: list[dict], truths: list[Reference], shape: tuple) -> xr.Dat
     data = xr.Dataset()
     for name in _RUN:
         data[name] = dims, np.array([cell[name] for cell in cells]).reshape(shape)
-    for name in _TRUTH:
-        values = np.array([getattr(truth, name) for truth in truths])
-        data[f"reference_{name}"] = dims[:2], values.reshape(shape[:2])
+    for name in _REFERENCE:
+        known = [_of_reference(truth, name) for truth in truths]
+        data[name] = dims[:2], np.array(known).reshape(shape[:2])
     return data
+
+
+def _of_reference(truth: Reference, name: str) -> float | str:
+    measure = name.removeprefix("reference_")
+    return truth.ways if measure == "ways" else truth.errors[measure]
 
 
 def _described(data: xr.Dataset, scene: Scene) -> xr.Dataset:
     data["status"] = data["status"].astype(np.int8)
-    explain(data, _MEANING)
+    explain(data, _RUN | _REFERENCE | _COORDINATES)
     data.attrs = origin("What accuracy costs in time", scene)
     return data

@@ -1,29 +1,39 @@
-"""How far a computed trajectory is from its reference, in several measures."""
+"""How far a computed trajectory is from another one, in several measures."""
 
 import numpy as np
 
-from .references import Instants, Reference, relative_gap
+from .instants import Instants
 
+MEASURES = ("error", "slip_error", "end_error", "dissipation_error", "mescd")
 _LEAST = 1e-17  # relative error that counts as none
 
 
 def errors_of(
-    z: np.ndarray, dissipation: np.ndarray, truth: Reference, when: Instants, eps: float
+    z: np.ndarray,
+    dissipation: np.ndarray,
+    true_z: np.ndarray,
+    true_dissipation: np.ndarray,
+    in_slip: np.ndarray,
+    when: Instants,
+    eps: float,
 ) -> dict[str, float]:
-    """Errors of states (m) and dissipation (J) at the instants.
+    """Errors of states (m) and dissipation (J) at the instants, all of shape (n,).
 
     `error`: the largest at the times asked for outside slips, in eps; `slip_error`: mean
     over a whole slip period; `end_error`: at the last time; `dissipation_error`: largest
-    over the final value; `mescd`: -log10(|z - z_ref|/(eps + |z_ref|)) at the last time.
+    over the final value, 0 where nothing is dissipated; `mescd`:
+    -log10(|z - z_true|/(eps + |z_true|)) at the last time. NaN where no time counts.
     """
-    gaps = np.abs(z - truth.z) / eps
-    asked = when.asked[~truth.in_slip[when.asked]]
-    last = eps * gaps[-1] / (eps + abs(truth.z[-1]))
+    gaps = np.abs(z - true_z) / eps
+    counted = gaps[when.asked[~in_slip[when.asked]]]
+    relative = eps * gaps[-1] / (eps + abs(true_z[-1]))
+    final = true_dissipation[-1]
+    off = np.abs(dissipation - true_dissipation).max()
     nothing = float("nan")
     return {
-        "error": float(gaps[asked].max()) if asked.size else nothing,
+        "error": float(counted.max()) if counted.size else nothing,
         "slip_error": float(gaps[when.slip].mean()) if when.slip.size else nothing,
         "end_error": float(gaps[-1]),
-        "dissipation_error": relative_gap(dissipation, truth.dissipation),
-        "mescd": -float(np.log10(np.maximum(last, _LEAST))),
+        "dissipation_error": float(off / final) if final > 0 else 0.0,
+        "mescd": -float(np.log10(np.maximum(relative, _LEAST))),
     }

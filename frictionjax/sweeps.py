@@ -119,7 +119,11 @@ _DIMS = ("gamma", "eps", "time")
 _SUPREMA = ("sup_error", "strip_excess", "survey_error")
 
 
-def _grid(name: str, values: Any) -> np.ndarray:
+def grid_of(name: str, values: Any) -> np.ndarray:
+    """Values of eps, falling, or of gamma, rising, each once.
+
+    Raises `ValueError` where one is not a number > 0.
+    """
     require_numbers(name, values, f"{name} > 0, a number or a list", lambda v: v > 0)
     array = np.unique(np.atleast_1d(np.asarray(values, dtype=float)).ravel())
     return array[::-1] if name == "eps" else array
@@ -158,7 +162,7 @@ def sweep(
     1 does not apply), or an eps at which the bristle loses contact.
     """
     require_x64(scene)
-    eps, gamma = _grid("eps", eps), _grid("gamma", gamma)
+    eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
     ts = require_times(scene, ts)
     require_start_in_strip(scene)

@@ -7,8 +7,9 @@ from reference import solve as plain_solve
 
 import frictionjax as fx
 from frictionjax.error_measures import errors_of
+from frictionjax.instants import instants, slips_of
 from frictionjax.plot.work_precision import _front
-from frictionjax.references import instants, reference, slips_of
+from frictionjax.references import reference
 from frictionjax.report.cost import chosen_eps, cost_sections
 from frictionjax.wiggly.general import run_scipy
 
@@ -43,6 +44,10 @@ def data(scene):
     return fx.work_precision(scene, EPS, 1.0, methods, [1e-1, 1e-4], TIMES, repeats=2)
 
 
+def true_of(truth):
+    return truth.z, truth.dissipation, truth.in_slip
+
+
 def test_the_reference_is_the_solution(scene, when, truth):
     system = System(
         w=sine(SLOPE),
@@ -57,8 +62,8 @@ def test_the_reference_is_the_solution(scene, when, truth):
     assert outside.sum() > 50
     assert np.abs(plain.z - truth.z)[outside].max() < 1e-5 * EPS
     assert np.abs(plain.dissipation - truth.dissipation).max() < 1e-5
-    assert truth.error < 1e-5
-    assert truth.dissipation_error < 1e-5
+    assert truth.errors["error"] < 1e-5
+    assert truth.errors["dissipation_error"] < 1e-5
     # The two agree on what a slip is, but for their lengths of its period.
     assert np.mean(plain.in_slip == truth.in_slip) > 0.95
 
@@ -86,7 +91,7 @@ def test_a_scene_that_rests_has_no_slip():
 
 def test_errors_are_what_was_put_in(when, truth):
     shifted = truth.z + 0.25 * EPS
-    found = errors_of(shifted, 1.5 * truth.dissipation, truth, when, EPS)
+    found = errors_of(shifted, 1.5 * truth.dissipation, *true_of(truth), when, EPS)
     for name in ("error", "slip_error", "end_error"):
         assert found[name] == pytest.approx(0.25)
     assert found["dissipation_error"] == pytest.approx(0.5)
@@ -96,8 +101,8 @@ def test_errors_are_what_was_put_in(when, truth):
     moved[when.asked[5]] += EPS
     hidden[when.asked[5]] = True
     in_slip = truth._replace(in_slip=hidden)
-    seen = errors_of(moved, truth.dissipation, truth, when, EPS)
-    still = errors_of(moved, truth.dissipation, in_slip, when, EPS)
+    seen = errors_of(moved, truth.dissipation, *true_of(truth), when, EPS)
+    still = errors_of(moved, truth.dissipation, *true_of(in_slip), when, EPS)
     assert seen["error"] == pytest.approx(1.0)
     assert still["error"] == 0.0
 
@@ -106,7 +111,7 @@ def test_errors_are_what_was_put_in(when, truth):
 def test_scipy_solves_the_same_system(scene, when, truth, method):
     run = run_scipy(scene, EPS, 1.0, when.ts, 1e-6, method, 60.0)
     assert run.status is fx.Status.OK
-    found = errors_of(run.z, run.dissipation, truth, when, EPS)
+    found = errors_of(run.z, run.dissipation, *true_of(truth), when, EPS)
     assert found["error"] < 5e-3  # 5e-4, 1.5e-3, 7e-6
     assert found["dissipation_error"] < 1e-3
     assert run.steps > 100
@@ -179,6 +184,9 @@ def test_picture(data):
     picture = fx.plot.draw_work_precision(data)
     assert len(picture.axes) == 2
     assert "LSODA" in " ".join(t.get_text() for t in picture.axes[0].get_legend().texts)
+    with pytest.raises(ValueError, match=r"eps = 0\.3: .*one of 0\.045"):
+        fx.plot.draw_work_precision(data, eps=0.3)
+    assert len(fx.plot.draw_work_precision(data, eps=EPS).axes) == 2
 
 
 def test_cells_of_a_study_that_are_measured(scene):

@@ -1,12 +1,22 @@
 """What accuracy costs in time: error against time, asked against reached."""
 
+from itertools import cycle
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .style import GUIDE, LIMIT, choose_gamma, colour, marker, new_figure, styled
+from .style import (
+    GUIDE,
+    LIMIT,
+    choose_eps,
+    choose_gamma,
+    colour,
+    marker,
+    new_figure,
+    styled,
+)
 
 _MOST = 1e3  # eps: further off is as wrong
 _LINES = ("-", "--", ":", "-.")
@@ -24,14 +34,16 @@ def draw(
 
     Left: error against seconds in one cell, one line a method, the Pareto front as a
     band; right: accuracy reached against accuracy asked for. The cell: the smallest eps
-    and gamma = 1 where none is named. With more cells than one, below: seconds, and error
-    over accuracy, against eps, at the accuracy in the middle.
+    and gamma = 1 where none is named. With more than one eps, below: seconds, and error
+    over accuracy, against eps, one line style a gamma, at the accuracy in the middle.
+
+    Raises `ValueError` for an eps or gamma that the data set does not hold.
     """
     gamma = choose_gamma(dataset, gamma)
-    eps = float(dataset.eps.min()) if eps is None else eps
-    cell = dataset.sel(gamma=gamma).sel(eps=eps, method="nearest")
-    many = dataset.eps.size * dataset.gamma.size > 1
-    rows = 2 if many and dataset.eps.size > 1 else 1
+    smallest = float(dataset.eps.min())
+    chosen = smallest if eps is None else float(choose_eps(dataset, gamma, eps)[0])
+    cell = dataset.sel(gamma=gamma, eps=chosen)
+    rows = 2 if dataset.eps.size > 1 else 1
     figure, grid = new_figure(rows, 2, 11.0, 4.9 * rows)
     _times(grid[0, 0], cell)
     _calibration(grid[0, 1], cell)
@@ -116,14 +128,14 @@ def _over_eps(row: Any, dataset: xr.Dataset) -> None:
     middle = dataset.isel(accuracy=dataset.accuracy.size // 2)
     asked = float(middle.accuracy)
     for index, name in enumerate(dataset.solver.values):
-        for gamma, style in zip(dataset.gamma.values, _LINES, strict=False):
+        for gamma, style in zip(dataset.gamma.values, cycle(_LINES)):
             line = middle.sel(solver=name, gamma=gamma)
             look = _look(index) | {"linestyle": style}
             good = np.isfinite(line.error.values)
             eps, error = line.eps.values[good], np.minimum(line.error.values[good], _MOST)
             row[0].plot(eps, line.seconds.values[good], **look)
             row[1].plot(eps, error / asked, **look)
-    for gamma, style in zip(dataset.gamma.values, _LINES, strict=False):
+    for gamma, style in zip(dataset.gamma.values, cycle(_LINES)):
         row[0].plot([], [], style, color=LIMIT, label=f"$\\gamma$ = {gamma:.3g}")
     row[0].set(ylabel="seconds of a warm run", title=f"Time at accuracy {asked:.0e}")
     row[1].set(ylabel="error reached over asked for", title="Is the accuracy kept?")

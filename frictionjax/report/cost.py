@@ -7,11 +7,11 @@ import numpy as np
 import xarray as xr
 
 from ..cost_of_accuracy import ACCURACIES, METHODS, work_precision
+from ..instants import slips_of
 from ..plot import draw_work_precision
-from ..references import slips_of
 from ..scene import Scene
 from ..scene_files import scene_document
-from .folder import write_figures
+from .folder import write_figures, write_record
 from .job import Job, joined
 from .tables import flag_names, number, table
 
@@ -68,12 +68,8 @@ def run_cost(
         progress=progress,
     )
     text = joined([("", line) for line in job.notes] + cost_sections(data))
-    folder.mkdir(parents=True, exist_ok=True)
-    data.to_netcdf(folder / "cost.nc", engine="h5netcdf")
-    (folder / "tables.txt").write_text(text + "\n", encoding="utf-8")
-    (folder / "scene.toml").write_text(
-        scene_document(job.scene, job.study), encoding="utf-8"
-    )
+    toml = scene_document(job.scene, job.study)
+    write_record(folder, {"cost": data}, toml, text)
     write_figures(folder, iter([("work_precision", draw_work_precision(data))]))
     return text
 

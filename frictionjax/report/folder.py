@@ -1,10 +1,11 @@
 """The folder that a study leaves behind."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import xarray as xr
 from matplotlib.figure import Figure
 
 from .. import plot
@@ -58,13 +59,20 @@ def write_figures(folder: Path, figures: Iterator[tuple[str, Figure]]) -> list[P
     return paths
 
 
+def write_record(
+    folder: Path, data: Mapping[str, xr.Dataset], toml: str, text: str
+) -> None:
+    """Write data sets by name, scene and tables into `folder`, made where it is missing."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, one in data.items():
+        one.to_netcdf(folder / f"{name}.nc", engine="h5netcdf")
+    (folder / "tables.txt").write_text(text + "\n", encoding="utf-8")
+    (folder / "scene.toml").write_text(toml, encoding="utf-8")
+
+
 def write_study(
     folder: Path, found: Study, scene: Scene, law: Coefficients, toml: str, text: str
 ) -> None:
     """Write data, orders, tables, scene and pictures of a study into `folder`."""
-    folder.mkdir(parents=True, exist_ok=True)
-    found.dataset.to_netcdf(folder / "study.nc", engine="h5netcdf")
-    found.orders.to_netcdf(folder / "orders.nc", engine="h5netcdf")
-    (folder / "tables.txt").write_text(text + "\n", encoding="utf-8")
-    (folder / "scene.toml").write_text(toml, encoding="utf-8")
+    write_record(folder, {"study": found.dataset, "orders": found.orders}, toml, text)
     write_figures(folder, study_figures(found, scene, law))

@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from scipy import integrate as scipy_integrate
 
+from ..coefficients import coefficients_jit
 from ..programs import Program
 from ..scene import Scene
 from .integration import field_of
@@ -20,7 +21,8 @@ SCIPY = ("LSODA", "BDF", "Radau")
 class Run(NamedTuple):
     """What a solver gave: `z` (m) and `dissipation` (J) at the times, shapes (n,).
 
-    NaN from where it gave up. `rejected`, which SciPy does not tell, is NaN.
+    NaN from where it gave up, and where a solver does not tell; `residual` is that of the
+    energy-dissipation balance at the last time, J.
     """
 
     z: np.ndarray
@@ -30,6 +32,7 @@ class Run(NamedTuple):
     rejected: float
     evaluations: float
     jacobians: float
+    residual: float = float("nan")
 
 
 def _rate_pair(field, t, state):
@@ -87,7 +90,8 @@ def run_scipy(
     found = np.full((ts.size, 2), np.nan)
     found[ts <= 0.0] = start
     counter, status, deadline = _Counter(), Status.OK, time.perf_counter() + seconds
-    slip = eps * _force_scale(field)
+    law = coefficients_jit(scene.potential)
+    slip = eps * float(law.rho_plus - law.rho_minus)
     edges = np.union1d(np.asarray(scene.turning_points()), [0.0, float(ts[-1])])
     edges = edges[(edges >= 0) & (edges <= ts[-1])]
     for begin, end in itertools.pairwise(edges):
@@ -112,19 +116,14 @@ def run_scipy(
     return Run(z, found[:, 1], status, *map(float, counts))
 
 
-def _force_scale(field) -> float:
-    """Largest force of the wiggles over a period, N; a slip dissipates eps times that."""
-    tips = np.linspace(0.0, 1.0, 65)
-    return float(np.max(np.abs(field.potential.tip_force(tips, field.eps)[0])))
-
-
 def _stretch(solver, ts, found, counter, deadline) -> Status:
     """Step to the end of a stretch; values at the times on the way go into `found`."""
     while solver.status == "running":
         message = solver.step()
         counter.steps += 1
         if solver.status == "failed":
-            return Status.SOLVER_FAILED if message else Status.STEP_TOO_SMALL
+            tiny = message == solver.TOO_SMALL_STEP
+            return Status.STEP_TOO_SMALL if tiny else Status.SOLVER_FAILED
         passed = (ts > solver.t_old) & (ts <= solver.t)
         if passed.any():
             found[passed] = solver.dense_output()(ts[passed]).T

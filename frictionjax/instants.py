@@ -1,0 +1,70 @@
+"""Times at which methods are measured."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .limit_system import solve_limit
+from .scene import Scene
+
+_SLIP_TIMES = 32  # over one whole slip period
+_SHIFT = 0.005  # share of a slip period within which a slip is looked for
+
+
+class Instants(NamedTuple):
+    """Times in s, sorted; `asked` and `slip` pick from them.
+
+    `asked`: those the user named; `slip`: of a whole slip period, empty where nothing
+    slides. `shift`: half the time around each in which a slip is looked for, 0 at rest.
+    """
+
+    ts: np.ndarray
+    asked: np.ndarray
+    slip: np.ndarray
+    shift: np.ndarray
+
+    def around(self, end: float) -> tuple[np.ndarray, np.ndarray]:
+        """Times just before, at and just after each, sorted, and the way back to (3, n).
+
+        Times that coincide stay apart: their number is one compilation.
+        """
+        times = np.concatenate([self.ts - self.shift, self.ts, self.ts + self.shift])
+        times = np.clip(times, 0, end)
+        order = np.argsort(times, kind="stable")
+        return times[order], np.argsort(order, kind="stable").reshape(3, -1)
+
+
+def slips_of(scene: Scene, eps: float) -> float:
+    """About how many slips a scene makes: the way of its limit in periods."""
+    grid = np.linspace(0.0, float(scene.duration), 401)
+    grid = np.union1d(grid, np.asarray(scene.turning_points()))
+    return float(np.abs(np.diff(np.asarray(solve_limit(scene, grid).z))).sum() / eps)
+
+
+def _speeds(scene: Scene, ts: np.ndarray) -> np.ndarray:
+    """Of the limit, m/s."""
+    end = float(scene.duration)
+    around = np.clip(ts + 1e-4 * end * np.array([[-1.0], [1.0]]), 0, end)
+    times, place = np.unique(around, return_inverse=True)
+    z = np.asarray(solve_limit(scene, times).z)[place.reshape(around.shape)]
+    return np.abs(z[1] - z[0]) / (around[1] - around[0])
+
+
+def instants(scene: Scene, eps: float, ts: np.ndarray) -> Instants:
+    """The user's times and those of a whole slip period in the middle of the last slide."""
+    end = float(scene.duration)
+    speed = _speeds(scene, ts)
+    slides = speed * end > eps
+    period = np.where(slides, eps / np.where(slides, speed, 1.0), 0.0)
+    slip = np.zeros(0)
+    if slides.any():
+        sliding = np.flatnonzero(slides)
+        last = np.split(sliding, np.flatnonzero(np.diff(sliding) > 1) + 1)[-1]
+        middle = last[(last.size - 1) // 2]  # away from the ends, where the speed changes
+        length = min(period[middle], end - ts[middle])
+        slip = ts[middle] + length * (np.arange(_SLIP_TIMES) + 0.5) / _SLIP_TIMES
+    every = np.union1d(ts, slip)
+    asked, of_slip = np.searchsorted(every, ts), np.searchsorted(every, slip)
+    shift = np.zeros(every.size)
+    shift[asked] = _SHIFT * period
+    return Instants(every, asked, of_slip, shift)
