@@ -83,7 +83,7 @@ def increasing_root(fn: Callable[[Real], Real], guess: Real) -> Real:
 
     value, slope = jax.jvp(fn, (guess,), (jnp.ones_like(guess),))
     step = 2 * jnp.abs(value) / jnp.where(slope > 0, slope, 1.0)
-    start = jnp.where((slope > 0) & (step < 1e150), step, 1.0)
+    start = jax.lax.stop_gradient(jnp.where((slope > 0) & (step < 1e150), step, 1.0))
     width = jax.lax.while_loop(
         lambda w: ~holds(w) & (w > 0) & (w < 1e150), lambda w: 4 * w, start
     )

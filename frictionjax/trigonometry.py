@@ -18,8 +18,8 @@ _COSINE = tuple(
     (-1) ** k * (2 * math.pi) ** (2 * k) / math.factorial(2 * k) for k in range(9)
 )
 
-# Harmonics written out one by one; of more, blocks in a loop: with 64 written out a lane's
-# step takes 55 s to compile.
+# Harmonics written out one by one; of more, blocks in a loop. With 64 written out a lane's
+# step takes 55 s to compile; in blocks a run of them takes 2.0 s for 1.3 s.
 _UNROLLED, _BLOCK = 16, 16
 
 

@@ -27,10 +27,12 @@ def outside_slips(case: Case) -> np.ndarray:
     stiffness = case.numbers["support"]["stiffness"]
     speed, end = fastest(case) / stiffness, TIMES[-1]
     shift = 0.005 * case.eps / max(speed, case.eps / end)
-    early = solved(case, np.clip(TIMES - shift, 0, end), dissipation=False)
-    late = solved(case, np.clip(TIMES + shift, 0, end), dissipation=False)
-    moved = np.abs(np.asarray(late.z) - np.asarray(early.z))
-    return moved <= _SLIP * case.eps
+    around = np.clip(np.concatenate([TIMES - shift, TIMES + shift]), 0, end)
+    order = np.argsort(around)
+    z = np.empty(around.size)
+    z[order] = np.asarray(solved(case, around[order], dissipation=False).z)
+    early, late = z.reshape(2, -1)
+    return np.abs(late - early) <= _SLIP * case.eps
 
 
 def found_load(case: Case, ts) -> np.ndarray:
@@ -59,12 +61,15 @@ def energy(case: Case) -> float:
 
 
 def balance_closes(case: Case, found) -> float:
-    """The energy-dissipation balance, which no solution violates."""
+    """The energy-dissipation balance, which no solution violates.
+
+    Ten times closer than the status asks for: the worst of 700 scenes left WORST.
+    """
     residual = float(found.residual[-1])
     scale = energy(case) + float(found.dissipation[-1])
     if residual < -1e-9 * scale:
         return np.inf
-    return residual / (0.05 * scale)
+    return residual / (0.005 * scale)
 
 
 def stays_near_the_strip(case: Case, found) -> float:

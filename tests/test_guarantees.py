@@ -12,7 +12,9 @@ KINDS = [
     ("slanted", "spring", "piecewise"),
     pytest.param(("vertical", "stiffening", "sine"), marks=pytest.mark.slow),
 ]
-GENES = st.lists(st.floats(0, 1, width=16), min_size=hard_scenes.GENES, max_size=24)
+GENES = st.lists(
+    st.floats(0, 1, width=16), min_size=hard_scenes.GENES, max_size=hard_scenes.GENES
+)
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: "-".join(kind))
@@ -35,7 +37,9 @@ def test_guarantees_hold(kind, genes, turn):
 def test_units_do_not_matter(exponent):
     # A support given as a function once lost its root where states were 1e-8 m.
     rng = np.random.default_rng(0)
-    case = hard_scenes.draw(("vertical", "stiffening", "sine"), rng.uniform(size=24))
+    case = hard_scenes.draw(
+        ("vertical", "stiffening", "sine"), rng.uniform(size=hard_scenes.GENES)
+    )
     found = guarantees.solved(case)
     length, force = 10.0**exponent, 10.0 ** (-exponent / 2)
     assert guarantees.knows_no_units(case, found, length, force) < 1
@@ -44,7 +48,9 @@ def test_units_do_not_matter(exponent):
 def changed(field, change):
     """The genes' scene with one of its solution's numbers changed."""
     rng = np.random.default_rng(0)
-    case = hard_scenes.draw(("vertical", "stiffening", "sine"), rng.uniform(size=24))
+    case = hard_scenes.draw(
+        ("vertical", "stiffening", "sine"), rng.uniform(size=hard_scenes.GENES)
+    )
     found = guarantees.solved(case)
     return case, Changed(found, field, change)
 

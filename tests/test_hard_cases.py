@@ -54,9 +54,9 @@ SUMMIT = 0.05 * brentq(
 )
 
 HARD = {
-    "gamma 4": Hard("slips of a millionth of the way between them", 0.1, 4.0),
-    "gamma 0.05": Hard("hardly stiff, lags of hundreds of wells", gamma=0.05),
-    "soft support": Hard("slips of 1e-6 of the way", 500.0, k=1e-4),
+    "gamma 4": Hard("slips a thousand times shorter than the time between them", 0.1, 4.0),
+    "gamma 0.05": Hard("hardly stiff, lags of about twenty wells", gamma=0.05),
+    "soft support": Hard("states of kilometres, eps of 500 m", 500.0, k=1e-4),
     "stiff support": Hard("eps of 1e-6 m, forces of 1 N", 5e-6, 0.1, k=1e4),
     "alpha near 0": Hard(
         "wiggles of 1e-6 of the spring's force",
@@ -69,7 +69,7 @@ HARD = {
     "two folds": Hard("two folds a period", surface=_slopes(0.05, 0.1, 0.0, 0.0)),
     "equal folds": Hard("folds within 1e-3", surface=_slopes(1e-4, 0.1, 0.0, 0.0)),
     "flat": Hard("w' and w'' vanish together", surface=_slopes(0.12, -0.06, 0.0, 0.0)),
-    "steep": Hard("barriers 50 times the load of a well", surface=_slopes(2.0, 0, 0.5, 0)),
+    "steep": Hard("barriers that the load never climbs", surface=_slopes(2.0, 0, 0.5, 0)),
     "fast part": Hard(
         "the load jumps within 1e-6 s",
         times=(0.0, 1.0, 1.000001, 1.5, 2.0, 2.5, 3.0),
@@ -91,12 +91,21 @@ HARD = {
         values=(0.0, 0.1, 0.1, -0.1, -0.1, 0.1, 0.1),
     ),
     "hardly moves": Hard(
-        "a load worth 90 m moves z by millimetres: energies cancel in the dissipation",
+        "a load worth 90 m moves z by millimetres",
         eps=19.0,
         gamma=1.34,
         alpha=0.28,
         k=2.4e-3,
         values=tuple(0.22 * v for v in CALM),
+    ),
+    "far from the origin": Hard(
+        "a way of 1e-6 wells, 4700 wells away: energies cancel in the dissipation",
+        eps=19.0,
+        gamma=2.4,
+        alpha=0.28,
+        k=2.4e-3,
+        values=tuple(216.0 + 0.022 * v for v in CALM),
+        z0=9e4,
     ),
     "far above": Hard("a start 400 wells outside the strip", z0=20.0),
     "far below": Hard("a start 400 wells outside the strip", gamma=2.0, z0=-20.0),

@@ -84,7 +84,10 @@ def test_a_scene_without_effects_is_the_same_program():
     named = fx.Scene(
         SCENE.profile, SCENE.bristle, SCENE.support, SCENE.load, 3.0, effects=()
     )
-    program = lambda scene: trajectory_of(scene, balanced=True)  # noqa: E731
+
+    def program(scene):
+        return trajectory_of(scene, balanced=True)
+
     assert traced(program, named) == traced(program, SCENE)
 
 

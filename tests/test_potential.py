@@ -168,8 +168,12 @@ def test_beyond_reach_is_nan_and_never_a_number():
 
 
 def test_a_given_potential_is_what_was_given():
-    W = lambda Y: jnp.sin(2 * jnp.pi * Y) + 0.2 * jnp.cos(4 * jnp.pi * Y)  # noqa: E731
-    Q = lambda eps, Y: jnp.cos(2 * jnp.pi * Y) / (1 + eps)  # noqa: E731
+    def W(Y):
+        return jnp.sin(2 * jnp.pi * Y) + 0.2 * jnp.cos(4 * jnp.pi * Y)
+
+    def Q(eps, Y):
+        return jnp.cos(2 * jnp.pi * Y) / (1 + eps)
+
     potential = fx.GivenPotential(W, Q)
     for eps in (1e-1, 1e-6):
         expected = eps * W(GRID) + eps**2 * Q(eps, GRID)

@@ -237,7 +237,8 @@ def integrate_cells(
     "resolved" measures every slip, in tiles; "windowed" a few periods of every slide that
     is long enough; "auto" what passes through fewer wells. Surveys that are too rough are
     made again with more periods; where brackets stay open, tiles measure every slip; and
-    where theirs do too, one lane goes through all.
+    where theirs do too, one lane goes through all. Accuracies looser than 1e-3 are solved
+    as that.
     `report` is told the share of each batch of jobs that is done. None where the load
     turns more often than the scene has room for.
     """
@@ -264,23 +265,28 @@ def integrate_cells(
     answers = answers._replace(tolerance=control.tolerance)
     for _ in range(_SURVEYS):
         rough = np.flatnonzero(sweep.is_rough(answers, eps) & ~never)
-        if rough.size == 0:
+        if not _surveyed_again(sweep, every, answers, never, rough):
             break
-        some = _some(every, rough)
-        nodes = some.needs.nodes * 2 * (some.needs.nodes < _MOST_NODES)
-        every.needs.nodes[rough] = np.where(
-            _affordable(path, some) | (nodes > 0), nodes, -1
-        )
-        again = rough[every.needs.nodes[rough] >= 0]
-        answers.status[rough[every.needs.nodes[rough] < 0]] = int(Status.ROUGH_SURVEY)
-        if again.size == 0:
-            break
-        part, open_ = sweep.attempt(_some(every, again))
-        _put(answers, part, again)
-        never[again] = open_
     _in_tiles(sweep, every, answers, never)
     _from_the_start(sweep, every, answers, np.flatnonzero(never))
     return answers
+
+
+def _surveyed_again(sweep: _Sweep, every: _Cellwise, answers, never, rough) -> bool:
+    """Twice as many slips of the `rough` cells, at last all; whether there were any."""
+    some = _some(every, rough)
+    nodes = some.needs.nodes * 2 * (some.needs.nodes < _MOST_NODES)
+    can = _affordable(sweep.path, some) | (nodes > 0)
+    answers.status[rough[~can]] = int(Status.ROUGH_SURVEY)
+    again = rough[can]
+    if again.size == 0:
+        return False
+    wells = sweep.path.travel[-1] / some.eps
+    tile = np.where(nodes > 0, some.needs.tile, np.maximum(some.needs.tile, wells / _LANES))
+    every.needs.nodes[again], every.needs.tile[again] = nodes[can], tile[can]
+    part, never[again] = sweep.attempt(_some(every, again))
+    _put(answers, part, again)
+    return True
 
 
 def _in_tiles(sweep: _Sweep, every: _Cellwise, answers: Answers, never: np.ndarray) -> None:

@@ -268,7 +268,8 @@ def _energetics(cell, stops, layout, output, energy0, of_path, path, eps):
     gap = _second_opinion(cell, stops, final)
     if not cell.surveys and cell.totals[VISCOUS, -1] < eps * path.width:
         # Before the first slip the motion is smooth and dissipates little of the energies:
-        # their differences were 5% off where a load of 94 m moved z by 3 mm.
+        # 4700 wells from the origin, over a way of 5e-7 wells, their differences are 4e-3
+        # off, and this sum 7e-5.
         spent, gap = running[VISCOUS], float(cell.totals[RESIDUAL, -1])
     return (
         spent,

@@ -1,6 +1,7 @@
 """Solvers by name."""
 
 import inspect
+from typing import Any
 
 import diffrax
 import equinox as eqx
@@ -41,11 +42,12 @@ def solver_of(method: object) -> diffrax.AbstractSolver:
         return method
     if isinstance(method, str) and method in OURS:
         return Rodas5P()
-    candidate = getattr(diffrax, method, None) if isinstance(method, str) else method
+    named = isinstance(method, str)
+    candidate: Any = getattr(diffrax, str(method), None) if named else method
     allowed = f"one of {', '.join([*OURS, *known_solvers()])}, or a diffrax solver"
     usable = _is_usable(candidate)
-    require(usable, "method", method if isinstance(method, str) else repr(method), allowed)
-    return candidate()  # type: ignore[operator]
+    require(usable, "method", method if named else repr(method), allowed)
+    return candidate()
 
 
 def is_ours(method: object) -> bool:
