@@ -28,6 +28,8 @@ _HOME = {
     "sweep": "sweeps",
     "study": "studies",
     "work_precision": "cost_of_accuracy",
+    "predict_cost": "cost_prediction",
+    "fit_budget": "cost_prediction",
     "load_scene": "scene_files",
     "save_scene": "scene_files",
     "use_fast_cpu": "compilation",
@@ -46,6 +48,8 @@ if TYPE_CHECKING:
     from .compilation import keep_compiled as keep_compiled
     from .compilation import use_fast_cpu as use_fast_cpu
     from .cost_of_accuracy import work_precision as work_precision
+    from .cost_prediction import fit_budget as fit_budget
+    from .cost_prediction import predict_cost as predict_cost
     from .friction_law import friction as friction
     from .limit_system import solve_limit as solve_limit
     from .potentials import GivenPotential as GivenPotential

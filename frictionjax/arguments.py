@@ -129,6 +129,9 @@ def require_numbers(name: str, value: Any, allowed: str, test) -> None:
     """Check one number or an array of them."""
     if not is_concrete(value):
         return
-    array = np.asarray(value, dtype=float)
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {as_text(value)}: needs {allowed}") from None
     good = array.size > 0 and np.all(np.isfinite(array)) and bool(np.all(test(array)))
     require(good, name, array, allowed)

@@ -142,6 +142,11 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
 @click.option("--gamma", help="A list or START:STOP:N.")
 @click.option("--accuracy", type=float, help="Wanted error of z in units of eps.")
 @click.option("--method", default="auto", show_default=True, help="Solver.")
+@click.option(
+    "--budget",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Seconds of computation: the best accuracy, or with --accuracy the eps, that fit.",
+)
 @click.option("--out", default="frictionjax-study", show_default=True, metavar="DIR")
 @click.option("--progress/--no-progress", default=True, help="A bar on standard error.")
 def study(
@@ -150,6 +155,7 @@ def study(
     gamma: str | None,
     accuracy: float | None,
     method: str,
+    budget: float | None,
     out: str,
     progress: bool,
     **surface: Any,
@@ -158,7 +164,7 @@ def study(
     _start()
     from .report.folder import require_folder
     from .report.job import number_list, read_job
-    from .report.study import run_study
+    from .report.study import expected_cost, run_study, within_budget
 
     folder = require_folder(out)
     given = {"eps": eps, "gamma": gamma}
@@ -169,8 +175,11 @@ def study(
         wanted["accuracy"] = accuracy
     job = read_job(scene, **surface)
     job = job._replace(study=job.study | wanted)
-    text = _interruptible(lambda: run_study(job, folder, method, progress))
-    click.echo(text)
+    if budget is not None:
+        job = within_budget(job, budget, method, accuracy)
+    elif (expected := expected_cost(job, method)) is not None:
+        click.echo(f"Expected: {expected}", err=True)
+    click.echo(_interruptible(lambda: run_study(job, folder, method, progress)))
     click.echo(f"\nWritten to {folder}")
 
 

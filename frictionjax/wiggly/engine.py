@@ -38,7 +38,7 @@ _TIGHT = 3e-5  # tolerance below which the scheme of order 5 is the cheaper one
 _NEAR_STRIP = 1e-3  # wells
 # Looser brackets and surveys save a fifth of the time, and at gamma = 0.75 were off by up
 # to 6 times an accuracy of 1e-1, and twice one of 1e-2.
-_LOOSEST = 1e-3
+LOOSEST = 1e-3
 _CELLS = 32  # at least, in a compiled call: 64 take 4 ms, 32 two
 # Accuracy below which the tolerance is below `_TIGHT`, and values worth a guess at rooms.
 _LIKELY_TIGHT, _FEW = 100 * _TIGHT, 500
@@ -222,6 +222,35 @@ class _Sweep(NamedTuple):
         return rough
 
 
+class Planned(NamedTuple):
+    """Cells before anything has run: step control, what windows know and need."""
+
+    control: StepPlan
+    ground: Ground
+    needs: Needs
+
+
+def planned(
+    scene: Scene,
+    lanes: LaneScene,
+    path: Path,
+    eps: np.ndarray,
+    gamma: np.ndarray,
+    times: int,
+    accuracy: float,
+    method: str,
+) -> Planned:
+    """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
+    # The bristle as a series compiles faster too.
+    scene = eqx.tree_at(lambda s: s.potential, scene, lanes.potential)
+    rho = path.rho_plus, path.rho_minus
+    control = _controls(scene, _fixed(eps), _fixed(gamma), accuracy, rho)
+    control = _some(control, np.arange(eps.size))
+    ground = ground_of(scene, path, eps, gamma, control.folds)
+    needs = _needs(control, ground, path, accuracy)
+    return Planned(control, ground, _choose(path, eps, needs, times, method))
+
+
 def integrate_cells(
     scene: Scene,
     eps: np.ndarray,
@@ -245,16 +274,11 @@ def integrate_cells(
     path = path_of(scene)
     if path is None:
         return None
-    accuracy = min(accuracy, _LOOSEST)
+    accuracy = min(accuracy, LOOSEST)
     lanes = lane_scene(scene, float(eps.max()))
     _prepare(lanes, eps.size, ts.size, accuracy, balanced)
-    # The bristle as a series compiles faster too.
-    smooth = eqx.tree_at(lambda s: s.potential, scene, lanes.potential)
-    rho = path.rho_plus, path.rho_minus
-    control = _controls(smooth, _fixed(eps), _fixed(gamma), accuracy, rho)
-    control = _some(control, np.arange(eps.size))
-    ground = ground_of(scene, path, eps, gamma, control.folds)
-    needs = _choose(path, eps, _needs(control, ground, path, accuracy), ts.size, method)
+    plan = planned(scene, lanes, path, eps, gamma, ts.size, accuracy, method)
+    control, ground, needs = plan
     scheme = scheme_of(float(np.min(control.tolerance)))
     cells = Cells(eps, eps**gamma, control.tolerance, control.reach, control.first_step)
     every = _Cellwise(eps, ground, cells, needs)
@@ -262,7 +286,7 @@ def integrate_cells(
     if method != "resolved":
         every = _ridden(sweep, every, eps**gamma)
     answers, never = sweep.attempt(every)
-    answers = answers._replace(tolerance=control.tolerance)
+    answers = answers._replace(tolerance=np.asarray(control.tolerance))
     for _ in range(_SURVEYS):
         rough = np.flatnonzero(sweep.is_rough(answers, eps) & ~never)
         if not _surveyed_again(sweep, every, answers, never, rough):
@@ -307,10 +331,15 @@ def _in_tiles(sweep: _Sweep, every: _Cellwise, answers: Answers, never: np.ndarr
     never[chosen] = open_
 
 
+def remembers_long(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:
+    """Cells that remember too many slips for windows, and have slides worth a map."""
+    longest = np.max(np.abs(np.diff(path.states)), initial=0.0) / eps
+    return (needs.warm > LONG_MEMORY) & (longest > _LONG_SLIDE)
+
+
 def _ridden(sweep: _Sweep, every: _Cellwise, viscosity: np.ndarray) -> _Cellwise:
     """The same cells, with the rides of those that remember too many slips for windows."""
-    longest = np.max(np.abs(np.diff(sweep.path.states)), initial=0.0) / every.eps
-    long = (every.needs.warm > LONG_MEMORY) & (longest > _LONG_SLIDE)
+    long = remembers_long(sweep.path, every.eps, every.needs)
     if not long.any():
         return every
     rounds = sweep.rounds(every.ground, every.cells)

@@ -56,12 +56,14 @@ class Plan(NamedTuple):
 class Landscape(eqx.Module):
     """What step control needs to know of the wiggly force in the tip coordinate.
 
-    `fold_curvature`: |W'''| at the sharper of the two extreme folds, in N. `steepest`: max
-    |W''| in N. `branch`: width in periods of the narrowest branch on which `W'` is
-    monotone; a tip must cross a falling one to change wells. `stretch`: largest G.
+    `fold_curvature`, `flat_curvature`: |W'''| at the sharper and at the flatter of the two
+    extreme folds, in N. `steepest`: max |W''| in N. `branch`: width in periods of the
+    narrowest branch on which `W'` is monotone; a tip must cross a falling one to change
+    wells. `stretch`: largest G.
     """
 
     fold_curvature: Real
+    flat_curvature: Real
     steepest: Real
     branch: Real
     stretch: Real
@@ -87,6 +89,7 @@ def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
     curvatures = jnp.abs(bend(jnp.stack([top, bottom])))
     return Landscape(
         fold_curvature=jnp.max(curvatures),
+        flat_curvature=jnp.min(curvatures),
         steepest=jnp.max(jnp.abs(slopes)),
         branch=jnp.minimum(_narrowest_run(slopes) / points, 0.5),
         stretch=jnp.max(stretches),
@@ -139,7 +142,7 @@ def remembered_slips(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> R
     less at gamma = 1.
     """
     speed = pull.fastest / pull.softest
-    bend = jnp.maximum(ground.fold_curvature, 1e-300)
+    bend = jnp.maximum(ground.flat_curvature, 1e-300)
     return 4 * jnp.pi**2 * speed**2 * eps ** (2 * gamma - 1) / (bend * pull.softest)
 
 

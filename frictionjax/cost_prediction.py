@@ -1,0 +1,162 @@
+"""What a sweep will cost, before anything runs, and which sweep fits a budget."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .admissibility import require_reach
+from .arguments import as_real, require, require_real, require_x64
+from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
+from .scene import Scene, require_times
+from .sweeps import grid_of
+from .wiggly.methods import OURS, is_ours
+from .wiggly.trajectory import require_accuracy
+from .wiggly.workload import Workload, workload
+
+_WITHIN = 2.0  # factor that nine of ten cells stay within
+_LEAST_EPS = 4  # that an order needs
+# Bytes of one lane's rows in all tables and of one value, with the copies made on the way.
+_JOB_BYTES, _VALUE_BYTES = 4e3, 100.0
+ACCURACIES = (1e-6, 1e-5, 1e-4, 1e-3)
+
+
+class CostPrediction(NamedTuple):
+    """Predicted cost of a sweep on this machine.
+
+    `seconds`: of the warm sweep, NaN where the load turns more often than lanes have room
+    for; `low`, `high`: half and twice that, which nine of ten cells kept to. `cells`: each
+    cell alone, s, shape (gamma, eps). `compilation`: s that the first sweep of its kind may
+    take longer. `memory`: of the process, bytes. `measured`: whether this machine was
+    measured; else the numbers are those of another one.
+    """
+
+    seconds: float
+    cells: np.ndarray
+    compilation: float
+    memory: float
+    measured: bool
+
+    @property
+    def low(self) -> float:
+        return self.seconds / _WITHIN
+
+    @property
+    def high(self) -> float:
+        return self.seconds * _WITHIN
+
+    def __str__(self) -> str:
+        if not np.isfinite(self.seconds):
+            return "unknown: the load turns too often for lanes"
+        where = "" if self.measured else " (another machine; this one is not measured)"
+        return (
+            f"{_seconds(self.low)} to {_seconds(self.high)} s of computation, up to "
+            f"{_seconds(self.compilation)} s of compilation the first time, "
+            f"{self.memory / 1e9:.1f} GB{where}"
+        )
+
+
+def _seconds(value: float) -> str:
+    return f"{value:.2g}" if value < 100 else f"{value:.0f}"
+
+
+def _predicted(
+    scene: Scene, eps, gamma, times: int, accuracy, method, machine: MachineCost
+) -> CostPrediction:
+    cells = np.tile(eps, gamma.size), np.repeat(gamma, eps.size)
+    work = workload(scene, *cells, times, accuracy, method)
+    values = 2.0 * cells[0].size * times
+    if work is None:
+        nothing = np.full((gamma.size, eps.size), np.nan)
+        return CostPrediction(np.nan, nothing, np.nan, machine.memory, machine.measured)
+    each = [machine.seconds(_one(work, i)) for i in range(cells[0].size)]
+    memory = machine.memory + _JOB_BYTES * work.jobs.sum() + _VALUE_BYTES * values
+    return CostPrediction(
+        machine.seconds(work),
+        np.reshape(each, (gamma.size, eps.size)),
+        machine.compilation,
+        float(memory),
+        machine.measured,
+    )
+
+
+def _one(work: Workload, cell: int) -> Workload:
+    some = slice(cell, cell + 1)
+    return Workload(work.steps[some], work.chain[some], work.jobs[some], work.weight)
+
+
+def predict_cost(
+    scene: Scene,
+    eps: Any,
+    gamma: Any = 1.0,
+    accuracy: Any = 1e-3,
+    ts: Any = None,
+    method: str = "auto",
+    *,
+    measure: bool = True,
+) -> CostPrediction:
+    """Time and memory of `sweep` with these arguments, before anything runs.
+
+    `eps` in m and `gamma`: numbers or lists; the rest as in `sweep`, and `method` one of
+    the library's own. The first call on a machine measures it, under 10 s, and keeps that
+    in the user's cache folder; `measure=False` takes another machine's numbers instead.
+
+    The work of lanes follows from the plan of the sweep: wells, windows, tolerances. Where
+    surveys have to be made again, which nobody knows before, a cell takes longer.
+
+    Raises `ValueError` for arguments out of range, as `sweep` does.
+    """
+    require_x64(scene)
+    eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
+    require_accuracy(accuracy)
+    require(is_ours(method), "method", method, f"one of {', '.join(OURS)}")
+    ts = require_times(scene, ts)
+    require_reach(scene.potential, eps)
+    machine = machine_cost() if measure else known_machine() or ELSEWHERE
+    wanted = float(as_real(accuracy))
+    return _predicted(scene, eps, gamma, len(ts), wanted, method, machine)
+
+
+class Affordable(NamedTuple):
+    """A sweep that fits a budget: its eps (m), accuracy and predicted cost."""
+
+    eps: np.ndarray
+    accuracy: float
+    cost: CostPrediction
+
+
+def fit_budget(
+    scene: Scene,
+    eps: Any,
+    gamma: Any,
+    seconds: float,
+    ts: Any = None,
+    method: str = "auto",
+    accuracies: Sequence[float] = ACCURACIES,
+) -> Affordable:
+    """The tightest of `accuracies` that fits into `seconds`; with fewer eps if none does.
+
+    Compilation is not counted. Where even the loosest does not fit, the dearest eps go
+    first, until four are left, the fewest that give an order.
+
+    Raises `ValueError` for a budget that is not positive, or that nothing fits into.
+    """
+    require_real("budget", seconds, "budget > 0, s", lambda s: s > 0)
+    values = grid_of("eps", eps)
+    for accuracy in sorted(accuracies):
+        cost = predict_cost(scene, values, gamma, accuracy, ts, method)
+        if cost.seconds <= seconds:
+            return Affordable(values, accuracy, cost)
+    while values.size > min(_LEAST_EPS, values.size):
+        values = np.delete(values, _dearest(cost))
+        cost = predict_cost(scene, values, gamma, accuracy, ts, method)
+        if cost.seconds <= seconds:
+            return Affordable(values, accuracy, cost)
+    needs = f"at least {cost.seconds:.2g} s, for {values.size} eps at {accuracy:.0e}"
+    raise ValueError(f"budget = {seconds:g}: needs {needs}")
+
+
+def _dearest(cost: CostPrediction) -> int:
+    """The eps whose cells cost most; the smallest of equals."""
+    each = cost.cells.sum(axis=0)
+    return int(each.size - 1 - np.argmax(each[::-1]))

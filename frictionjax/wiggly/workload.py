@@ -1,0 +1,97 @@
+"""How much work the lanes will have, from the plan alone: nothing is integrated."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..profiles import Fourier
+from ..scene import Scene
+from .engine import LOOSEST, lane_scene, planned, remembers_long, scheme_of
+from .layout import Needs, cost_of, wells_of
+from .path import Path, path_of
+
+# Steps a well: exp of a polynomial in the orders of magnitude of tolerance and drag, and
+# in the lag. 73 cells of two scenes (vertical and angular, gamma 0.5 to 2, eps 1e-1 to
+# 1e-4, accuracy 1e-3 to 1e-6) lie within a factor of 1.3 of it (rms), 89% within 1.5.
+_CONSTANT, _TOLERANCE, _SQUARE = 3.905, -0.493, 0.066
+_LAG, _DRAG, _SMALL_DRAG, _KNEE = -0.103, 0.086, 1.047, 1.0
+# Rides, in the same cells: steps over those of one run-up; and wells that lanes, one after
+# the other, wait for each other. Both for a thousand wells, and how they grow with wells.
+_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH = 3.3, 1.9e4, 0.4
+_FREE, _HARMONIC = 4, 0.08  # harmonics that cost nothing, and what each more adds
+
+
+class Workload(NamedTuple):
+    """Work of lanes in each cell, shape (cells,).
+
+    `steps`: of all lanes. `chain`: those that one lane takes after the other. `jobs`:
+    lanes that set off. `weight`: of a step, relative to a profile of few harmonics and a
+    scheme of eight stages.
+    """
+
+    steps: np.ndarray
+    chain: np.ndarray
+    jobs: np.ndarray
+    weight: float
+
+
+def workload(
+    scene: Scene,
+    eps: np.ndarray,
+    gamma: np.ndarray,
+    times: int,
+    accuracy: float,
+    method: str,
+) -> Workload | None:
+    """Work of the cells (eps, gamma), shape (cells,); None where lanes do not serve."""
+    path = path_of(scene)
+    if path is None:
+        return None
+    accuracy = min(accuracy, LOOSEST)
+    lanes = lane_scene(scene, float(eps.max()))
+    plan = planned(scene, lanes, path, eps, gamma, times, accuracy, method)
+    control, ground, needs = plan
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
+    drag = eps**gamma * path.speed / (path.rho_plus - path.rho_minus)
+    steps = _steps_a_well(np.asarray(control.tolerance), lag, np.asarray(drag))
+    total = steps * cost_of(path, eps, needs, times)
+    chain = steps * _longest_lane(path, eps, needs)
+    if method != "resolved":
+        ridden = remembers_long(path, eps, needs)
+        growth = (path.travel[-1] / eps / 1e3) ** _RIDE_GROWTH
+        total = np.where(ridden, _RIDE_STEPS * needs.warm * steps * growth, total)
+        chain = np.where(ridden, _RIDE_CHAIN * steps * growth, chain)
+    stages = len(scheme_of(float(np.min(control.tolerance))).tableau.a)
+    weight = _weight_of(scene) * stages / 8
+    return Workload(total, chain, _jobs(path, eps, needs, times), weight)
+
+
+def _steps_a_well(tolerance: np.ndarray, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
+    tight, smooth = -np.log10(tolerance), -np.log10(drag)
+    return np.exp(
+        _CONSTANT
+        + _TOLERANCE * tight
+        + _SQUARE * tight**2
+        + _LAG * np.log1p(lag)
+        + _DRAG * smooth
+        + _SMALL_DRAG * np.minimum(smooth, _KNEE)
+    )
+
+
+def _longest_lane(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:
+    """Wells of a tile and its run-up, at most all of them."""
+    return np.minimum(path.travel[-1] / eps, np.minimum(needs.tile, 1e300) + needs.warm)
+
+
+def _jobs(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray:
+    """Two lanes for each window."""
+    outer, inner = wells_of(path, eps, needs)
+    shown = times * inner / np.maximum(inner + outer, 1e-9)
+    slides = np.count_nonzero(path.direction)
+    return 2 * (1 + outer / needs.tile + needs.nodes * slides * (inner > 0) + shown)
+
+
+def _weight_of(scene: Scene) -> float:
+    profile = scene.profile
+    harmonics = profile.cos.shape[0] if isinstance(profile, Fourier) else 1
+    return 1.0 + _HARMONIC * max(0, harmonics - _FREE)

@@ -1,0 +1,198 @@
+"""Predicted cost: work from the plan, seconds from a measured machine, budgets."""
+
+import json
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax import cost_prediction, machine_cost
+from frictionjax.machine_cost import ELSEWHERE, MachineCost, keep_machine, known_machine
+from frictionjax.report.job import read_job
+from frictionjax.report.study import expected_cost, within_budget
+from frictionjax.wiggly.workload import workload
+
+TIMES = np.linspace(0.0, 3.0, 61)
+MACHINE = MachineCost(0.01, 0.002, 1e-5, 1e-7, 1e-6, 5.0, 1e9)
+
+
+def scene_of(load=None):
+    return fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        fx.supports.Spring(1.0),
+        load or fx.loads.Sine(1.0488, 3.0),
+        duration=3.0,
+    )
+
+
+@pytest.fixture(autouse=True)
+def known(monkeypatch):
+    """A machine that is known: tests measure none."""
+    monkeypatch.setattr(cost_prediction, "machine_cost", lambda: MACHINE)
+
+
+@pytest.mark.parametrize(
+    ("eps", "gamma", "accuracy", "method"),
+    [
+        (5e-2, 1.0, 1e-3, "auto"),
+        (2e-3, 2.0, 1e-3, "auto"),
+        (1e-5, 1.0, 1e-3, "auto"),
+        (1e-2, 1.0, 1e-5, "auto"),
+        (5e-3, 1.0, 1e-3, "resolved"),
+        (2e-3, 0.5, 1e-3, "auto"),
+    ],
+)
+def test_the_work_is_foreseen(eps, gamma, accuracy, method):
+    cell = np.array([eps]), np.array([gamma])
+    work = workload(scene_of(), *cell, TIMES.size, accuracy, method)
+    data = fx.sweep(scene_of(), *cell, TIMES, accuracy, method)
+    ratio = float(data.steps.squeeze()) / float(work.steps[0])
+    assert 0.5 < ratio < 2, ratio  # 0.57 to 1.4
+
+
+def test_work_follows_from_the_numbers():
+    grid = np.array([1e-2, 1e-3]), np.array([1.0, 1.0])
+    every = workload(scene_of(), *grid, TIMES.size, 1e-3, "resolved")
+    assert every.steps[1] == pytest.approx(10 * every.steps[0], rel=0.5)
+    small = np.array([1e-5, 1e-7]), np.array([1.0, 1.0])
+    some = workload(scene_of(), *small, TIMES.size, 1e-3, "windowed")
+    assert some.steps[1] < 2 * some.steps[0]
+    waves = fx.profiles.Fourier(np.zeros(16), 0.01 * np.eye(16)[0])
+    parts = scene_of()
+    bumpy = fx.Scene(waves, parts.bristle, parts.support, parts.load, 3.0)
+    assert workload(bumpy, *grid, TIMES.size, 1e-3, "resolved").weight > every.weight
+
+
+def test_a_machine_is_found_from_its_times(monkeypatch):
+    true = MachineCost(0.02, 0.005, 0.0, 2e-7, 3e-6, 0.0, 0.0)
+
+    def clocked(scene, eps, gamma, method):
+        cells = np.tile(eps, len(gamma)), np.repeat(gamma, len(eps))
+        return true.seconds(workload(scene, *cells, TIMES.size, 1e-3, method)), 0.5
+
+    monkeypatch.setattr(machine_cost, "_clocked", clocked)
+    found = machine_cost.measure_machine()
+    assert found[:5] == pytest.approx(true[:5], rel=1e-6, abs=1e-9)
+    assert found.compilation == pytest.approx(0.5 * len(machine_cost._RUNS))
+    assert 1e8 < found.memory < 1e11
+
+
+def test_a_measurement_is_kept(tmp_path, monkeypatch):
+    assert known_machine(tmp_path) is None
+    keep_machine(MACHINE, tmp_path)
+    assert known_machine(tmp_path) == MACHINE
+    # Other flags are another machine, and both are kept.
+    with monkeypatch.context() as change:
+        change.setenv("XLA_FLAGS", "--other")
+        assert known_machine(tmp_path) is None
+        keep_machine(MACHINE._replace(call=1.0), tmp_path)
+    assert known_machine(tmp_path) == MACHINE
+    path = tmp_path / "cost.json"
+    assert len(json.loads(path.read_text())) == 2
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{", '{"a": 1}'])
+def test_a_spoiled_file_is_no_measurement(tmp_path, text):
+    (tmp_path / "cost.json").write_text(text)
+    assert known_machine(tmp_path) is None
+    keep_machine(MACHINE, tmp_path)
+    assert known_machine(tmp_path) == MACHINE
+
+
+def test_a_spoiled_number_is_no_measurement(tmp_path):
+    keep_machine(MACHINE, tmp_path)
+    path = tmp_path / "cost.json"
+    for bad in ("NaN", "-1.0", '"1"'):
+        path.write_text(path.read_text().replace(json.dumps(MACHINE.call), bad))
+        assert known_machine(tmp_path) is None
+        keep_machine(MACHINE, tmp_path)
+
+
+def test_measured_once(tmp_path, monkeypatch):
+    times = []
+    monkeypatch.setattr(machine_cost, "measure_machine", lambda: times.append(1) or MACHINE)
+    for _ in range(2):
+        assert machine_cost.machine_cost(tmp_path) == MACHINE
+    assert len(times) == 1
+    machine_cost.machine_cost(tmp_path, again=True)
+    assert len(times) == 2
+
+
+def test_prediction_of_a_sweep():
+    eps, gamma = [1e-2, 1e-3], [1.0, 2.0]
+    cost = fx.predict_cost(scene_of(), eps, gamma, 1e-3, TIMES)
+    assert cost.cells.shape == (2, 2)
+    # One sweep shares its calls and cores.
+    assert cost.cells.max() < cost.seconds < cost.cells.sum()
+    assert cost.low < cost.seconds < cost.high
+    assert cost.compilation == MACHINE.compilation
+    assert cost.memory > MACHINE.memory
+    alone = fx.predict_cost(scene_of(), 1e-3, 1.0, 1e-3, TIMES)
+    assert alone.seconds == pytest.approx(cost.cells[0, 1])
+    assert "another machine" not in str(cost)
+    assert "GB" in str(cost)
+
+
+def test_without_a_measurement_the_prediction_says_so(monkeypatch):
+    monkeypatch.setattr(cost_prediction, "known_machine", lambda: None)
+    cost = fx.predict_cost(scene_of(), 1e-2, 1.0, measure=False)
+    assert not cost.measured
+    assert "another machine" in str(cost)
+    assert cost.compilation == ELSEWHERE.compilation
+
+
+def test_too_many_turns_are_unknown(monkeypatch):
+    monkeypatch.setattr(cost_prediction, "workload", lambda *parts: None)
+    cost = fx.predict_cost(scene_of(), [1e-2, 1e-3], 1.0)
+    assert np.isnan(cost.seconds)
+    assert "unknown" in str(cost)
+
+
+def test_budgets(monkeypatch):
+    eps = np.geomspace(1e-1, 1e-6, 12)
+    plenty = fx.fit_budget(scene_of(), eps, 1.0, 1e3, TIMES)
+    assert plenty.accuracy == 1e-6
+    assert plenty.eps.size == 12
+    loose, tight = (
+        fx.predict_cost(scene_of(), eps, 1.0, a, TIMES).seconds for a in (1e-3, 1e-6)
+    )
+    middle = fx.fit_budget(scene_of(), eps, 1.0, np.sqrt(loose * tight), TIMES)
+    assert 1e-6 < middle.accuracy <= 1e-3
+    assert middle.eps.size == 12
+    assert middle.cost.seconds <= np.sqrt(loose * tight)
+    fewer = fx.fit_budget(scene_of(), eps, 1.0, 0.6 * loose, TIMES)
+    assert fewer.accuracy == 1e-3
+    assert 4 <= fewer.eps.size < 12
+    assert set(fewer.eps) < set(eps)
+    with pytest.raises(ValueError, match=r"budget = 1e-06: needs at least .* for 4 eps"):
+        fx.fit_budget(scene_of(), eps, 1.0, 1e-6, TIMES)
+
+
+def test_bad_arguments_are_named():
+    for change, message in [
+        ({"eps": -1.0}, "eps = -1"),
+        ({"gamma": "one"}, "gamma = "),
+        ({"accuracy": 0.0}, "accuracy = 0"),
+        ({"method": "Kvaerno5"}, "method = 'Kvaerno5': needs one of auto"),
+        ({"ts": [4.0]}, "ts = "),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            fx.predict_cost(scene_of(), **{"eps": 1e-2, **change})
+    for budget in (0.0, np.nan, [1.0, 2.0]):
+        with pytest.raises(ValueError, match="budget = "):
+            fx.fit_budget(scene_of(), 1e-2, 1.0, budget)
+
+
+def test_a_study_within_a_budget():
+    job = read_job(None)
+    job = job._replace(study=job.study | {"gamma": [1.0]})
+    some = within_budget(job, 1e3, "auto", None)
+    assert some.study["accuracy"] == 1e-6
+    assert some.study["eps"] == sorted(job.study["eps"], reverse=True)
+    cost = expected_cost(job, "auto")
+    fewer = within_budget(job, 0.6 * cost.seconds, "auto", 1e-3)
+    assert fewer.study["accuracy"] == 1e-3
+    assert 4 <= len(fewer.study["eps"]) < len(job.study["eps"])
+    assert "Budget of" in fewer.notes[-1]
+    assert expected_cost(job, "Kvaerno5") is None
