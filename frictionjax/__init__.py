@@ -29,6 +29,7 @@ _HOME = {
     "study": "studies",
     "work_precision": "cost_of_accuracy",
     "predict_cost": "cost_prediction",
+    "order_cost": "eps_grids",
     "fit_budget": "cost_prediction",
     "load_scene": "scene_files",
     "save_scene": "scene_files",
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from .cost_of_accuracy import work_precision as work_precision
     from .cost_prediction import fit_budget as fit_budget
     from .cost_prediction import predict_cost as predict_cost
+    from .eps_grids import order_cost as order_cost
     from .friction_law import friction as friction
     from .limit_system import solve_limit as solve_limit
     from .potentials import GivenPotential as GivenPotential

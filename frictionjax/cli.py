@@ -200,6 +200,11 @@ def study(
     show_default=True,
     help="After which a run is ended.",
 )
+@click.option(
+    "--order-within",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Instead: which eps give the order of convergence to +- this, and in which time.",
+)
 @click.option("--out", default="frictionjax-cost", show_default=True, metavar="DIR")
 @click.option("--progress/--no-progress", default=True, help="A bar on standard error.")
 def cost(
@@ -209,18 +214,26 @@ def cost(
     accuracies: str | None,
     methods: str | None,
     seconds: float,
+    order_within: float | None,
     out: str,
     progress: bool,
     **surface: Any,
 ) -> None:
     """What accuracy costs in time: this library's methods and general solvers."""
     _start()
-    from .report.cost import chosen_eps, run_cost
+    from .report.cost import chosen_eps, run_cost, run_order_cost
     from .report.folder import require_folder
     from .report.job import number_list, read_job
 
     folder = require_folder(out)
     job = read_job(scene, **surface)
+    if order_within is not None:
+        given = {"eps": eps, "gamma": gamma}
+        some = {k: number_list(k, v) for k, v in given.items() if v is not None}
+        job = job._replace(study=job.study | some)
+        within = order_within
+        click.echo(_interruptible(lambda: run_order_cost(job, within)))
+        return
     cells = {
         "eps": number_list("eps", eps) if eps else chosen_eps(job.scene, job.study["eps"]),
         "gamma": number_list("gamma", gamma) if gamma else [1.0],

@@ -7,6 +7,7 @@ import numpy as np
 
 from .admissibility import require_reach
 from .arguments import as_real, require, require_real, require_x64
+from .limit_system import require_start_in_strip
 from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
 from .scene import Scene, require_times
 from .sweeps import grid_of
@@ -111,6 +112,7 @@ def predict_cost(
     require_accuracy(accuracy)
     require(is_ours(method), "method", method, f"one of {', '.join(OURS)}")
     ts = require_times(scene, ts)
+    require_start_in_strip(scene)
     require_reach(scene.potential, eps)
     machine = machine_cost() if measure else known_machine() or ELSEWHERE
     wanted = float(as_real(accuracy))

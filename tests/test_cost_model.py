@@ -29,7 +29,8 @@ def scene_of(load=None):
 @pytest.fixture(autouse=True)
 def known(monkeypatch):
     """A machine that is known: tests measure none."""
-    monkeypatch.setattr(cost_prediction, "machine_cost", lambda: MACHINE)
+    for name in ("machine_cost", "known_machine"):
+        monkeypatch.setattr(cost_prediction, name, lambda: MACHINE)
 
 
 @pytest.mark.parametrize(

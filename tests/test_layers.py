@@ -30,6 +30,7 @@ FLOORS = [
     {"orders"},
     {"instants", "timed_runs", "machine_cost"},
     {"cost_prediction"},
+    {"eps_grids"},
     {"error_measures"},
     {"references"},
     {"cost_of_accuracy"},
