@@ -4,6 +4,10 @@ Scenes of one kind share their compiled programs: they differ in numbers alone.
 """
 
 import math
+import os
+import subprocess
+import sys
+from pathlib import Path
 from typing import NamedTuple
 
 import jax
@@ -14,6 +18,7 @@ from scipy.optimize import brentq
 from test_trajectories import angular, piecewise
 
 import frictionjax as fx
+from frictionjax.compilation import FAST_CPU_FLAGS
 
 END, TIMES = 3.0, np.linspace(0.0, 3.0, 61)
 CALM = [0.0, 0.7, 0.7, -0.6, -0.6, 0.3, 0.3]
@@ -240,6 +245,38 @@ def test_a_sawtooth_of_64_harmonics():
         **{**system_of(Hard("")).__dict__, "w": ref.series(list(cos), list(sin))}
     )
     check(scene, system, 0.1, 1.0, 0.0)
+
+
+_SCRIPT = """
+import sys, jax
+jax.config.update("jax_enable_x64", True)
+import numpy as np, frictionjax as fx
+from test_hard_cases import HARD, TIMES, scene_of
+found = {}
+for name in ("gamma 4", "gamma 0.05", "alpha < 0", "two folds", "fast part", "on a summit"):
+    one = HARD[name]
+    data = fx.sweep(scene_of(one), one.eps, one.gamma, TIMES).isel(gamma=0, eps=0)
+    found[name] = np.stack([data.z / one.eps, data.dissipation / data.dissipation[-1]])
+np.savez(sys.argv[1], **found)
+"""
+
+
+@pytest.mark.slow
+def test_compiler_flags_do_not_matter(tmp_path):
+    flags = {
+        "plain": "",
+        "fast": FAST_CPU_FLAGS,
+        "quick": "--xla_backend_optimization_level=0",
+    }
+    found = {}
+    for name, value in flags.items():
+        path, here = tmp_path / f"{name}.npz", str(Path(__file__).parent)
+        env = os.environ | {"XLA_FLAGS": value, "PYTHONPATH": here}
+        subprocess.run([sys.executable, "-c", _SCRIPT, path], check=True, env=env)
+        found[name] = dict(np.load(path))
+    for name in ("fast", "quick"):
+        for scene, values in found["plain"].items():
+            assert np.abs(found[name][scene] - values).max() < 1e-6, (name, scene)
 
 
 def test_eps_over_seven_decades_in_one_batch():

@@ -167,7 +167,8 @@ def run_ups(rounds: Rounds, windows: Windows, warm: np.ndarray) -> np.ndarray:
     Slides remember in proportion to the square of their speed.
     """
     wells = warm[windows.cell].astype(float)
-    if not np.any((wells > LONG_MEMORY) & np.isfinite(wells)):
+    long = (wells > LONG_MEMORY) & np.isfinite(wells)
+    if not long.any():
         return wells
     near = np.full(wells.size, MARGIN + 1.0)
     where = windows.cell, windows.begin, near, near
@@ -175,4 +176,5 @@ def run_ups(rounds: Rounds, windows: Windows, warm: np.ndarray) -> np.ndarray:
     states = states_at(rounds.scene, rounds.path, starts.time)
     share = slow_share(rounds.scene, rounds.path, starts.time, states)
     share = np.where(starts.ridden, 1.0, share)
-    return np.ceil(MARGIN + share * (wells - MARGIN))
+    # Others keep theirs: what they find must not depend on their neighbours.
+    return np.where(long, np.ceil(MARGIN + share * (wells - MARGIN)), wells)
