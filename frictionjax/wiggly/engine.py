@@ -30,8 +30,8 @@ from .tolerance import Folds, plan_steps, pull_of
 from .tolerance import Plan as StepPlan
 from .windows import Ground
 
-# Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as fast for
-# one cell, as lanes wait for the longest tile; three times: 0.7.) Of the whole sweep
+# Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as fast
+# for one cell, as lanes wait for the longest tile; three times: 0.7.) Of the whole sweep
 # (256) tiles were longer, a few percent of the steps fewer, and values depended on the
 # other cells, by up to a tenth of the accuracy.
 _TILES = 128
