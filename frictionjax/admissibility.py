@@ -55,6 +55,8 @@ def _require_slopes(
 ) -> None:
     low, high = float(found.omega_minus), float(found.omega_plus)
     a = float(found.a)
+    if lower < low < high < upper and min(1 + a * low, 1 + a * high) > 0:
+        return
     # The names alone: computing the bounds op by op takes 0.1 s, the first time.
     named = eqx.filter_eval_shape(potential.bristle.slope_bounds)
     lower_name, upper_name = named.lower_name, named.upper_name

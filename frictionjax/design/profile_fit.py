@@ -1,0 +1,223 @@
+"""A surface that gives the friction one wants: least bending energy at given targets."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..arguments import require, require_real
+from ..programs import room
+from .bending import free_energy
+from .constraints import Layout
+from .free_parameter import free_parameter, require_bounds, with_arrays
+from .interior import Task
+from .law import AbstractLaw, FixedLaw, FreeLaw
+from .profile_program import run
+from .profile_report import report
+from .profile_result import ProfileFit
+from .starts import places
+from .targets import Geometry, Target, extreme_slopes, known_geometry, require_targets
+
+_KEPT = 200  # steps that there is room for: other budgets compile nothing new
+_FIRM = 50.0  # above every multiplier of the extreme slopes, which their ratio raises
+
+
+class Problem(NamedTuple):
+    """A fit, checked: what was asked for and the task of the program.
+
+    `scale`: of the residuals that the program takes, so that the largest weighs 1.
+    """
+
+    targets: list[Target]
+    law: AbstractLaw
+    layout: Layout
+    task: Task
+    scale: float
+    bounds: dict[str, float | None]
+
+
+def fit_profile(
+    targets: Any,
+    harmonics: int = 16,
+    starts: int = 8,
+    free: Sequence[str] = (),
+    bounds: Mapping[str, Any] | None = None,
+    smallest_radius: float | None = None,
+    largest_amplitude: float | None = None,
+    seed: int = 0,
+    max_steps: int = 200,
+) -> ProfileFit:
+    """The least bent surface whose friction coefficients are the targets.
+
+    `targets`: a `Target` or several, one surface for all. `harmonics`: of the profile.
+    `starts`: optimisations from random surfaces, and free parameters, at once. `free`:
+    numbers of the bristles that are fitted too, by name, each within its `bounds`
+    `{name: (low, high)}`; a bristle in several targets is one bristle. `smallest_radius`:
+    of curvature, `1/max |w''|`, and `largest_amplitude`: `max w - min w`, in periods.
+
+    Coefficients see only the extreme slopes (Lemmas 2 and 3), so infinitely many surfaces
+    fit: this is the one with the least `int_0^1 w''^2`; `.bending_bound` proves how near.
+    `.identifiability` and `.family` say what is left open. Every iterate is admissible
+    (`1 + a omega > 0`, the bristles' own bounds) and keeps the other bounds with a margin
+    of 0.5%. Targets that no surface meets come back with the best weighted compromise and
+    a `.status` and `.message` that say why.
+
+    Raises `ValueError` for targets of the wrong sign, shape or kind, weights or
+    uncertainties that are not positive, bristles that press on nothing, and names and
+    bounds of free parameters that do not fit together.
+    """
+    asked = require_targets(targets)
+    for name, value in (("harmonics", harmonics), ("starts", starts)):
+        _require_whole(name, value)
+    _require_whole("max_steps", max_steps)
+    problem = problem_of(asked, harmonics, free, bounds, smallest_radius, largest_amplitude)
+    layout, law = problem.layout, problem.law
+    keys: Any = jax.random.split(jax.random.PRNGKey(seed), starts)
+    shares: Any = np.random.default_rng(seed).uniform(
+        0.02, 0.98, size=(starts, layout.free)
+    )
+    if isinstance(law, FreeLaw):
+        shares[0] = np.clip(np.asarray(law.shares()), 0.02, 0.98)
+    apart: Any = np.array(places(layout, starts))
+    kept = room(max_steps, _KEPT)
+    runs = run(layout, kept, np.asarray(max_steps), problem.task, apart, keys, shares)
+    return report(problem, jax.device_get(runs), apart)
+
+
+def _require_whole(name: str, value: Any) -> None:
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    require(whole and value >= 1, name, value, "a whole number >= 1")
+
+
+def problem_of(
+    targets: list[Target],
+    harmonics: int = 16,
+    free: Sequence[str] = (),
+    bounds: Mapping[str, Any] | None = None,
+    radius: float | None = None,
+    amplitude: float | None = None,
+) -> Problem:
+    """The problem of checked targets; see `fit_profile`."""
+    for name, value in (("smallest_radius", radius), ("largest_amplitude", amplitude)):
+        if value is not None:
+            require_real(name, value, f"{name} > 0 in periods", lambda v: v > 0)
+    law = _law(targets, free, bounds)
+    count = len(law.free) if isinstance(law, FreeLaw) else 0
+    layout = Layout(int(harmonics), radius is not None, amplitude is not None, count)
+    wanted = np.array([[float(t.rho_plus), float(t.rho_minus)] for t in targets])
+    sizes = np.abs(wanted)
+    if targets[0].uncertainty is not None:
+        sizes = np.array([np.broadcast_to(t.uncertainty, 2) for t in targets], dtype=float)
+    weights = np.array([[float(t.weight)] for t in targets])
+    factors = np.sqrt(weights) / sizes
+    scale = float(np.max(factors * np.abs(wanted)))
+    own: Any = law.shares() if isinstance(law, FreeLaw) else np.zeros(0)
+    plus, minus = _expected(wanted, Geometry(*map(np.asarray, law.at(own))))
+    slope = 0.5 * (plus + minus)
+    if radius is not None:
+        slope = min(slope, 0.25 / float(radius))
+    if amplitude is not None:
+        slope = min(slope, harmonics * float(amplitude))
+    uneven = max(plus / minus, minus / plus)
+    array: Any = np.asarray
+    task = Task(
+        law=law,
+        coefficients=array(wanted),
+        factors=array(factors / scale),
+        curvature=array(np.inf if radius is None else 1 / float(radius) / slope),
+        height=array(np.inf if amplitude is None else float(amplitude) / slope),
+        slope=array(slope),
+        energy=array(free_energy(plus / slope, minus / slope, harmonics)),
+        firm=array(_FIRM * min(uneven, float(harmonics))),
+    )
+    given = {
+        "smallest_radius": None if radius is None else float(radius),
+        "largest_amplitude": None if amplitude is None else float(amplitude),
+    }
+    return Problem(targets, law, layout, task, scale, given)
+
+
+def _expected(wanted: np.ndarray, known: Geometry) -> tuple[float, float]:
+    """Slopes of about the size asked for, inside what the bristles can follow."""
+    plus, minus = extreme_slopes(wanted[:, 0], wanted[:, 1], known.a, known.alpha)
+    highest, lowest = 0.9 * np.min(known.upper), -0.9 * np.max(known.lower)
+    mean_plus, mean_minus = (
+        float(np.mean(np.minimum(np.where(side > 0, side, np.inf), limit)))
+        for side, limit in ((plus, highest), (-minus, lowest))
+    )
+    finite = [side for side in (mean_plus, mean_minus) if np.isfinite(side)]
+    other = max(finite, default=1.0)
+    return min(mean_plus, 1e3 * other), min(mean_minus, 1e3 * other)
+
+
+def _law(
+    targets: list[Target], free: Sequence[str], bounds: Mapping[str, Any] | None
+) -> AbstractLaw:
+    names = [free] if isinstance(free, str) else list(free)
+    given = dict(bounds or {})
+    for name in given:
+        require(name in names, "bounds", name, f"names in free = {names}")
+    if not names:
+        known = [known_geometry(target.bristle) for target in targets]
+        return FixedLaw(jax.tree_util.tree_map(lambda *one: np.stack(one), *known))
+    distinct: list[Any] = []
+    which = [_index_of(target.bristle, distinct) for target in targets]
+    bristles = tuple(with_arrays(bristle) for bristle in distinct)
+    numbers, lows, highs = [], [], []
+    for name in names:
+        require(name in given, "bounds", sorted(given) or "{}", f"bounds of {name!r}")
+        for index, number in _numbers_called(name, bristles):
+            low, high = _bounds_of(name, number, bristles[index], given[name])
+            numbers.append((index, number))
+            lows.append(low)
+            highs.append(high)
+    law = FreeLaw(
+        bristles, tuple(which), tuple(numbers), jnp.asarray(lows), jnp.asarray(highs)
+    )
+    _require_geometry(law, names)
+    return law
+
+
+def _index_of(bristle: Any, distinct: list[Any]) -> int:
+    for index, known in enumerate(distinct):
+        if known is bristle:
+            return index
+    distinct.append(bristle)
+    return len(distinct) - 1
+
+
+def _numbers_called(name: str, bristles: tuple) -> list[tuple[int, Any]]:
+    found, problem = [], None
+    for index, bristle in enumerate(bristles):
+        try:
+            found.append((index, free_parameter(bristle, name)))
+        except ValueError as error:
+            problem = error
+    if not found and problem is not None:
+        raise problem
+    return found
+
+
+def _bounds_of(name: str, number: Any, bristle: Any, given: Any) -> tuple[float, float]:
+    require(given is not None, f"bounds of {name!r}", None, "a pair (low, high)")
+    require_bounds(number, given)
+    low, high = (float(end) for end in given)
+    own = float(number.now(bristle))
+    inside = low <= own <= high
+    require(inside, f"bounds of {name!r}", (low, high), f"low <= {own:.6g} <= high")
+    return low, high
+
+
+def _require_geometry(law: FreeLaw, names: list[str]) -> None:
+    """Every free parameter at either end leaves a bristle there is."""
+    own = np.asarray(law.shares())
+    for index, (_, number) in enumerate(law.free):
+        for end in (0.0, 1.0):
+            share = own.copy()
+            share[index] = end
+            known = Geometry(*map(np.asarray, law.at(jnp.asarray(share))))
+            good = np.all(np.isfinite(known.a)) and np.all(np.isfinite(known.alpha))
+            value = float(law.values(jnp.asarray(share))[index])
+            require(good, f"bounds of {number.name!r}", value, "a bristle with that number")

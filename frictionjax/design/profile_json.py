@@ -1,0 +1,154 @@
+"""Fits of profiles as JSON, and back."""
+
+import dataclasses
+import json
+from pathlib import Path
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+
+from .. import bristles
+from ..arguments import require
+from ..coefficients import Coefficients
+from ..profiles import Fourier
+from .open_directions import Identifiability
+from .profile_history import History, Start
+from .profile_status import ProfileStatus
+
+_KIND = "frictionjax.ProfileFit"
+_SHAPES = ("cos", "sin", "free")  # of iterates: most of the numbers, left out
+_KINDS = ("Homothetic", "VerticalSpring", "SlantedSpring", "AngularSpring")
+_PLAIN = (
+    "bending_energy",
+    "bending_bound",
+    "largest_error",
+    "chi2",
+    "degrees_of_freedom",
+    "misfit",
+    "success",
+    "message",
+    "free",
+    "bounds",
+)
+_PARTS = (
+    "profile",
+    "bristles",
+    "coefficients",
+    "targets",
+    "residuals",
+    "status",
+    "starts",
+    "identifiability",
+)
+
+
+def dump(fit: Any) -> str:
+    """The JSON text of a fit; numbers keep all digits, those not finite become null."""
+    document: dict[str, Any] = {"kind": _KIND, "status": fit.status.name}
+    document |= {name: getattr(fit, name) for name in _PLAIN}
+    document["profile"] = {"cos": _rows(fit.profile.cos), "sin": _rows(fit.profile.sin)}
+    document["bristles"] = [_bristle(bristle) for bristle in fit.bristles]
+    document["coefficients"] = [
+        {name: float(value) for name, value in vars(found).items()}
+        for found in fit.coefficients
+    ]
+    for name in ("targets", "residuals"):
+        document[name] = _rows(getattr(fit, name))
+    document["starts"] = [
+        start._asdict() | {"status": start.status.name} for start in fit.starts
+    ]
+    if fit.history is not None:
+        kept = fit.history._asdict().items()
+        document["history"] = {k: _rows(v) for k, v in kept if k not in _SHAPES}
+    seen = fit.identifiability._asdict()
+    document["identifiability"] = {
+        name: value if name == "rank" else _rows(value) for name, value in seen.items()
+    }
+    return json.dumps(_finite(document), indent=1)
+
+
+def fields(source: Any) -> dict[str, Any]:
+    """The fields of a fit, of a JSON text or file; see `ProfileFit.from_json`."""
+    text = str(source)
+    if not text.lstrip().startswith("{"):
+        try:
+            text = Path(source).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError):
+            require(False, "source", str(source), "the text or the file of a fit's JSON")
+    try:
+        document = json.loads(text)
+    except json.JSONDecodeError as problem:
+        raise ValueError(f"source: not JSON ({problem})") from None
+    known = isinstance(document, dict) and document.get("kind") == _KIND
+    require(known, "source", "another document", f"JSON with kind = {_KIND!r}")
+    missing = sorted({*_PLAIN, *_PARTS} - set(document))
+    require(not missing, "source", f"without {', '.join(missing)}", "a whole fit")
+    return _fields(document)
+
+
+def _fields(document: dict[str, Any]) -> dict[str, Any]:
+    profile: dict[str, Any] = {k: np.array(v) for k, v in document["profile"].items()}
+    history = document.get("history")
+    seen: dict[str, Any] = document["identifiability"]
+    seen = {k: v if k == "rank" else _array(v) for k, v in seen.items()}
+    return {name: _number(document[name]) for name in _PLAIN} | {
+        "profile": Fourier(**profile),
+        "bristles": tuple(_built(entry) for entry in document["bristles"]),
+        "coefficients": tuple(Coefficients(**found) for found in document["coefficients"]),
+        "targets": _array(document["targets"]),
+        "residuals": _array(document["residuals"]),
+        "status": ProfileStatus[document["status"]],
+        "starts": tuple(_start(entry) for entry in document["starts"]),
+        "history": None if history is None else _history(history),
+        "identifiability": Identifiability(**seen),
+    }
+
+
+def _start(entry: dict[str, Any]) -> Start:
+    numbers = {name: _number(value) for name, value in entry.items()}
+    status = ProfileStatus[entry["status"]]
+    return Start(**numbers | {"status": status, "free": tuple(entry["free"])})
+
+
+def _history(entry: dict[str, Any]) -> History:
+    columns = {name: _array(rows) for name, rows in entry.items()}
+    empty = np.zeros((*columns["loss"].shape, 0))
+    return History(**columns, **dict.fromkeys(_SHAPES, empty))
+
+
+def _bristle(bristle: Any) -> dict[str, Any]:
+    kind = type(bristle).__name__
+    if kind not in _KINDS or type(bristle) is not getattr(bristles, kind):
+        return {"kind": kind}  # functions cannot be saved
+    names = [field.name for field in dataclasses.fields(bristle)]
+    return {"kind": kind} | {name: float(getattr(bristle, name)) for name in names}
+
+
+def _built(entry: dict[str, Any]) -> eqx.Module | None:
+    numbers = dict(entry)
+    kind = numbers.pop("kind")
+    return getattr(bristles, kind)(**numbers) if numbers else None
+
+
+def _rows(values: Any) -> Any:
+    return np.asarray(values, dtype=float).tolist()
+
+
+def _array(rows: Any) -> np.ndarray:
+    return np.array(rows, dtype=float)  # null becomes NaN
+
+
+def _number(value: Any) -> Any:
+    return float("nan") if value is None else value
+
+
+def _finite(value: Any) -> Any:
+    """JSON has no NaN."""
+    if isinstance(value, dict):
+        return {name: _finite(entry) for name, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(entry) for entry in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,218 @@
+"""From what the program computed to what the user is told."""
+
+from typing import Any
+
+import numpy as np
+
+from ..arguments import as_text
+from ..friction_law import friction
+from ..profiles import Fourier
+from .bending import bending_energy
+from .constraints import MARGIN, heights_of
+from .law import FreeLaw
+from .open_directions import identifiability
+from .profile_history import History, Start
+from .profile_program import Runs
+from .profile_result import ProfileFit
+from .profile_status import MET, ProfileStatus
+from .reachable import reachable_share, reachable_text
+from .targets import Geometry
+
+_MET = 1e-9  # relative error of a coefficient that counts as met
+_SURE = 0.99  # of random targets that agree with one surface have a smaller chi2
+_TIE = 1e-9  # relative difference of losses that counts as none
+_NEAR = 1e-3  # share of a bound that counts as reached
+
+
+def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
+    """The result of the best start; see `ProfileFit`."""
+    task, layout = problem.task, problem.layout
+    slope = float(task.slope)
+    losses = np.sum(np.asarray(runs.settled.residuals) ** 2, axis=1) * problem.scale**2
+    energies = slope**2 * np.sum(np.asarray(runs.settled.waves) ** 2, axis=1)
+    order = _sorted(losses, energies)
+    best = int(order[0])
+    waves: Any = runs.settled.waves[best]
+    cos, sin = (slope * np.asarray(c) for c in heights_of(waves))
+    free = runs.settled.free[best]
+    bristles = _bristles(problem, free)
+    series: Any = cos, sin
+    profile = Fourier(*series)
+    found = tuple(friction(profile, bristle) for bristle in bristles)
+    wanted = np.asarray(task.coefficients)
+    reached = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in found])
+    statuses = [_status(problem, runs, i, losses[i]) for i in range(order.size)]
+    status = statuses[best]
+    freedom = wanted.size - min(wanted.size, 2 + layout.free)
+    return ProfileFit(
+        profile=profile,
+        bristles=bristles,
+        coefficients=found,
+        targets=wanted,
+        bending_energy=bending_energy(cos, sin),
+        bending_bound=slope**2 * max(0.0, float(runs.bound[best])),
+        residuals=reached - wanted,
+        largest_error=float(np.max(np.abs(reached / wanted - 1))),
+        chi2=float(losses[best]),
+        degrees_of_freedom=freedom,
+        misfit=float(np.sqrt(losses[best] / wanted.size)),
+        success=status in MET,
+        status=status,
+        message=_message(problem, runs, best, status, reached, losses[best]),
+        starts=tuple(
+            _start(problem, runs, int(i), statuses[i], losses[i], energies[i], places[i])
+            for i in order
+        ),
+        history=_history(problem, runs),
+        identifiability=identifiability(task.law, series[0], series[1], free),
+        free=_free_values(problem, free),
+        bounds=problem.bounds,
+    )
+
+
+def _sorted(losses: np.ndarray, energies: np.ndarray) -> np.ndarray:
+    """Best first: by loss, and by bending energy among losses that tie."""
+    filled = np.where(np.isfinite(losses), losses, np.inf)
+    level = np.min(filled)
+    tied = filled <= level * (1 + _TIE) + _MET**2
+    return np.lexsort((np.where(tied, energies, filled), ~tied))
+
+
+def _bristles(problem: Any, free: Any) -> tuple:
+    if not isinstance(problem.law, FreeLaw):
+        return tuple(target.bristle for target in problem.targets)
+    bristles = problem.law.bristles_at(free)
+    return tuple(bristles[index] for index in problem.law.which)
+
+
+def _free_values(problem: Any, free: Any) -> dict[str, float]:
+    """By name; with the bristle's index in front where several have it."""
+    if not isinstance(problem.law, FreeLaw):
+        return {}
+    values = np.asarray(problem.law.values(free))
+    names = [number.name for _, number in problem.law.free]
+    labels = [
+        name if names.count(name) == 1 else f"bristles[{index}].{name}"
+        for (index, _), name in zip(problem.law.free, names, strict=True)
+    ]
+    return dict(zip(labels, map(float, values), strict=True))
+
+
+def _status(problem: Any, runs: Runs, index: int, loss: float) -> ProfileStatus:
+    if not np.isfinite(loss):
+        return ProfileStatus.NOT_FINITE
+    if not bool(runs.path.done[index]):
+        return ProfileStatus.MAX_STEPS
+    if not bool(runs.settled.met[index]):
+        return _bound_reached(problem, runs, index)
+    residuals = np.asarray(runs.settled.residuals[index]).reshape(-1, 2) * problem.scale
+    factors = np.asarray(problem.task.factors) * problem.scale
+    errors = residuals / factors / np.asarray(problem.task.coefficients)
+    if np.max(np.abs(errors)) <= _MET:
+        return ProfileStatus.MET
+    freedom = errors.size - min(errors.size, 2 + problem.layout.free)
+    if problem.targets[0].uncertainty is not None and loss <= _likely(freedom):
+        return ProfileStatus.WITHIN_UNCERTAINTY
+    return ProfileStatus.CONTRADICTORY
+
+
+def _likely(freedom: int) -> float:
+    from scipy.stats import chi2  # 0.5 s, for targets with uncertainties only
+
+    return float(chi2.ppf(_SURE, max(freedom, 1)))
+
+
+def _bound_reached(problem: Any, runs: Runs, index: int) -> ProfileStatus:
+    room = {name: float(values[index]) for name, values in runs.room.items()}
+    if room["slopes"] < _NEAR:
+        return ProfileStatus.INADMISSIBLE
+    margin = 1 - MARGIN + _NEAR
+    if room.get("curvature", 1.0) < margin:
+        return ProfileStatus.TOO_SHARP
+    if room.get("height", 1.0) < margin:
+        return ProfileStatus.TOO_HIGH
+    wanted = np.asarray(runs.settled.wanted[index])
+    if problem.layout.free and _within(wanted, problem.layout.harmonics):
+        return ProfileStatus.OUT_OF_BOUNDS
+    return ProfileStatus.TOO_FEW_HARMONICS
+
+
+def _within(wanted: np.ndarray, harmonics: int) -> bool:
+    return bool(np.all(wanted > 0) and np.max(wanted / wanted[::-1]) < harmonics)
+
+
+def _message(
+    problem: Any, runs: Runs, best: int, status: ProfileStatus, reached: Any, loss: float
+) -> str:
+    if status == ProfileStatus.MET:
+        return status.message
+    nearest = "; ".join(
+        f"rho_plus = {as_text(row[0])} N, rho_minus = {as_text(row[1])} N"
+        for row in reached
+    )
+    if status in (ProfileStatus.CONTRADICTORY, ProfileStatus.WITHIN_UNCERTAINTY):
+        misfit = np.sqrt(loss / reached.size)
+        unit = "uncertainties" if problem.targets[0].uncertainty is not None else "targets"
+        return f"{status.message}; rms residual {misfit:.3g} of the {unit}: {nearest}"
+    if status in (ProfileStatus.MAX_STEPS, ProfileStatus.NOT_FINITE):
+        return status.message
+    return f"{status.message}; {_reachable(problem, runs, best)}; nearest: {nearest}"
+
+
+def _reachable(problem: Any, runs: Runs, best: int) -> str:
+    task, layout = problem.task, problem.layout
+    known = Geometry(*map(np.asarray, task.law.at(runs.settled.free[best])))
+    count = len(problem.targets)
+    names = [f"targets[{i}]: " if count > 1 else "" for i in range(count)]
+    geometries = [Geometry(*(float(value[i]) for value in known)) for i in range(count)]
+    wanted = np.asarray(runs.settled.wanted[best])
+    share = None
+    if (layout.sharp or layout.high) and np.all(wanted > 0):
+        bounds = float(task.curvature), float(task.height)
+        share = reachable_share(layout, float(wanted[0]), float(wanted[1]), *bounds)
+    slopes = wanted * float(task.slope)
+    return reachable_text(names, geometries, layout.harmonics, slopes, share)
+
+
+def _start(
+    problem: Any,
+    runs: Runs,
+    index: int,
+    status: ProfileStatus,
+    loss: float,
+    energy: float,
+    place: float,
+) -> Start:
+    values = _free_values(problem, runs.settled.free[index])
+    return Start(
+        number=index,
+        status=status,
+        loss=float(loss),
+        bending_energy=float(energy),
+        place=float(place),
+        steps=int(runs.path.steps[index]),
+        free=tuple(values.values()),
+    )
+
+
+def _history(problem: Any, runs: Runs) -> History:
+    slope, layout = float(problem.task.slope), problem.layout
+    x: Any = np.asarray(runs.path.x)[:, : int(np.max(np.asarray(runs.path.steps)))]
+    first = 2 * layout.harmonics
+    cos, sin = heights_of(x[..., :first])
+    steps = x.shape[1]
+    free = x[..., x.shape[-1] - layout.free :]
+    if isinstance(problem.law, FreeLaw):
+        low, high = np.asarray(problem.law.low), np.asarray(problem.law.high)
+        free = low + (high - low) * free
+    return History(
+        loss=problem.scale**2 * np.asarray(runs.misfit)[:, :steps],
+        bending_energy=slope**2 * np.sum(x[..., :first] ** 2, axis=-1),
+        barrier=np.asarray(runs.path.weight)[:, :steps],
+        decrement=np.asarray(runs.path.decrement)[:, :steps],
+        omega_plus=slope * x[..., first + 1],
+        omega_minus=-slope * x[..., first + 3],
+        cos=slope * np.asarray(cos),
+        sin=slope * np.asarray(sin),
+        free=free,
+    )

@@ -1,0 +1,124 @@
+"""What a fit is asked for: bristles and the friction coefficients they should have."""
+
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+
+from ..admissibility import require_admissible
+from ..arguments import is_concrete, known_numbers, require, require_real, require_x64
+from ..bristles import AbstractBristle
+from ..potentials import BristlePotential
+from ..profiles import Sine
+from ..programs import Program
+
+_GENTLE: Any = 1e-9
+_NEARLY_FLAT = Sine(_GENTLE)
+
+
+class Target(NamedTuple):
+    """A bristle and the friction coefficients that it should have on the surface.
+
+    `rho_plus` > 0 > `rho_minus` in N. `weight`: > 0, of its squared residuals.
+    `uncertainty`: standard deviation of the two in N, one number or a pair; without it
+    residuals are relative. Checked where it is used.
+    """
+
+    bristle: AbstractBristle
+    rho_plus: Any
+    rho_minus: Any
+    weight: Any = 1.0
+    uncertainty: Any = None
+
+
+class Geometry(NamedTuple):
+    """What coefficients depend on: `a = A'(0)`, `alpha = F'(0)` in N, slopes allowed."""
+
+    a: Any
+    alpha: Any
+    lower: Any
+    upper: Any
+
+
+def geometry(bristle: AbstractBristle) -> Geometry:
+    """Of one bristle, traceable. `1 + a omega > 0` is part of the slopes allowed."""
+    bare = BristlePotential(_NEARLY_FLAT, bristle)
+    a, bounds = bare.a(), bristle.slope_bounds()
+    end = -1 / jnp.where(a == 0, 1.0, a)
+    lower = jnp.maximum(bounds.lower, jnp.where(a > 0, end, -jnp.inf))
+    upper = jnp.minimum(bounds.upper, jnp.where(a < 0, end, jnp.inf))
+    return Geometry(a, bare.alpha(), lower, upper)
+
+
+known_geometry = Program(geometry)
+
+
+def extreme_slopes(rho_plus: Any, rho_minus: Any, a: Any, alpha: Any) -> tuple[Any, Any]:
+    """`omega_plus`, `omega_minus` that give these coefficients (Lemmas 2 and 3, inverted).
+
+    `mu = rho/alpha`, swapped for alpha < 0, and `omega = mu/(1 - a mu)`. Infinite or of the
+    wrong sign where no admissible slope does: `a mu >= 1`.
+    """
+    plus, minus = rho_plus / alpha, rho_minus / alpha
+    plus, minus = np.where(alpha > 0, plus, minus), np.where(alpha > 0, minus, plus)
+    with np.errstate(divide="ignore"):
+        return plus / (1 - a * plus), minus / (1 - a * minus)
+
+
+def require_targets(targets: Any) -> list[Target]:
+    """The targets as a list, checked one by one.
+
+    Raises `ValueError` naming the target and the argument: no targets, none of a target,
+    a bristle that presses on nothing, coefficients of the wrong sign, shape or not finite,
+    a weight or an uncertainty that is not positive, uncertainties for some targets only.
+    """
+    single = isinstance(targets, Target)
+    known = single or isinstance(targets, list | tuple)
+    require(known, "targets", type(targets).__name__, "a Target or a list of them")
+    many = [targets] if single else list(targets)
+    require(many, "targets", "[]", "at least one Target")
+    for index, target in enumerate(many):
+        _require_target("target" if single else f"targets[{index}]", target)
+    given = [target.uncertainty is not None for target in many]
+    allowed = "one for every target or for none"
+    require(all(given) or not any(given), "uncertainty", None, allowed)
+    return many
+
+
+def _require_target(name: str, target: Any) -> None:
+    known = isinstance(target, Target)
+    require(known, name, type(target).__name__, "a frictionjax.Target")
+    bristle = target.bristle
+    known = isinstance(bristle, AbstractBristle)
+    allowed = "a part of frictionjax.bristles"
+    require(known, f"{name}.bristle", type(bristle).__name__, allowed)
+    require_x64(bristle)
+    known = is_concrete(bristle)
+    require(known, f"{name}.bristle", "traced", "numbers: a fit is not traced")
+    for label, test in (("rho_plus", _positive), ("rho_minus", _negative)):
+        sign = ">" if test is _positive else "<"
+        value = getattr(target, label)
+        require_real(f"{name}.{label}", value, f"{label} {sign} 0", test)
+    require_real(f"{name}.weight", target.weight, "weight > 0", _positive)
+    if target.uncertainty is not None:
+        _require_uncertainty(f"{name}.uncertainty", target.uncertainty)
+    try:
+        require_admissible(BristlePotential(_NEARLY_FLAT, bristle))
+    except ValueError as problem:
+        raise ValueError(f"{name}.{problem}") from None
+
+
+def _positive(value: float) -> bool:
+    return value > 0
+
+
+def _negative(value: float) -> bool:
+    return value < 0
+
+
+def _require_uncertainty(name: str, value: Any) -> None:
+    numbers = known_numbers(value)
+    allowed = "one number or a pair, > 0 in N"
+    require(numbers.dtype != object and numbers.shape in ((), (2,)), name, value, allowed)
+    good = np.all(np.isfinite(numbers)) and np.all(numbers > 0)
+    require(good, name, value, allowed)

@@ -1,0 +1,123 @@
+"""Pictures of inverse design: the surface found, what is left open, starts and targets."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..profiles import Fourier
+from .style import GUIDE, LIMIT, colour, marker, new_figure, styled
+
+_POINTS = 1024
+_FAMILY = 12
+_FAMILY_LOOK = {"color": GUIDE, "linewidth": 0.8, "alpha": 0.7}
+
+
+@styled
+def draw_profile_fit(fit: Any, family: int = _FAMILY) -> Figure:
+    """Draw the result of `fit_profile`.
+
+    Above: heights and slopes of the surface, with `family` others that have the same
+    coefficients in grey and the extreme slopes that the coefficients fix. Below: bending
+    energy of every start, best first, and coefficients achieved against targets.
+    """
+    figure, grid = new_figure(2, 2, 10.0, 7.2)
+    others = fit.family(family)
+    _heights(grid[0, 0], fit, others)
+    _slopes(grid[0, 1], fit, others)
+    _waterfall(grid[1, 0], fit)
+    _targets(grid[1, 1], fit)
+    figure.suptitle(_sentence(fit), x=0.01, ha="left", fontsize=11)
+    return figure
+
+
+def _sentence(fit: Any) -> str:
+    unseen = fit.open_directions.shape[0]
+    seen = f"{fit.rank} directions seen, {unseen} left open"
+    return f"{fit.status.name.replace('_', ' ').lower()}; {seen}"
+
+
+def _series(profile: Fourier, order: int) -> tuple[np.ndarray, np.ndarray]:
+    """A derivative of the profile over one period, centred on its steepest ascent."""
+    cos, sin = np.asarray(profile.cos), np.asarray(profile.sin)
+    turns = 2 * np.pi * np.arange(1, cos.size + 1)
+    y = np.linspace(-0.5, 0.5, _POINTS + 1)
+    waves = (cos - 1j * sin) * (1j * turns) ** order
+    return y, (waves @ np.exp(1j * np.outer(turns, y))).real
+
+
+def _heights(axes: Any, fit: Any, others: list[Fourier]) -> None:
+    for index, other in enumerate(others):
+        label = "same coefficients" if index == 0 else None
+        axes.plot(*_series(other, 0), **_FAMILY_LOOK, label=label)
+    label = f"least bent: $\\int w''^2$ = {fit.bending_energy:.4g}"
+    axes.plot(*_series(fit.profile, 0), color=colour(0), linewidth=2, label=label)
+    axes.set(xlabel="y (periods)", ylabel="height w (periods)")
+    axes.set_title("Surface")
+    axes.margins(x=0)
+    axes.legend(loc="upper left")
+
+
+def _slopes(axes: Any, fit: Any, others: list[Fourier]) -> None:
+    for other in others:
+        axes.plot(*_series(other, 1), **_FAMILY_LOOK)
+    y, slopes = _series(fit.profile, 1)
+    axes.plot(y, slopes, color=colour(0), linewidth=2)
+    found = fit.coefficients[0]
+    ends = [("$\\omega_+$", found.omega_plus), ("$\\omega_-$", found.omega_minus)]
+    for name, value in ends:
+        axes.axhline(float(value), color=LIMIT, linestyle="--", linewidth=1)
+        axes.annotate(
+            f"{name} = {float(value):.4g}",
+            (0.5, float(value)),
+            xytext=(-4, 4 if value > 0 else -4),
+            textcoords="offset points",
+            ha="right",
+            va="bottom" if value > 0 else "top",
+        )
+    axes.set(xlabel="y (periods)", ylabel="slope w' (1)")
+    axes.set_title("Slopes: the coefficients see the dashed lines only")
+    axes.margins(x=0, y=0.12)
+
+
+def _waterfall(axes: Any, fit: Any) -> None:
+    places = np.arange(1, len(fit.starts) + 1)
+    names = [start.status.name.replace("_", " ").lower() for start in fit.starts]
+    energies = np.array([start.bending_energy for start in fit.starts])
+    axes.plot(places, energies, color=GUIDE, linewidth=1, zorder=1)
+    for index, name in enumerate(dict.fromkeys(names)):
+        chosen = np.array([one == name for one in names])
+        look = {"color": colour(index), "marker": marker(index), "linestyle": "none"}
+        axes.plot(places[chosen], energies[chosen], **look, label=name)
+    if fit.bending_bound > 0:
+        label = "proven lower bound"
+        axes.axhline(fit.bending_bound, color=LIMIT, linestyle=":", label=label)
+    axes.set(xlabel="start, best first (1)", ylabel="bending energy $\\int w''^2$ (1)")
+    spread = np.ptp(energies) / np.max(energies)
+    if spread < 1e-3:
+        middle = float(energies[0])
+        axes.set_ylim(0.9 * middle, 1.1 * middle)
+    axes.set_xticks(places)
+    axes.set_title(f"Starts: energies differ by {spread:.1g} of the largest")
+    axes.legend()
+
+
+def _targets(axes: Any, fit: Any) -> None:
+    targets = np.asarray(fit.targets)
+    achieved = targets + np.asarray(fit.residuals)
+    names = ("$\\rho_+$", "$\\rho_-$")
+    for index, name in enumerate(names):
+        look = {"color": colour(index), "marker": marker(index), "linestyle": "none"}
+        axes.plot(
+            np.abs(targets[:, index]),
+            np.abs(achieved[:, index]),
+            **look,
+            markersize=8 - 3 * index,
+            label=f"|{name}|, worst {np.max(np.abs(fit.residuals[:, index])):.1g} N",
+        )
+    high = 1.15 * max(float(np.max(np.abs(targets))), float(np.max(np.abs(achieved))))
+    axes.plot([0, high], [0, high], color=LIMIT, linewidth=1, zorder=1)
+    axes.set(xlim=(0, high), ylim=(0, high))
+    axes.set(xlabel="target (N)", ylabel="achieved (N)")
+    axes.set_title(f"Coefficients: largest relative error {fit.largest_error:.1g}")
+    axes.legend(loc="upper left")
