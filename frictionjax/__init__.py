@@ -31,6 +31,14 @@ _HOME = {
     "predict_cost": "cost_prediction",
     "order_cost": "eps_grids",
     "fit_budget": "cost_prediction",
+    "fit_angle": "design.angle",
+    "fit_slide": "design.slide_fit",
+    "steady_slide": "design.steady_slide",
+    "check_design": "design.design_check",
+    "tolerance": "design.tolerance",
+    "design_map": "design.maps",
+    "Target": "design.targets",
+    "fit_profile": "design.profile_fit",
     "load_scene": "scene_files",
     "save_scene": "scene_files",
     "use_fast_cpu": "compilation",
@@ -51,6 +59,14 @@ if TYPE_CHECKING:
     from .cost_of_accuracy import work_precision as work_precision
     from .cost_prediction import fit_budget as fit_budget
     from .cost_prediction import predict_cost as predict_cost
+    from .design.angle import fit_angle as fit_angle
+    from .design.design_check import check_design as check_design
+    from .design.maps import design_map as design_map
+    from .design.profile_fit import fit_profile as fit_profile
+    from .design.slide_fit import fit_slide as fit_slide
+    from .design.steady_slide import steady_slide as steady_slide
+    from .design.targets import Target as Target
+    from .design.tolerance import tolerance as tolerance
     from .eps_grids import order_cost as order_cost
     from .friction_law import friction as friction
     from .limit_system import solve_limit as solve_limit

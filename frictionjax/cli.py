@@ -247,6 +247,65 @@ def cost(
 
 
 @main.command()
+@_scene
+@click.option("--ratio", type=float, help="Wanted -rho_plus/rho_minus.")
+@click.option("--difference", type=float, help="Wanted rho_plus + rho_minus in N.")
+@click.option("--rho-plus", type=float, help="Wanted friction to the right in N, > 0.")
+@click.option("--rho-minus", type=float, help="Wanted friction to the left in N, < 0.")
+@click.option(
+    "--free",
+    default="angle",
+    show_default=True,
+    help="The bristle's number to choose; with --rho-plus and --rho-minus together the "
+    "surface is designed instead.",
+)
+@click.option("--bounds", type=(float, float), help="Of that number.", metavar="LOW HIGH")
+@click.option(
+    "--bristle",
+    type=click.Choice(["slanted", "angular"]),
+    help="Another bristle than the scene's.",
+)
+@click.option("--harmonics", type=click.IntRange(1), default=16, show_default=True)
+@click.option(
+    "--period", type=float, default=1e-3, show_default=True, help="Of heights.csv, in m."
+)
+@click.option(
+    "--samples",
+    type=click.IntRange(16),
+    default=1024,
+    show_default=True,
+    help="Of heights.csv in a period.",
+)
+@click.option("--out", default="frictionjax-design", show_default=True, metavar="DIR")
+def design(
+    scene: str | None,
+    free: str,
+    bounds: tuple[float, float] | None,
+    bristle: str | None,
+    harmonics: int,
+    period: float,
+    samples: int,
+    out: str,
+    **wanted: Any,
+) -> None:
+    """The bristle, or the surface, with a wanted friction.
+
+    Writes the scene with it, the heights of its surface for a machine tool, tables and
+    pictures into a folder.
+    """
+    _start()
+    from .report.design import Asked, run_design
+    from .report.folder import require_folder
+    from .report.job import read_job
+
+    folder = require_folder(out)
+    job = read_job(scene, bristle)
+    asked = Asked(wanted, free, bounds, period, samples, harmonics)
+    click.echo(_interruptible(lambda: run_design(job, folder, asked)))
+    click.echo(f"\nWritten to {folder}")
+
+
+@main.command()
 @click.option("--out", default="frictionjax-figures", show_default=True, metavar="DIR")
 def figures(out: str) -> None:
     """Figures of the paper: coefficients against the angle of the bristle."""

@@ -1,6 +1,9 @@
 """Pictures of studies: each `draw...` returns a matplotlib Figure and shows nothing."""
 
+from .angle_fit import draw as draw_angle_fit
 from .convergence import draw as draw_convergence
+from .design import draw_profile_fit
+from .design_maps import draw as draw_design_map
 from .dissipation import draw as draw_dissipation
 from .loop import draw as draw_loop
 from .paper import draw_mu_angular, draw_mu_slanted, draw_nap
@@ -8,12 +11,15 @@ from .trajectories import draw as draw_trajectories
 from .work_precision import draw as draw_work_precision
 
 __all__ = [
+    "draw_angle_fit",
     "draw_convergence",
+    "draw_design_map",
     "draw_dissipation",
     "draw_loop",
     "draw_mu_angular",
     "draw_mu_slanted",
     "draw_nap",
+    "draw_profile_fit",
     "draw_trajectories",
     "draw_work_precision",
 ]

@@ -1,0 +1,132 @@
+"""What the inverse design of a bristle returns."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..arguments import Real, as_text, is_concrete, require
+from ..bristles import AbstractBristle
+from ..profiles import AbstractProfile
+from ..programs import Program
+from .fit_status import GOOD, FitStatus, status_of
+from .free_parameter import FreeParameter, free_parameter
+from .quantities import QUANTITIES, Slopes, on_slopes, quantity_of
+from .sensitivities import Sensitivities, sensitivities_of
+
+
+class AngleFit(eqx.Module):
+    """A bristle that gives a wanted friction; every array has the shape of the target.
+
+    `bristle`: the one given, with the number called `free` set to `value`: of all
+    `solutions` the nearest to what it was. `achieved`: the quantity it gives, on the same
+    surface. Without a solution, `bristle` comes as near to the target as admissible ones
+    do. `roots`: all solutions, increasing, NaN after the last. `admissible` (pieces, 2):
+    intervals of the number in which every bristle is admissible; alpha = 0 and the angles
+    at which a tip jumps are their ends, which are not among them. `reachable` (pieces, 2):
+    least and largest quantity over each. `code`: a `FitStatus` as an integer.
+    """
+
+    bristle: AbstractBristle
+    value: Real
+    achieved: Real
+    target: Real
+    roots: Real
+    admissible: Real
+    reachable: Real
+    code: Real
+    slopes: Slopes
+    profile: AbstractProfile
+    free: str = eqx.field(static=True)
+    quantity: str = eqx.field(static=True)
+
+    @property
+    def solutions(self) -> Real:
+        """All solutions, increasing; one target's alone are without padding."""
+        if is_concrete(self.roots) and self.roots.ndim == 1:
+            return self.roots[~jnp.isnan(self.roots)]
+        return self.roots
+
+    @property
+    def success(self) -> Any:
+        """Whether the bristle gives what was asked for: one bool, or one a target."""
+        good = jnp.isin(self.code, np.array([int(s) for s in GOOD]))
+        return bool(good) if is_concrete(good) and good.ndim == 0 else good
+
+    @property
+    def status(self) -> Any:
+        """`FitStatus`, or an array of them."""
+        if self.code.ndim == 0:
+            return status_of(int(self.code))
+        return np.vectorize(status_of, otypes=[object])(np.asarray(self.code))
+
+    @property
+    def message(self) -> Any:
+        """Why, for people: one text, or a list of one a target."""
+        if self.code.ndim == 0:
+            return _message(self)
+        return [_message(self[i]) for i in range(self.code.shape[0])]
+
+    def __getitem__(self, index: int) -> "AngleFit":
+        """One target's fit out of a batch."""
+        shared = self.admissible, self.reachable, self.slopes, self.profile
+        keep = {id(leaf) for leaf in jax.tree_util.tree_leaves(shared)}
+
+        def pick(leaf):
+            return leaf if id(leaf) in keep else leaf[index]
+
+        return jax.tree_util.tree_map(pick, self)
+
+    def curve(self, points: int = 400) -> tuple[Real, Real]:
+        """The number and the quantity over the admissible intervals, shapes (pieces, n)."""
+        whole = isinstance(points, int) and points >= 2
+        require(whole, "points", points, "a whole number >= 2")
+        low, high = self.admissible[:, :1], self.admissible[:, 1:]
+        values = low + (high - low) * jnp.linspace(1e-6, 1 - 1e-6, points)
+        part = self.bristle if self.code.ndim == 0 else self[0].bristle
+        which = np.asarray(QUANTITIES.index(self.quantity))
+        free = free_parameter(part, self.free)
+        return values, _curve(free, part, self.slopes, which, values)
+
+    @property
+    def sensitivities(self) -> Sensitivities:
+        """Derivatives of `value`, by the implicit function theorem."""
+        return sensitivities_of(self)
+
+    def __repr__(self) -> str:
+        if not is_concrete(self) or self.code.ndim:
+            return super().__repr__()
+        return f"AngleFit({self.free}={as_text(self.value)}: {self.message})"
+
+
+def _message(fit: AngleFit) -> str:
+    status = status_of(int(fit.code))
+    asked = f"{fit.quantity} = {as_text(fit.target)}"
+    if status == FitStatus.UNREACHABLE:
+        return (
+            f"{asked} cannot be reached by {fit.free}: {fit.quantity} is in "
+            f"{_intervals(fit.reachable)}; nearest: {as_text(fit.achieved)} at "
+            f"{fit.free} = {as_text(fit.value)}"
+        )
+    if status == FitStatus.INADMISSIBLE:
+        return f"{asked}: {status.message}"
+    count = int(jnp.sum(~jnp.isnan(fit.roots)))
+    others = "" if count < 2 else f" ({count} solutions)"
+    return f"{asked}: {status.message}, {fit.free} = {as_text(fit.value)}{others}"
+
+
+def _intervals(pairs: Any) -> str:
+    known = np.asarray(pairs)
+    known = known[~np.isnan(known[:, 0])]
+    texts = {f"({as_text(low)}, {as_text(high)})": None for low, high in known}
+    return " or ".join(texts)
+
+
+@Program
+def _curve(free: FreeParameter, bristle, slopes, which, values):
+    def one(value):
+        return quantity_of(on_slopes(free.put(bristle, value), slopes), which)
+
+    return jax.vmap(jax.vmap(one))(values)

@@ -1,0 +1,65 @@
+"""How a designed number moves with the target and with every other number."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+
+from ..arguments import Real, is_concrete
+from ..bristles import AbstractBristle
+from ..extrema import periodic_extrema, slope_of
+from ..profiles import AbstractProfile
+from ..programs import Program
+from .free_parameter import FreeParameter, free_parameter
+from .quantities import QUANTITIES, Slopes, on_slopes, quantity_of
+
+
+class Sensitivities(eqx.Module):
+    """Derivatives of the designed number, of shape () or (n,) with the target's.
+
+    `target`: by the quantity asked for. `omega_plus`, `omega_minus`: by the extreme
+    slopes. `bristle`, `profile`: parts whose leaves are the derivatives by theirs (0 in
+    place of the free number). Infinite where the quantity turns.
+    """
+
+    target: Real
+    omega_plus: Real
+    omega_minus: Real
+    bristle: AbstractBristle
+    profile: AbstractProfile
+
+
+@Program
+def _derivatives(free: FreeParameter, bristle, profile, value, which):
+    """Implicit function theorem: dv = (dtarget - dq(v; p) . dp) / (dq/dv)."""
+
+    def slopes_of(profile):
+        found = periodic_extrema(slope_of(profile), profile.points)
+        return Slopes(found.max, found.min)
+
+    numbers, rest = eqx.partition((bristle, profile), eqx.is_inexact_array)
+
+    def one(value, own):
+        def quantity(v, numbers, slopes):
+            bristle, _ = eqx.combine(numbers, rest)
+            return quantity_of(on_slopes(free.put(bristle, v), slopes), which)
+
+        slopes, pull = jax.vjp(slopes_of, profile)
+        by = jax.grad(quantity, argnums=(0, 1, 2))(value, (own, numbers[1]), slopes)
+        by_slopes = jax.tree_util.tree_map(lambda d: -d / by[0], by[2])
+        by_bristle = jax.tree_util.tree_map(lambda d: -d / by[0], by[1][0])
+        return 1 / by[0], *by_slopes, by_bristle, pull(by_slopes)[0]
+
+    return one(value, numbers[0])
+
+
+def sensitivities_of(fit: Any) -> Sensitivities:
+    """Sensitivities of a fit, one target's or a batch's."""
+    which = jnp.asarray(QUANTITIES.index(fit.quantity))
+    if not is_concrete(fit.value) or fit.value.ndim == 0:
+        free = free_parameter(fit.bristle, fit.free)
+        found = _derivatives(free, fit.bristle, fit.profile, fit.value, which)
+        return Sensitivities(*found)
+    lanes = [sensitivities_of(fit[i]) for i in range(fit.value.shape[0])]
+    return jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *lanes)

@@ -1,0 +1,201 @@
+"""Inverse design at finite eps: the bristle whose steady slide has a wanted friction."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from scipy.optimize import brentq
+
+from ..admissibility import require_reach
+from ..arguments import (
+    Real,
+    as_real,
+    as_text,
+    is_concrete,
+    require,
+    require_real,
+)
+from ..bristles import AbstractBristle
+from ..potentials import BristlePotential
+from ..profiles import AbstractProfile
+from ..programs import Program
+from ..supports import Spring
+from .angle import fit_angle
+from .angle_fit import AngleFit
+from .fit_status import FitStatus
+from .free_parameter import free_parameter
+from .quantities import quantity_of
+from .steady_slide import SteadySlide, mean_forces, steady_slide
+
+_SCAN = 33  # values of an admissible interval at which slides are integrated
+_MARGIN = 1e-3  # of an interval: nearer to its ends forces have poles, or G > 0 fails
+_WIDTH = 1e-13
+
+
+class SlideFit(eqx.Module):
+    """A bristle whose steady slide at `eps` gives a wanted quantity.
+
+    As `AngleFit`, with the quantity made of mean forces: `value`, `achieved`, `target`,
+    `solutions` (all that a scan of 33 values an interval tells apart), `reachable`
+    (intervals, 2): least and largest quantity of that scan. `slide`: of the bristle
+    returned. `by_target`: d value/d target. `limit`: the fit for eps -> 0.
+    """
+
+    bristle: AbstractBristle
+    value: Real
+    achieved: Real
+    target: Real
+    solutions: Real
+    reachable: Real
+    by_target: Real
+    slide: SteadySlide
+    limit: AngleFit
+    status: FitStatus = eqx.field(static=True)
+
+    @property
+    def success(self) -> bool:
+        """Whether the slide gives what was asked for."""
+        return self.status == FitStatus.OK
+
+    @property
+    def message(self) -> str:
+        """Why, for people."""
+        limit = self.limit
+        asked = (
+            f"{limit.quantity} = {as_text(self.target)} at eps = {as_text(self.slide.eps)}"
+        )
+        value = f"{limit.free} = {as_text(self.value)}"
+        if self.status == FitStatus.UNREACHABLE:
+            pairs = np.asarray(self.reachable)
+            reach = " or ".join(f"({as_text(a)}, {as_text(b)})" for a, b in pairs)
+            return (
+                f"{asked} cannot be reached by {limit.free}: steady slides show {reach}; "
+                f"nearest: {as_text(self.achieved)} at {value}"
+            )
+        return f"{asked}: {self.status.message}, {value}"
+
+    def __repr__(self) -> str:
+        return f"SlideFit({self.message})"
+
+
+@Program
+def _quantities(free, bristle, profile, which, values, numbers):
+    """The quantity at values (n,) of the number, NaN where there is no slide."""
+
+    def one(value):
+        part = free.put(bristle, value)
+        forces = mean_forces(BristlePotential(profile, part), *numbers)
+        return jnp.where(forces.good, quantity_of(forces, which), jnp.nan)
+
+    return jax.vmap(one)(values)
+
+
+@Program
+def _slope(free, bristle, profile, which, value, numbers):
+    def one(value):
+        part = free.put(bristle, value)
+        forces = mean_forces(BristlePotential(profile, part), *numbers)
+        return quantity_of(forces, which)
+
+    return jax.jvp(one, (value,), (jnp.ones_like(value),))[1]
+
+
+def fit_slide(
+    profile: AbstractProfile,
+    bristle: AbstractBristle,
+    eps: Any,
+    gamma: Any = 1.0,
+    rate: Any = 1.0,
+    support: Spring | None = None,
+    **wanted: Any,
+) -> SlideFit:
+    """The bristle whose steady slide at `eps` (m) has a wanted mean friction.
+
+    `gamma`, `rate` (N/s), `support`: as in `steady_slide`. `wanted`: one target
+    (`rho_plus`, `rho_minus`, `ratio` or `difference`, of mean forces), `free` and
+    `bounds`, as in `fit_angle`. The admissible intervals of the limit are scanned, and
+    each change of sign is polished by `scipy.optimize.brentq`: a slide takes 10 ms, so
+    this takes about a second, not a millisecond.
+
+    Raises `ValueError` as `fit_angle` and `steady_slide` do, and for several targets.
+    """
+    support = Spring(as_real(1.0)) if support is None else support
+    known = isinstance(support, Spring)
+    require(known, "support", type(support).__name__, "a frictionjax.supports.Spring")
+    for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
+        require_real(name, value, f"{name} > 0", lambda v: v > 0)
+    limit = fit_angle(profile, bristle, **wanted)
+    require(is_concrete(limit), "targets", "traced", "known numbers: this is a search")
+    require(limit.code.ndim == 0, limit.quantity, limit.target, "one number")
+    numbers = tuple(as_real(v) for v in (eps, gamma, rate, support.stiffness))
+    free = free_parameter(limit.bristle, limit.free)
+    which = np.asarray(
+        ("rho_plus", "rho_minus", "ratio", "difference").index(limit.quantity)
+    )
+    target = float(limit.target)
+
+    def quantities(values):
+        found = _quantities(free, limit.bristle, profile, which, values, numbers)
+        return np.asarray(found)
+
+    ends = np.asarray(limit.admissible)
+    ends = ends[~np.isnan(ends[:, 0])]
+    shares = _MARGIN + (1 - 2 * _MARGIN) * np.linspace(0, 1, _SCAN)
+    grid = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * shares
+    values = np.stack([quantities(row) for row in grid])
+    roots = _roots(quantities, grid, values, target)
+    known = ~np.isnan(values).all(axis=1)
+    require(known.any(), "eps", eps, "an eps at which some bristle slides (G > 0)")
+    status = FitStatus.OK if roots.size else FitStatus.UNREACHABLE
+    now = float(free_parameter(bristle, limit.free).now(bristle))
+    at = (
+        roots[np.argmin(np.abs(roots - now))]
+        if roots.size
+        else _nearest(grid, values, target)
+    )
+    part = free.put(limit.bristle, jnp.asarray(at))
+    require_reach(BristlePotential(profile, part), numbers[0])
+    slide = steady_slide(profile, part, eps, gamma, rate, support)
+    achieved = quantity_of(_Means(slide.mean_plus, slide.mean_minus), which)
+    by = 1 / _slope(free, limit.bristle, profile, which, jnp.asarray(at), numbers)
+    reach = [(np.nanmin(row), np.nanmax(row)) for row in values[known]]
+    return SlideFit(
+        part,
+        jnp.asarray(at),
+        achieved,
+        limit.target,
+        jnp.asarray(roots),
+        jnp.asarray(reach),
+        by,
+        slide,
+        limit,
+        status,
+    )
+
+
+class _Means(eqx.Module):
+    rho_plus: Real
+    rho_minus: Real
+
+
+def _roots(
+    quantities: Any, grid: np.ndarray, values: np.ndarray, target: float
+) -> np.ndarray:
+    """Every crossing of the target between neighbours of the scan, polished."""
+    found = []
+    for row, line in zip(grid, values - target, strict=True):
+        for i in np.flatnonzero(line[:-1] * line[1:] < 0):
+
+            def gap(value):
+                return float(quantities(np.full(1, value))[0]) - target
+
+            size = _WIDTH * max(1.0, abs(row[i]))
+            found.append(brentq(gap, row[i], row[i + 1], xtol=size, rtol=1e-14))
+    return np.array(found)
+
+
+def _nearest(grid: np.ndarray, values: np.ndarray, target: float) -> float:
+    away = np.abs(values - target)
+    return float(grid.ravel()[np.nanargmin(away)])

@@ -1,0 +1,66 @@
+"""The quantity that a bristle was designed for, over the number that was free."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..arguments import require
+from .design_maps import number_label
+from .style import GUIDE, LIMIT, colour, new_figure, styled
+
+_LABELS = {
+    "ratio": "friction ratio $-\\rho_+/\\rho_-$ (1)",
+    "rho_plus": "friction to the right $\\rho_+$ (N)",
+    "rho_minus": "friction to the left $\\rho_-$ (N)",
+    "difference": "difference $\\rho_+ + \\rho_-$ (N)",
+}
+_ABOVE = 4.0  # times the target, and the middle of the curve: poles go on out of sight
+
+
+@styled
+def draw(fit: Any) -> Figure:
+    """Draw a `fit_angle`: the quantity over all admissible values, target and solutions.
+
+    One line for each admissible interval; between them alpha = 0, or nothing is
+    admissible. Filled: the bristle returned; hollow: the other solutions.
+
+    Raises `ValueError` for a batch: pick one with `fit[i]`.
+    """
+    require(np.ndim(fit.code) == 0, "fit", f"{np.size(fit.code)} fits", "one: fit[i]")
+    figure, grid = new_figure(1, 1, 6.4, 4.6)
+    axes = grid[0, 0]
+    numbers, quantities = (np.asarray(part) for part in fit.curve())
+    there = ~np.isnan(numbers[:, 0])
+    curves = list(zip(numbers[there], quantities[there], strict=True))
+    for index, (x, y) in enumerate(curves):
+        label = "admissible bristles" if index == 0 else None
+        axes.plot(x, y, color=colour(0), label=label)
+    target = float(fit.target)
+    axes.axhline(target, color=GUIDE, linestyle="--", label=f"wanted: {target:.4g}")
+    others = [v for v in np.asarray(fit.solutions) if v != float(fit.value)]
+    look: dict[str, Any] = {"color": LIMIT, "linestyle": "none", "marker": "o", "zorder": 3}
+    if others:
+        hollow = look | {"markerfacecolor": "white"}
+        axes.plot(others, [target] * len(others), **hollow, label="other solutions")
+    value = f"{fit.free} = {float(fit.value):.5g}"
+    told = value if fit.success else f"nearest: {value}"
+    axes.plot([float(fit.value)], [float(fit.achieved)], **look, label=told)
+    axes.set(xlabel=number_label(fit.free), ylabel=_LABELS[fit.quantity])
+    if fit.free in ("stiffness", "rest_length", "height") and numbers[there].min() > 0:
+        axes.set_xscale("log")
+    axes.set_ylim(*_window(quantities[there], target))
+    axes.set_title("Inverse design of the bristle")
+    axes.legend(loc="best")
+    return figure
+
+
+def _window(quantities: np.ndarray, target: float) -> tuple[float, float]:
+    """Range of the axis: the target and the middle of the curves, not their poles."""
+    low, high = np.percentile(quantities, (10, 90))
+    size = max(abs(target), abs(low), abs(high))
+    bottom = max(float(np.min(quantities)), -_ABOVE * size, min(low - size, target - size))
+    top = min(float(np.max(quantities)), _ABOVE * size, max(high + size, target + size))
+    bottom, top = min(bottom, target), max(top, target)
+    room = 0.06 * (top - bottom)
+    return bottom - room, top + room

@@ -1,0 +1,154 @@
+"""Friction over a plane of designs."""
+
+from typing import Any
+
+import matplotlib
+import numpy as np
+import xarray as xr
+from matplotlib.colors import Normalize, TwoSlopeNorm
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ..arguments import require
+from .style import GUIDE, new_figure, styled
+
+_UNITS = {"asymmetry": "1", "steepness": "1", "angle": "rad", "rest_angle": "rad"}
+_UNITS |= {"height": "m", "length": "m", "rest_length": "m"}
+_AXES = {
+    "asymmetry": "surface asymmetry $\\omega_+/|\\omega_-|$",
+    "steepness": "steepness of the surface $(\\omega_+ - \\omega_-)/2$",
+    "angle": "angle of the bristle $\\theta$",
+}
+_TITLES = {
+    "ratio": "Friction ratio $-\\rho_+/\\rho_-$",
+    "contrast": "Contrast $(\\rho_+ + \\rho_-)/(\\rho_+ - \\rho_-)$",
+    "rho_plus": "Friction to the right $\\rho_+$ (N)",
+    "rho_minus": "Friction to the left $\\rho_-$ (N)",
+    "difference": "Difference $\\rho_+ + \\rho_-$ (N)",
+    "alpha": "Normal force $\\alpha$ (N)",
+}
+_SIGNED = ("ratio", "contrast", "difference", "alpha")
+_RATIOS = (1 / 10, 1 / 5, 1 / 3, 1 / 2, 2 / 3, 1, 1.5, 2, 3, 5, 10)
+_HATCH = "////"
+
+
+@styled
+def draw(data: xr.Dataset, quantities: Any = ("ratio", "contrast")) -> Figure:
+    """Draw maps of a `design_map`, one panel a quantity, contours labelled.
+
+    Ratios are coloured by their logarithm, so that left and right look alike; colours end
+    at the 2nd and 98th of a hundred values, and arrows on the bar say so. Hatched: no
+    bristle there can follow the surface.
+
+    Raises `ValueError` for a quantity that the data set does not hold.
+    """
+    names = [quantities] if isinstance(quantities, str) else list(quantities)
+    for name in names:
+        known = ", ".join(_TITLES)
+        require(name in _TITLES and name in data, "quantities", name, f"one of {known}")
+    figure, grid = new_figure(1, len(names), 5.6 * len(names), 4.6)
+    for axes, name in zip(grid[0], names, strict=True):
+        _panel(figure, axes, data, name)
+    return figure
+
+
+def _panel(figure: Any, axes: Any, data: xr.Dataset, name: str) -> None:
+    up, across = data["admissible"].dims
+    x, y = data[across].values, data[up].values
+    shown, levels, texts = _shown(name, data[name].values)
+    norm = _norm(name, shown)
+    axes.set_facecolor("#f4f4f4")
+    colours = "RdBu_r" if name in _SIGNED else "viridis"
+    mesh = axes.pcolormesh(x, y, shown, cmap=colours, norm=norm, rasterized=True)
+    bar = figure.colorbar(mesh, ax=axes, extend=_beyond(shown, norm), pad=0.02)
+    inside = [v for v in levels if norm.vmin <= v <= norm.vmax]
+    bar.set_ticks(inside, labels=[texts[v] for v in inside])
+    bar.outline.set_visible(False)
+    alpha = data["alpha"].values
+    for side in (alpha > 0, alpha < 0):  # friction jumps from one to the other
+        _contours(axes, x, y, np.where(side, shown, np.nan), levels, texts)
+    _key(axes, x, y, data["admissible"].values, alpha)
+    axes.grid(False)
+    axes.set(
+        xlabel=number_label(str(across)), ylabel=number_label(str(up)), title=_TITLES[name]
+    )
+    if str(up) == "asymmetry":
+        axes.set_yscale("log")
+        ticks = [v for v in _RATIOS if y.min() <= v <= y.max()]
+        axes.set_yticks(ticks, labels=[_ratio_text(v) for v in ticks])
+        axes.minorticks_off()
+
+
+def _shown(name: str, values: np.ndarray) -> tuple[np.ndarray, list[float], dict]:
+    """What is coloured, the levels of its contours, and their texts."""
+    if name == "ratio":
+        levels = [float(np.log(v)) for v in _RATIOS]
+        texts = {lv: _ratio_text(v) for lv, v in zip(levels, _RATIOS, strict=True)}
+        return np.log(values), levels, texts
+    low, high = np.nanpercentile(values, (2, 98))
+    ticks = matplotlib.ticker.MaxNLocator(7).tick_values(low, high)
+    levels = [float(v) for v in ticks if low <= v <= high]
+    return values, levels, {v: f"{v:.3g}" for v in levels}
+
+
+def _ratio_text(value: float) -> str:
+    if value == 2 / 3:
+        return "2/3"
+    return f"{value:.3g}" if value >= 1 else f"1/{1 / value:.3g}"
+
+
+def _norm(name: str, shown: np.ndarray) -> Any:
+    low, high = np.nanpercentile(shown, (2, 98))
+    if name not in _SIGNED:
+        return Normalize(low, high)
+    size = max(abs(low), abs(high), 1e-300)
+    return TwoSlopeNorm(0.0, -size, size)
+
+
+def _beyond(shown: np.ndarray, norm: Any) -> str:
+    below = bool(np.nanmin(shown) < norm.vmin)
+    above = bool(np.nanmax(shown) > norm.vmax)
+    return {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[below, above]
+
+
+def _contours(axes: Any, x, y, shown, levels, texts) -> None:
+    """Labelled lines at the levels, that of symmetric friction wider."""
+    if min(shown.shape) < 2 or np.isnan(shown).all():
+        return
+    low, high = np.nanmin(shown), np.nanmax(shown)
+    inside = [v for v in levels if low < v < high]
+    if not inside:
+        return
+    widths = [1.5 if v == 0 else 0.7 for v in inside]
+    look: Any = {"colors": "#333333", "linestyles": "solid"}
+    lines = axes.contour(x, y, shown, levels=inside, linewidths=widths, **look)
+
+    def text(value: float) -> str:
+        return texts[min(texts, key=lambda known: abs(known - value))]
+
+    axes.clabel(lines, fmt=text, fontsize=8)
+
+
+def _key(axes: Any, x, y, admissible: np.ndarray, alpha: np.ndarray) -> None:
+    """Hatching where nothing is admissible, a dotted line where alpha changes sign."""
+    handles: list[Any] = []
+    flat = min(admissible.shape) < 2
+    if not admissible.all() and not flat:
+        outside = (~admissible).astype(float)
+        with matplotlib.rc_context({"hatch.color": GUIDE, "hatch.linewidth": 0.5}):
+            axes.contourf(x, y, outside, levels=[0.5, 1.5], colors="none", hatches=[_HATCH])
+        look: Any = {"facecolor": "#f4f4f4", "edgecolor": GUIDE, "hatch": _HATCH}
+        handles.append(Patch(**look, label="not admissible"))
+    if np.nanmin(alpha) < 0 < np.nanmax(alpha) and not flat:
+        axes.contour(x, y, alpha, levels=[0.0], colors="#222222", linestyles="dotted")
+        label = "$\\alpha$ = 0: the bristle presses on one side, pulls on the other"
+        handles.append(Line2D([], [], color="#222222", linestyle=":", label=label))
+    if handles:
+        place: Any = {"loc": "upper left", "bbox_to_anchor": (0.0, -0.12)}
+        axes.legend(handles=handles, borderpad=0.0, ncols=1, **place)
+
+
+def number_label(name: str) -> str:
+    """Label of an axis: what the number is, and its unit."""
+    return f"{_AXES.get(name, name.replace('_', ' '))} ({_UNITS.get(name, 'own unit')})"

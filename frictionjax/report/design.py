@@ -1,0 +1,146 @@
+"""A design from the shell: table, scene, heights for a machine tool, pictures."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from .. import plot
+from ..arguments import as_text, require
+from ..bristles import AbstractBristle
+from ..design.angle import fit_angle
+from ..design.angle_fit import AngleFit
+from ..design.design_check import check_design
+from ..design.heights import surface_heights, write_heights
+from ..design.maps import design_map
+from ..design.profile_fit import fit_profile
+from ..design.targets import Target
+from ..friction_law import friction
+from ..profiles import AbstractProfile
+from ..scene import Scene
+from ..scene_files import scene_document
+from ..supports import Spring
+from .folder import write_figures
+from .job import Job, joined
+from .tables import coefficient_table, table
+
+_MAP = 121  # values of an axis
+
+
+class Asked(NamedTuple):
+    """What a design is to reach: `wanted` by name, and how its results are written."""
+
+    wanted: dict[str, float]
+    free: str
+    bounds: tuple[float, float] | None
+    period: float
+    samples: int
+    harmonics: int
+
+
+class _Design(NamedTuple):
+    """A scene that gives what was asked for, its tables, pictures and further files."""
+
+    scene: Scene
+    sections: list[tuple[str, str]]
+    pictures: Iterator[tuple[str, Figure]]
+    files: dict[str, str]
+
+
+def run_design(job: Job, folder: Path, asked: Asked) -> str:
+    """Design the scene's bristle, or its surface, write it into `folder`, return tables.
+
+    `rho_plus` and `rho_minus` together: the surface (`fit_profile`); one of them, or a
+    ratio or difference: one number of the bristle (`fit_angle`).
+
+    Raises `ValueError` for targets that contradict each other or cannot be reached, with
+    what can be; nothing is written then.
+    """
+    wanted = {name: value for name, value in asked.wanted.items() if value is not None}
+    both = set(wanted) == {"rho_plus", "rho_minus"}
+    allowed = "one of --ratio, --difference, --rho-plus, --rho-minus, or the last two"
+    require(both or len(wanted) == 1, "targets", ", ".join(wanted) or "none", allowed)
+    design = _surface(job, asked, wanted) if both else _bristle(job, asked, wanted)
+    scene = design.scene
+    profile, bristle = _parts(scene)
+    surface_heights(profile, asked.period, asked.samples)  # raises, or fits
+    sections = [("", line) for line in job.notes] + design.sections
+    sections.append(("Friction coefficients", coefficient_table(friction(scene))))
+    if isinstance(scene.support, Spring):
+        check = check_design(profile, bristle, support=scene.support)
+        sections.append(("On the dynamics", repr(check)))
+    text = joined(sections)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "design.toml").write_text(scene_document(scene, job.study), encoding="utf-8")
+    (folder / "tables.txt").write_text(text + "\n", encoding="utf-8")
+    write_heights(folder / "heights.csv", profile, asked.period, asked.samples)
+    for name, content in design.files.items():
+        (folder / name).write_text(content + "\n", encoding="utf-8")
+    write_figures(folder, design.pictures)
+    return text
+
+
+def _parts(scene: Scene) -> tuple[AbstractProfile, AbstractBristle]:
+    assert scene.profile is not None  # scenes of a file have both
+    assert scene.bristle is not None
+    return scene.profile, scene.bristle
+
+
+def _with_parts(scene: Scene, profile: Any, bristle: Any) -> Scene:
+    return Scene(profile, bristle, scene.support, scene.load, scene.duration, scene.z0)
+
+
+def _bristle(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
+    profile, bristle = _parts(job.scene)
+    options: Any = wanted | {"free": asked.free, "bounds": asked.bounds}
+    fit = fit_angle(profile, bristle, **options)
+    if not fit.success:
+        raise ValueError(fit.message)
+    found = _with_parts(job.scene, profile, fit.bristle)
+    pictures = _bristle_pictures(fit)
+    return _Design(found, [("Inverse design", angle_table(fit))], pictures, {})
+
+
+def angle_table(fit: AngleFit) -> str:
+    """What one `fit_angle` found: value, reach, other solutions, sensitivities."""
+    moved = fit.sensitivities
+    known = np.asarray(fit.reachable)
+    reach = [f"({as_text(a)}, {as_text(b)})" for a, b in known[~np.isnan(known[:, 0])]]
+    others = [as_text(v) for v in np.asarray(fit.solutions) if v != float(fit.value)]
+    rows = [
+        ("wanted", f"{fit.quantity} = {as_text(fit.target)}"),
+        ("achieved", f"{float(fit.achieved):.10g}"),
+        (fit.free, f"{float(fit.value):.10g}"),
+        ("other solutions", ", ".join(others) or "none"),
+        ("reachable", " or ".join(dict.fromkeys(reach))),
+        (f"d {fit.free}/d {fit.quantity}", as_text(moved.target)),
+        (f"d {fit.free}/d omega_plus", as_text(moved.omega_plus)),
+        (f"d {fit.free}/d omega_minus", as_text(moved.omega_minus)),
+        ("status", fit.status.message),
+    ]
+    return table(("", ""), rows, left=2).lstrip("\n")
+
+
+def _bristle_pictures(fit: AngleFit) -> Iterator[tuple[str, Figure]]:
+    yield "design", plot.draw_angle_fit(fit)
+    numbers = np.asarray(fit.admissible)
+    numbers = numbers[~np.isnan(numbers[:, 0])]
+    across = np.linspace(numbers.min(), numbers.max(), _MAP)
+    steepness = 0.5 * float(fit.slopes.plus - fit.slopes.minus)
+    data = design_map(fit.bristle, (fit.free, across), steepness=steepness)
+    yield "map", plot.draw_design_map(data)
+
+
+def _surface(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
+    _, bristle = _parts(job.scene)
+    target = Target(bristle, wanted["rho_plus"], wanted["rho_minus"])
+    fit = fit_profile(target, harmonics=asked.harmonics)
+    if not fit.success:
+        raise ValueError(fit.message)
+    found = _with_parts(job.scene, fit.profile, bristle)
+    pictures = iter([("design", plot.draw_profile_fit(fit))])
+    return _Design(
+        found, [("Inverse design", repr(fit))], pictures, {"fit.json": fit.to_json()}
+    )

@@ -1,0 +1,46 @@
+"""Designs at finite eps: the slide itself has the friction asked for."""
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax.design.fit_status import FitStatus
+
+WAVES = fx.profiles.Fourier(cos=[0.004, 0.002], sin=[0.015, -0.003])
+SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
+EPS = 1e-2
+
+
+@pytest.mark.slow
+def test_the_slide_has_the_ratio_that_the_limit_misses():
+    found = fx.fit_slide(WAVES, SLANTED, EPS, ratio=1.25)
+    assert found.success
+    assert found.status == FitStatus.OK
+    slide = fx.steady_slide(WAVES, found.bristle, EPS)
+    assert float(slide.ratio) == pytest.approx(1.25, rel=1e-9)
+    assert float(found.achieved) == pytest.approx(1.25, rel=1e-9)
+    assert np.min(np.abs(found.solutions - found.value)) == 0
+    limit = fx.fit_angle(WAVES, SLANTED, ratio=1.25)
+    assert found.limit.value == limit.value
+    missed = fx.steady_slide(WAVES, limit.bristle, EPS).ratio
+    assert abs(float(missed) / 1.25 - 1) > 1e-3
+    near = fx.fit_slide(WAVES, SLANTED, EPS, ratio=1.26)
+    slope = (near.value - found.value) / 0.01
+    mean = 0.5 * (near.by_target + found.by_target)
+    assert float(slope) == pytest.approx(float(mean), rel=1e-2)
+    assert "ratio = 1.25 at eps = 0.01: found, angle = " in found.message
+    far = fx.fit_slide(WAVES, SLANTED, EPS, ratio=1.6, bounds=(0.2, 1.1))
+    assert far.status == FitStatus.UNREACHABLE
+    assert not far.success
+    assert "cannot be reached by angle: steady slides show (" in far.message
+
+
+def test_wrong_arguments_are_named():
+    with pytest.raises(ValueError, match="eps = 0: needs eps > 0"):
+        fx.fit_slide(WAVES, SLANTED, 0.0, ratio=1.2)
+    with pytest.raises(ValueError, match="support = 'float': needs"):
+        fx.fit_slide(WAVES, SLANTED, EPS, support=1.0, ratio=1.2)
+    with pytest.raises(ValueError, match="targets = 'none'"):
+        fx.fit_slide(WAVES, SLANTED, EPS)
+    with pytest.raises(ValueError, match=r"ratio = \[1.  1.2\]: needs one number"):
+        fx.fit_slide(WAVES, SLANTED, EPS, ratio=[1.0, 1.2])

@@ -1,0 +1,88 @@
+"""Tolerance: samples by hand, the delta method, nothing dropped in silence."""
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+
+SINE = fx.profiles.Sine(0.1)
+WAVES = fx.profiles.Fourier(cos=[0.01, 0.004], sin=[0.02, 0.0])
+SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
+ANGULAR = fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, 0.3)
+
+
+def test_small_spreads_agree_with_first_order():
+    spreads = {"angle": 2e-5, "height": 1e-5, "profile.sin": [1e-6, 2e-6]}
+    found = fx.tolerance(WAVES, SLANTED, spreads, samples=20_000, seed=3)
+    data = found.data
+    law = fx.friction(WAVES, SLANTED)
+    nominal = data["nominal"].sel(quantity="rho_plus")
+    assert float(nominal) == pytest.approx(float(law.rho_plus), rel=1e-13)
+    # The std of 20,000 samples is known to 0.5%.
+    np.testing.assert_allclose(data["std"], data["first_order"], rtol=0.02)
+    shifts = (data["mean"] - data["nominal"]) / data["first_order"]
+    assert np.all(np.abs(shifts) < 0.03)
+    scores = (data["quantiles"] - data["nominal"]) / data["first_order"]
+    for row, score in zip(scores, (-1.96, -0.6745, 0.0, 0.6745, 1.96), strict=True):
+        np.testing.assert_allclose(row, score, atol=0.06)
+    alone = data["by_number"].values
+    np.testing.assert_allclose(np.hypot.reduce(alone, axis=1), data["first_order"])
+    assert data["number"].values.tolist()[2:] == ["profile.sin[0]", "profile.sin[1]"]
+    assert found.inadmissible == found.flipped == 0
+    assert "0.000% inadmissible" in repr(found)
+
+
+def test_samples_are_the_friction_of_the_parts_drawn():
+    spreads = {"rest_angle": 0.1, "profile.slope": 0.01}
+    found = fx.tolerance(SINE, ANGULAR, spreads, samples=40, seed=7)
+    draws = np.random.default_rng(7).standard_normal((40, 2))
+    for row in (0, 17, 39):
+        rest, slope = (0.3, 0.1) + np.array([0.1, 0.01]) * draws[row]
+        part = fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, rest)
+        law = fx.friction(fx.profiles.Sine(slope), part)
+        line = found.data["samples"].isel(sample=row)
+        expected = (law.rho_plus, law.rho_minus, -law.rho_plus / law.rho_minus)
+        np.testing.assert_allclose(line[:3], expected, rtol=1e-12)
+    again = fx.tolerance(SINE, ANGULAR, spreads, samples=40, seed=7)
+    np.testing.assert_array_equal(again.data["samples"], found.data["samples"])
+    other = fx.tolerance(SINE, ANGULAR, spreads, samples=40, seed=8)
+    assert not np.array_equal(other.data["samples"], found.data["samples"])
+
+
+def test_inadmissible_and_flipped_samples_are_counted():
+    found = fx.tolerance(SINE, SLANTED, {"angle": 0.4}, samples=4000)
+    angles = 1.0 + 0.4 * np.random.default_rng(0).standard_normal(4000)
+    jumps = np.abs(angles) >= np.arctan(10.0)
+    turned = (np.abs(angles) > np.arccos(1 / 2.4)) & ~jumps
+    assert found.inadmissible == pytest.approx(jumps.mean(), abs=1e-12)
+    assert found.flipped == pytest.approx(turned.mean(), abs=1e-12)
+    assert 0.1 < found.inadmissible < 0.4
+    lost = np.isnan(found.data["samples"].sel(quantity="ratio"))
+    np.testing.assert_array_equal(lost, jumps)
+    assert f"{jumps.mean():.3%} inadmissible" in repr(found)
+    assert "press from the other side" in repr(found)
+    # A length below 0 has formulas, but no bristle.
+    short = fx.tolerance(SINE, SLANTED, {"height": 0.5}, samples=4000)
+    heights = 1.0 + 0.5 * np.random.default_rng(0).standard_normal(4000)
+    assert short.inadmissible == pytest.approx(np.mean(heights <= 0), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"spreads": {}}, "spreads = 'dict': needs standard deviations by name"),
+        ({"spreads": {"colour": 0.1}}, "free = 'colour': needs one of"),
+        ({"spreads": {"angle": -0.1}}, r"spreads\['angle'\] = -0.1: needs finite"),
+        ({"spreads": {"angle": float("nan")}}, r"spreads\['angle'\] = nan: needs finite"),
+        ({"spreads": {"angle": [0.1, 0.2]}}, r"spreads\['angle'\] = .*needs one number"),
+        ({"spreads": {"profile.sin": [1e-4] * 3}}, r"spreads\['profile.sin'\].* or 2"),
+        ({"spreads": {"angle": 0.0}}, "spreads = 'all 0'"),
+        ({"samples": 1}, "samples = 1: needs a whole number"),
+        ({"quantiles": [1.5]}, r"quantiles = \[1.5\]: needs numbers in"),
+        ({"bristle": fx.bristles.SlantedSpring(1.0, 9.0, 1.0, 1.48)}, "bristle.angle"),
+    ],
+)
+def test_wrong_arguments_are_named(change, words):
+    given = {"profile": WAVES, "bristle": SLANTED, "spreads": {"angle": 0.1}} | change
+    with pytest.raises(ValueError, match=words):
+        fx.tolerance(**given)
