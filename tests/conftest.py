@@ -9,3 +9,27 @@ os.environ.setdefault("XLA_FLAGS", "--xla_backend_optimization_level=1")
 import jax
 
 jax.config.update("jax_enable_x64", True)
+
+# Files that take longest, first: the last one under way then leaves no worker idle.
+_LONGEST = (
+    "test_trajectories",
+    "test_certificate",
+    "test_notebooks",
+    "test_windows",
+    "test_fit_angle",
+    "test_fit_profile",
+    "test_solvers",
+    "test_cost_model",
+    "test_steady_slide",
+    "test_wells",
+    "test_cost",
+    "test_random_scenes",
+)
+
+
+def pytest_collection_modifyitems(items):
+    def turn(item):
+        name = item.path.stem
+        return _LONGEST.index(name) if name in _LONGEST else len(_LONGEST)
+
+    items.sort(key=turn)  # stable: the order inside files stays

@@ -85,7 +85,13 @@ CASES = {
     "given": (given, 0.05, 1.0),
 }
 
-_LESS = ("angular", "slide", "10000")  # their trajectories take longest
+_LESS = (
+    "angular",
+    "slide",
+    "10000",
+    "alpha < 0",
+    "given",
+)  # their trajectories take longest
 
 
 def named(cases):

@@ -145,7 +145,9 @@ def test_success_in_another_well_is_called_wrong(data):
     assert "wrong" in next(x for x in table.splitlines() if x.startswith("LSODA"))
 
 
-@pytest.mark.parametrize("method", ["Radau", "Kvaerno3"])
+@pytest.mark.parametrize(
+    "method", ["Radau", pytest.param("Kvaerno3", marks=pytest.mark.slow)]
+)
 def test_slow_runs_end_and_keep_their_place(scene, method):
     cost = fx.work_precision(scene, EPS, 1.0, method, [1e-2, 1e-4], TIMES, seconds=0.01)
     states = cost.status.values.ravel()

@@ -10,7 +10,7 @@ from frictionjax import cost_prediction, machine_cost
 from frictionjax.machine_cost import ELSEWHERE, MachineCost, keep_machine, known_machine
 from frictionjax.report.job import read_job
 from frictionjax.report.study import expected_cost, within_budget
-from frictionjax.wiggly.workload import workload
+from frictionjax.wiggly.workload import _weight_of, workload
 
 TIMES = np.linspace(0.0, 3.0, 61)
 MACHINE = MachineCost(0.01, 0.002, 1e-5, 1e-7, 1e-6, 5.0, 1e9)
@@ -62,7 +62,7 @@ def test_work_follows_from_the_numbers():
     waves = fx.profiles.Fourier(np.zeros(16), 0.01 * np.eye(16)[0])
     parts = scene_of()
     bumpy = fx.Scene(waves, parts.bristle, parts.support, parts.load, 3.0)
-    assert workload(bumpy, *grid, TIMES.size, 1e-3, "resolved").weight > every.weight
+    assert _weight_of(bumpy) > 1.5 * _weight_of(parts)
 
 
 def test_a_machine_is_found_from_its_times(monkeypatch):

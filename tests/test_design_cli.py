@@ -61,6 +61,7 @@ def test_a_bristle_for_a_ratio(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_a_surface_for_both_directions(tmp_path):
     folder = tmp_path / "surface"
     asked = ("--rho-plus", 0.12, "--rho-minus", -0.05, "--harmonics", 8)

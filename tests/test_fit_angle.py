@@ -271,7 +271,10 @@ def two_slopes(plus, minus):
     return fx.profiles.Fourier([0.0, 0.0], np.array([first, second / 2]) / (2 * np.pi))
 
 
-@pytest.mark.parametrize("free", list(CASES))
+@pytest.mark.parametrize(
+    "free",
+    ["angle", *(pytest.param(f, marks=pytest.mark.slow) for f in CASES if f != "angle")],
+)
 def test_sensitivities_are_central_differences(free):
     build, numbers = CASES[free]
     p = jnp.asarray(numbers)

@@ -100,7 +100,8 @@ def test_random_reachable_targets(kind):
         check_met(fx.fit_profile(target, starts=2), target)
 
 
-@pytest.mark.parametrize("count", [40, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [40, 200])
 def test_many_random_targets_of_every_bristle_at_once(count):
     """One batch of the compiled program, coefficients by Lemmas 2 and 3."""
     rng = np.random.default_rng(11)

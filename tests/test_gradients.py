@@ -63,6 +63,7 @@ def test_forward_mode_with_the_adjoint_for_it(jacobian):
     assert jnp.max(jnp.abs(tangent - expected)) < 1e-6 * jnp.max(jnp.abs(expected))
 
 
+@pytest.mark.slow
 def test_gradient_with_respect_to_a_whole_scene():
     scene = scene_of([0.1, 1.0, 0.4, 1.0, 1.0488, 0.01])
 

@@ -38,6 +38,7 @@ def rho(cos, sin, bristle):
     return np.array([float(found.rho_plus), float(found.rho_minus)])
 
 
+@pytest.mark.slow
 def test_free_parameters_make_the_surface_gentler(fit, freed):
     assert freed.success
     found = rho(freed.profile.cos, freed.profile.sin, freed.bristles[0])
