@@ -212,6 +212,7 @@ def test_any_number_of_slips(name):
         assert not fx.certify(scene, eps, gamma, times, states).ok
 
 
+@pytest.mark.slow
 def test_a_skip_is_seen_by_the_force_it_lacked():
     """eps small: a jump within the noise makes the skip, only the force tells."""
     scene = ramp(1, 0.09)

@@ -216,6 +216,7 @@ def test_ctrl_c_is_quiet(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_cost_measures_methods(tmp_path):
     folder = tmp_path / "cost"
     small = ["--eps", "0.09", "--accuracies", "1e-2", "--methods", "auto,LSODA"]

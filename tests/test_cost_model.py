@@ -37,9 +37,9 @@ def known(monkeypatch):
     ("eps", "gamma", "accuracy", "method"),
     [
         (5e-2, 1.0, 1e-3, "auto"),
-        (2e-3, 2.0, 1e-3, "auto"),
         (1e-5, 1.0, 1e-3, "auto"),
-        (1e-2, 1.0, 1e-5, "auto"),
+        pytest.param(2e-3, 2.0, 1e-3, "auto", marks=pytest.mark.slow),
+        pytest.param(1e-2, 1.0, 1e-5, "auto", marks=pytest.mark.slow),
         (5e-3, 1.0, 1e-3, "resolved"),
         (2e-3, 0.5, 1e-3, "auto"),
     ],

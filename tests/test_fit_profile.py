@@ -168,6 +168,7 @@ def test_no_surface_bends_less(ratio):
         assert free_energy(plus, minus, 16) < best * (1 - 1e-6)
 
 
+@pytest.mark.slow
 def test_no_surface_bends_less_within_a_bound_on_curvature():
     free = fx.fit_profile(fx.Target(HOMOTHETIC, 0.3, -0.15), starts=2)
     sharpest = np.max(np.abs(slopes_of(free.profile, order=1)))
@@ -242,6 +243,7 @@ def test_a_batch_of_starts_equals_each_alone():
     assert abs(batch.settled.waves[0] - batch.settled.waves[1]).max() > 1e-3
 
 
+@pytest.mark.slow
 def test_several_bristles_on_one_surface():
     cos, sin = np.zeros((2, 16))
     cos[:2], sin[:2] = [0.01, 0.002], [0.02, 0.003]

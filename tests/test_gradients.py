@@ -50,6 +50,7 @@ def test_reverse_mode_agrees_with_central_differences(jacobian, i):
     assert error < 1e-4 * jnp.max(jnp.abs(differences))
 
 
+@pytest.mark.slow
 def test_forward_mode_with_the_adjoint_for_it(jacobian):
     direction = jnp.zeros_like(POINT).at[3].set(1.0)
 

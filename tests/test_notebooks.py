@@ -20,6 +20,7 @@ def pictures(notebook) -> int:
     return sum("image/png" in o.get("data", {}) for o in outputs)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("default")  # of the kernel's transport, not of the library
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_runs_and_its_outputs_are_kept(path):

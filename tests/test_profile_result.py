@@ -103,6 +103,7 @@ def test_sensitivities_are_the_derivatives_of_the_coefficients(freed):
         np.testing.assert_allclose(known[:, index], slope, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_barrier_has_the_derivatives_it_says():
     problem = problem_of(
         [TARGET], bounds=FREE["bounds"], free=FREE["free"], radius=0.2, amplitude=0.1

@@ -55,7 +55,9 @@ def random_case(seed, kind):
     return known.Case(scene, system, generator.uniform(0.5, 2.0), z0)
 
 
-@pytest.mark.parametrize("kind", ["slanted", "angular"])
+@pytest.mark.parametrize(
+    "kind", [pytest.param("slanted", marks=pytest.mark.slow), "angular"]
+)
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 5))]
 )

@@ -32,7 +32,13 @@ def truth(scene):
 
 @pytest.mark.parametrize(
     "method",
-    ["auto", "windowed", "Kvaerno5", "Tsit5", diffrax.Kvaerno3, diffrax.Dopri8()],
+    [
+        "auto",
+        "windowed",
+        "Kvaerno5",
+        diffrax.Dopri8(),
+        *(pytest.param(m, marks=pytest.mark.slow) for m in ("Tsit5", diffrax.Kvaerno3)),
+    ],
     ids=str,
 )
 def test_any_solver_by_name_class_or_instance(scene, truth, method):

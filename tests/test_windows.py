@@ -207,7 +207,7 @@ def test_solve_says_how_values_were_obtained():
     assert every.stats["sampled"] == 0
 
 
-@pytest.mark.parametrize("z0", [-0.5, 0.5])
+@pytest.mark.parametrize("z0", [-0.5, pytest.param(0.5, marks=pytest.mark.slow)])
 def test_a_far_start_is_not_forgotten_before_it_has_relaxed(z0):
     """While z0 comes back to the strip, brackets around its edge do not hold it."""
     times, eps, gamma = np.linspace(0.0, 0.3, 91), 1.1e-3, 0.8
