@@ -11,7 +11,6 @@ rows too. Warm, median of repeats; compilation apart.
 `--slow`: trust-constr too, 90 s a start.
 """
 
-import statistics
 import sys
 import time
 
@@ -19,21 +18,21 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import optax
+from clock import timed
 from scipy.optimize import Bounds, LinearConstraint, minimize, nnls
 
 import frictionjax as fx
-
-jax.config.update("jax_enable_x64", True)
-
-from frictionjax.design.constraints import Layout, basis, waves_of  # noqa: E402
-from frictionjax.design.extreme_slopes import reach  # noqa: E402
-from frictionjax.design.interior import (  # noqa: E402
+from frictionjax.design.constraints import Layout, basis, waves_of
+from frictionjax.design.extreme_slopes import reach
+from frictionjax.design.interior import (
     barrier_of,
     descend,
     stop_before_walls,
 )
-from frictionjax.design.profile_fit import problem_of  # noqa: E402
-from frictionjax.design.starts import start  # noqa: E402
+from frictionjax.design.profile_fit import problem_of
+from frictionjax.design.starts import start
+
+jax.config.update("jax_enable_x64", True)
 
 HARMONICS, STARTS, REPEATS = 16, 8, 5
 HOMOTHETIC = fx.bristles.Homothetic(1.0)
@@ -43,16 +42,6 @@ CASES = {
     "ratio 8": (0.8, 0.1, None),
     "ratio 3, |w''| <= 2": (0.3, 0.1, 0.5),
 }
-
-
-def timed(fn, repeats=REPEATS):
-    """First and median later seconds, and the last result."""
-    seconds = []
-    for _ in range(repeats + 1):
-        before = time.perf_counter()
-        result = jax.block_until_ready(fn())
-        seconds.append(time.perf_counter() - before)
-    return seconds[0], statistics.median(seconds[1:]), result
 
 
 def least_distance(plus, minus, bend):
@@ -228,7 +217,7 @@ def compare(name, plus, minus, radius, slow):
     print("|---|---|---|---|---|---|")
     best = least_distance(plus, minus, radius)
     target = fx.Target(HOMOTHETIC, plus, -minus)
-    cold, ours, fit = timed(lambda: fx.fit_profile(target, smallest_radius=radius))
+    cold, ours, fit = timed(lambda: fx.fit_profile(target, smallest_radius=radius), REPEATS)
     waves = np.asarray(waves_of(fit.profile.cos, fit.profile.sin))
     proof = f"{max(s.steps for s in fit.starts)} steps; first call {cold:.1f} s"
     proof += f"; proven within {fit.bending_energy / fit.bending_bound - 1:.1e}"

@@ -15,28 +15,18 @@ import time
 import jax
 import jax.numpy as jnp
 import numpy as np
+from clock import timed
 from scipy.optimize import brentq, minimize
 
 import frictionjax as fx
+from frictionjax.design.quantities import Slopes, on_slopes, quantity_of
 
 jax.config.update("jax_enable_x64", True)
-
-from frictionjax.design.quantities import Slopes, on_slopes, quantity_of  # noqa: E402
 
 SINE = fx.profiles.Sine(0.1)
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
 REPEATS = 9
 ENDS = (-1.14, 1.14)  # alpha > 0 between them
-
-
-def timed(fn, repeats=REPEATS):
-    """First and median later seconds, and the last result."""
-    seconds = []
-    for _ in range(repeats + 1):
-        before = time.perf_counter()
-        result = jax.block_until_ready(fn())
-        seconds.append(time.perf_counter() - before)
-    return seconds[0], statistics.median(seconds[1:]), result
 
 
 def surface(rng):
@@ -211,7 +201,7 @@ def after_1000_slips(slope):
 def dynamics():
     print("\nDesigned for a ratio of 1.5, on the dynamics:\n")
     part = fx.fit_angle(SINE, SLANTED, ratio=1.5).bristle
-    cold, warm, check = timed(lambda: fx.check_design(SINE, part))
+    cold, warm, check = timed(lambda: fx.check_design(SINE, part), REPEATS)
     print(check)
     print(f"\n{warm:.3f} s for six slides, {cold:.1f} s the first time", flush=True)
 

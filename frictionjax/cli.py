@@ -221,9 +221,10 @@ def cost(
 ) -> None:
     """What accuracy costs in time: this library's methods and general solvers."""
     _start()
-    from .report.cost import chosen_eps, run_cost, run_order_cost
+    from .report.cost import chosen_eps, run_cost
     from .report.folder import require_folder
     from .report.job import number_list, read_job
+    from .report.order_cost import run_order_cost
 
     folder = require_folder(out)
     job = read_job(scene, **surface)

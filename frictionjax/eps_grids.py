@@ -117,7 +117,7 @@ def _interval(pilot, errors, accuracy, start, stop, points) -> tuple[float, floa
     widest, order = 0.0, float("nan")
     for offset in _OFFSETS:
         # Shifted grids stay in the range: their ends move inwards by half a distance.
-        shift = (offset - 0.375) * spacing
+        shift = (offset - np.mean(_OFFSETS)) * spacing
         places = np.linspace(start, stop, points) + shift
         chosen = np.unique(np.clip(places.round().astype(int), start, stop))
         fit = fit_order(pilot[chosen], errors[chosen], accuracy * pilot[chosen])

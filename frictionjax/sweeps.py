@@ -51,7 +51,7 @@ def _blocks(eps: np.ndarray, gamma: np.ndarray) -> list[Block]:
     Cells are numbered with gamma outside and eps inside; the last block is filled up with
     copies of its last cell.
     """
-    lane_gamma, lane_eps = (a.ravel() for a in np.meshgrid(gamma, eps, indexing="ij"))
+    lane_eps, lane_gamma = cells_of(eps, gamma)
     order = np.lexsort((lane_gamma, lane_eps))
     groups = [order[i : i + _LANES] for i in range(0, order.size, _LANES)]
     full = [np.pad(g, (0, _LANES - g.size), mode="edge") for g in groups]
@@ -91,7 +91,7 @@ _BAR = "{desc}: {percentage:3.0f}% |{bar}| {elapsed} so far, {remaining} to go"
 
 def _run_lanes(scene, eps, gamma, ts, accuracy, method, balanced, progress) -> dict | None:
     """Values of all cells through lanes, by name; None where they cannot say."""
-    lane_gamma, lane_eps = (a.ravel() for a in np.meshgrid(gamma, eps, indexing="ij"))
+    lane_eps, lane_gamma = cells_of(eps, gamma)
     with tqdm(total=1.0, disable=not progress, bar_format=_BAR, desc="cells") as bar:
 
         def report(share: float) -> None:
@@ -127,6 +127,11 @@ def grid_of(name: str, values: Any) -> np.ndarray:
     require_numbers(name, values, f"{name} > 0, a number or a list", lambda v: v > 0)
     array = np.unique(np.atleast_1d(np.asarray(values, dtype=float)).ravel())
     return array[::-1] if name == "eps" else array
+
+
+def cells_of(eps: np.ndarray, gamma: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """eps and gamma of every cell of a grid, gamma outside, shape (cells,) each."""
+    return np.tile(eps, np.size(gamma)), np.repeat(gamma, np.size(eps))
 
 
 def sweep(

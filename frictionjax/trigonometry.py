@@ -19,8 +19,10 @@ _COSINE = tuple(
 )
 
 # Harmonics written out one by one; of more, blocks in a loop. With 64 written out a lane's
-# step takes 55 s to compile; in blocks a run of them takes 2.0 s for 1.3 s.
-_UNROLLED, _BLOCK = 16, 16
+# step takes 55 s to compile; with 14 and the fast flags LLVM wants more than 20 GB for the
+# narrow loop. Seconds of 16 and 64 harmonics, every slip: blocks of 8 0.29 and 0.68, of 4
+# 0.38 and 0.75, of 16 0.29 and 0.94.
+_UNROLLED, _BLOCK = 8, 8
 
 
 def _horner(coefficients: tuple[float, ...], x: Real) -> Real:

@@ -8,26 +8,12 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner
+from command_line import error_line, run
 
 import frictionjax as fx
-from frictionjax.cli import main
 from frictionjax.scene_files import default_study, scene_document
 
 SMALL = ["--eps", "0.097:0.031:4", "--gamma", "1,2", "--no-progress"]
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, list(map(str, arguments)))
-
-
-def error_line(result):
-    """The one line of a failed command."""
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert result.stderr.startswith("Error: ")
-    assert result.stderr.count("\n") == 1
-    return result.stderr
 
 
 @pytest.fixture(scope="module")

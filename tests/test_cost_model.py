@@ -10,6 +10,7 @@ from frictionjax import cost_prediction, machine_cost
 from frictionjax.machine_cost import ELSEWHERE, MachineCost, keep_machine, known_machine
 from frictionjax.report.job import read_job
 from frictionjax.report.study import expected_cost, within_budget
+from frictionjax.sweeps import cells_of
 from frictionjax.wiggly.workload import _weight_of, workload
 
 TIMES = np.linspace(0.0, 3.0, 61)
@@ -69,7 +70,7 @@ def test_a_machine_is_found_from_its_times(monkeypatch):
     true = MachineCost(0.02, 0.005, 0.0, 2e-7, 3e-6, 0.0, 0.0)
 
     def clocked(scene, eps, gamma, method):
-        cells = np.tile(eps, len(gamma)), np.repeat(gamma, len(eps))
+        cells = cells_of(eps, gamma)
         return true.seconds(workload(scene, *cells, TIMES.size, 1e-3, method)), 0.5
 
     monkeypatch.setattr(machine_cost, "_clocked", clocked)

@@ -2,27 +2,13 @@
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from command_line import error_line, run
 
 import frictionjax as fx
-from frictionjax.cli import main
 from frictionjax.design.heights import surface_heights
 from frictionjax.scene_files import default_study
 
 WAVES = fx.profiles.Fourier(cos=[0.01, 0.004], sin=[0.02, 0.0])
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, list(map(str, arguments)))
-
-
-def error_line(result):
-    """The one line of a failed command."""
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert result.stderr.startswith("Error: ")
-    assert result.stderr.count("\n") == 1
-    return result.stderr
 
 
 def ratio_of(scene):

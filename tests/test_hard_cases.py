@@ -279,6 +279,37 @@ def test_compiler_flags_do_not_matter(tmp_path):
             assert np.abs(found[name][scene] - values).max() < 1e-6, (name, scene)
 
 
+_COMPILED = """
+import resource, sys
+resource.setrlimit(resource.RLIMIT_DATA, (8 * 2**30, 8 * 2**30))
+import jax
+jax.config.update("jax_enable_x64", True)
+import numpy as np
+import frictionjax as fx
+from test_hard_cases import Hard, scene_of
+k = np.arange(1, int(sys.argv[1]) + 1)
+cos = 0.1 / k**4 / (2 * np.pi * np.sum(1.0 / k**3))
+scene = scene_of(Hard("", surface=(cos, 0.3 * cos)))
+data = fx.sweep(scene, [1e-3], [0.5], np.linspace(0, 3, 61))  # wide and narrow loops
+assert int(data.status.max()) == 0, data.status.values
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("harmonics", [8, 16, 33])
+def test_compilation_with_fast_flags_takes_little_memory(harmonics):
+    # Sums of 14 and 16 harmonics, written out, took LLVM more than 20 GB.
+    env = os.environ | {
+        "XLA_FLAGS": FAST_CPU_FLAGS,
+        "PYTHONPATH": str(Path(__file__).parent),
+    }
+    env.pop("JAX_COMPILATION_CACHE_DIR", None)
+    command = [sys.executable, "-c", _COMPILED, str(harmonics)]
+    done = subprocess.run(command, check=True, env=env, capture_output=True, text=True)
+    assert float(done.stdout) < 2.0  # GB
+
+
 def test_eps_over_seven_decades_in_one_batch():
     scene = scene_of(Hard(""))
     eps = 0.97 * np.geomspace(1e-1, 1e-8, 8)

@@ -71,13 +71,20 @@ class AngleFit(eqx.Module):
 
     def __getitem__(self, index: int) -> "AngleFit":
         """One target's fit out of a batch."""
-        shared = self.admissible, self.reachable, self.slopes, self.profile
-        keep = {id(leaf) for leaf in jax.tree_util.tree_leaves(shared)}
-
-        def pick(leaf):
-            return leaf if id(leaf) in keep else leaf[index]
-
-        return jax.tree_util.tree_map(pick, self)
+        return AngleFit(
+            jax.tree_util.tree_map(lambda leaf: leaf[index], self.bristle),
+            self.value[index],
+            self.achieved[index],
+            self.target[index],
+            self.roots[index],
+            self.admissible,
+            self.reachable,
+            self.code[index],
+            self.slopes,
+            self.profile,
+            self.free,
+            self.quantity,
+        )
 
     def curve(self, points: int = 400) -> tuple[Real, Real]:
         """The number and the quantity over the admissible intervals, shapes (pieces, n)."""
@@ -107,7 +114,7 @@ def _message(fit: AngleFit) -> str:
     if status == FitStatus.UNREACHABLE:
         return (
             f"{asked} cannot be reached by {fit.free}: {fit.quantity} is in "
-            f"{_intervals(fit.reachable)}; nearest: {as_text(fit.achieved)} at "
+            f"{intervals_text(fit.reachable)}; nearest: {as_text(fit.achieved)} at "
             f"{fit.free} = {as_text(fit.value)}"
         )
     if status == FitStatus.INADMISSIBLE:
@@ -117,7 +124,8 @@ def _message(fit: AngleFit) -> str:
     return f"{asked}: {status.message}, {fit.free} = {as_text(fit.value)}{others}"
 
 
-def _intervals(pairs: Any) -> str:
+def intervals_text(pairs: Any) -> str:
+    """Intervals (n, 2) in words, each once; rows of NaN are none."""
     known = np.asarray(pairs)
     known = known[~np.isnan(known[:, 0])]
     texts = {f"({as_text(low)}, {as_text(high)})": None for low, high in known}

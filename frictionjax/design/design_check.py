@@ -1,6 +1,5 @@
 """What a design of the limit shows on the dynamics: the gap, at a few eps."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import equinox as eqx
@@ -12,6 +11,7 @@ from ..coefficients import Coefficients
 from ..friction_law import friction
 from ..profiles import AbstractProfile
 from ..supports import Spring
+from .aligned_text import aligned
 from .steady_slide import SteadySlide, steady_slide
 
 _MEANS = ("eps/m", "mean +/N", "gap", "mean -/N", "gap", "ratio", "gap")
@@ -53,7 +53,7 @@ class DesignCheck(eqx.Module):
         plus, minus = float(self.law.rho_plus), float(self.law.rho_minus)
         last = ("limit", f"{plus:.6g}", "", f"{minus:.6g}", "", f"{float(self.ratio):.6g}")
         rows.append((*last, "", f"{plus:.6g}", f"{minus:.6g}", ""))
-        return _aligned(rows)
+        return aligned(rows)
 
     def _row(self, i: int) -> tuple[str, ...]:
         found, worst = self.slide, np.atleast_1d(self.slide.status)[i]
@@ -73,15 +73,6 @@ class DesignCheck(eqx.Module):
     def __repr__(self) -> str:
         told = f"gamma = {float(self.gamma):.4g}, rate = {float(self.rate):.4g} N/s"
         return f"Steady slide, {told}; gaps to the limit\n{self.table}"
-
-
-def _aligned(rows: Sequence[Sequence[str]]) -> str:
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = [
-        "  ".join(text.rjust(width) for text, width in zip(row, widths, strict=True))
-        for row in rows
-    ]
-    return "\n".join(line.rstrip() for line in lines)
 
 
 def check_design(

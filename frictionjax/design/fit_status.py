@@ -13,7 +13,6 @@ class FitStatus(Outcome):
     MORE = 4, "found, but there are more solutions, or turns, than there is room for"
     UNREACHABLE = 5, "no admissible value gives it"
     INADMISSIBLE = 6, "no value in the bounds is admissible on this surface"
-    NOT_SOLVED = 7, "the search on the dynamics did not come to its end"
 
 
 GOOD = (FitStatus.OK, FitStatus.TANGENT, FitStatus.INDIFFERENT, FitStatus.MORE)

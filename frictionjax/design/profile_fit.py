@@ -17,7 +17,7 @@ from .law import AbstractLaw, FixedLaw, FreeLaw
 from .profile_program import run
 from .profile_report import report
 from .profile_result import ProfileFit
-from .starts import places
+from .starts import SHARES, places
 from .targets import Geometry, Target, extreme_slopes, known_geometry, require_targets
 
 _KEPT = 200  # steps that there is room for: other budgets compile nothing new
@@ -75,11 +75,9 @@ def fit_profile(
     problem = problem_of(asked, harmonics, free, bounds, smallest_radius, largest_amplitude)
     layout, law = problem.layout, problem.law
     keys: Any = jax.random.split(jax.random.PRNGKey(seed), starts)
-    shares: Any = np.random.default_rng(seed).uniform(
-        0.02, 0.98, size=(starts, layout.free)
-    )
+    shares: Any = np.random.default_rng(seed).uniform(*SHARES, size=(starts, layout.free))
     if isinstance(law, FreeLaw):
-        shares[0] = np.clip(np.asarray(law.shares()), 0.02, 0.98)
+        shares[0] = np.clip(np.asarray(law.shares()), *SHARES)
     apart: Any = np.array(places(layout, starts))
     kept = room(max_steps, _KEPT)
     runs = run(layout, kept, np.asarray(max_steps), problem.task, apart, keys, shares)

@@ -26,7 +26,7 @@ _NEAR = 1e-3  # share of a bound that counts as reached
 
 def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
     """The result of the best start; see `ProfileFit`."""
-    task, layout = problem.task, problem.layout
+    task = problem.task
     slope = float(task.slope)
     losses = np.sum(np.asarray(runs.settled.residuals) ** 2, axis=1) * problem.scale**2
     energies = slope**2 * np.sum(np.asarray(runs.settled.waves) ** 2, axis=1)
@@ -43,7 +43,6 @@ def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
     reached = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in found])
     statuses = [_status(problem, runs, i, losses[i]) for i in range(order.size)]
     status = statuses[best]
-    freedom = wanted.size - min(wanted.size, 2 + layout.free)
     return ProfileFit(
         profile=profile,
         bristles=bristles,
@@ -54,7 +53,7 @@ def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
         residuals=reached - wanted,
         largest_error=float(np.max(np.abs(reached / wanted - 1))),
         chi2=float(losses[best]),
-        degrees_of_freedom=freedom,
+        degrees_of_freedom=_freedom(problem),
         misfit=float(np.sqrt(losses[best] / wanted.size)),
         success=status in MET,
         status=status,
@@ -105,15 +104,20 @@ def _status(problem: Any, runs: Runs, index: int, loss: float) -> ProfileStatus:
         return ProfileStatus.MAX_STEPS
     if not bool(runs.settled.met[index]):
         return _bound_reached(problem, runs, index)
-    residuals = np.asarray(runs.settled.residuals[index]).reshape(-1, 2) * problem.scale
-    factors = np.asarray(problem.task.factors) * problem.scale
-    errors = residuals / factors / np.asarray(problem.task.coefficients)
+    residuals = np.asarray(runs.settled.residuals[index]).reshape(-1, 2)
+    task = problem.task
+    errors = residuals / np.asarray(task.factors) / np.asarray(task.coefficients)
     if np.max(np.abs(errors)) <= _MET:
         return ProfileStatus.MET
-    freedom = errors.size - min(errors.size, 2 + problem.layout.free)
-    if problem.targets[0].uncertainty is not None and loss <= _likely(freedom):
+    given = problem.targets[0].uncertainty is not None
+    if given and loss <= _likely(_freedom(problem)):
         return ProfileStatus.WITHIN_UNCERTAINTY
     return ProfileStatus.CONTRADICTORY
+
+
+def _freedom(problem: Any) -> int:
+    """Residuals that two slopes and the free parameters leave."""
+    return max(0, problem.task.coefficients.size - 2 - problem.layout.free)
 
 
 def _likely(freedom: int) -> float:

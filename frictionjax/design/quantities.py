@@ -8,6 +8,8 @@ import numpy as np
 
 from ..arguments import Real
 from ..bristles import AbstractBristle, AngularSpring
+from ..extrema import periodic_extrema, slope_of
+from ..profiles import AbstractProfile
 
 QUANTITIES = ("rho_plus", "rho_minus", "ratio", "difference")
 MEANING = {
@@ -24,6 +26,12 @@ class Slopes(NamedTuple):
 
     plus: Real
     minus: Real
+
+
+def slopes_of(profile: AbstractProfile) -> Slopes:
+    """`omega_plus`, `omega_minus` of a profile, traceable and differentiable."""
+    found = periodic_extrema(slope_of(profile), profile.points)
+    return Slopes(found.max, found.min)
 
 
 class OnSlopes(NamedTuple):

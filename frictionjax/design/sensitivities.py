@@ -8,11 +8,10 @@ import jax.numpy as jnp
 
 from ..arguments import Real, is_concrete
 from ..bristles import AbstractBristle
-from ..extrema import periodic_extrema, slope_of
 from ..profiles import AbstractProfile
 from ..programs import Program
 from .free_parameter import FreeParameter, free_parameter
-from .quantities import QUANTITIES, Slopes, on_slopes, quantity_of
+from .quantities import QUANTITIES, on_slopes, quantity_of, slopes_of
 
 
 class Sensitivities(eqx.Module):
@@ -34,24 +33,16 @@ class Sensitivities(eqx.Module):
 def _derivatives(free: FreeParameter, bristle, profile, value, which):
     """Implicit function theorem: dv = (dtarget - dq(v; p) . dp) / (dq/dv)."""
 
-    def slopes_of(profile):
-        found = periodic_extrema(slope_of(profile), profile.points)
-        return Slopes(found.max, found.min)
+    numbers, rest = eqx.partition(bristle, eqx.is_inexact_array)
 
-    numbers, rest = eqx.partition((bristle, profile), eqx.is_inexact_array)
+    def quantity(v, numbers, slopes):
+        part = free.put(eqx.combine(numbers, rest), v)
+        return quantity_of(on_slopes(part, slopes), which)
 
-    def one(value, own):
-        def quantity(v, numbers, slopes):
-            bristle, _ = eqx.combine(numbers, rest)
-            return quantity_of(on_slopes(free.put(bristle, v), slopes), which)
-
-        slopes, pull = jax.vjp(slopes_of, profile)
-        by = jax.grad(quantity, argnums=(0, 1, 2))(value, (own, numbers[1]), slopes)
-        by_slopes = jax.tree_util.tree_map(lambda d: -d / by[0], by[2])
-        by_bristle = jax.tree_util.tree_map(lambda d: -d / by[0], by[1][0])
-        return 1 / by[0], *by_slopes, by_bristle, pull(by_slopes)[0]
-
-    return one(value, numbers[0])
+    slopes, pull = jax.vjp(slopes_of, profile)
+    by = jax.grad(quantity, argnums=(0, 1, 2))(value, numbers, slopes)
+    by_bristle, by_slopes = jax.tree_util.tree_map(lambda d: -d / by[0], by[1:])
+    return 1 / by[0], *by_slopes, by_bristle, pull(by_slopes)[0]
 
 
 def sensitivities_of(fit: Any) -> Sensitivities:

@@ -23,11 +23,11 @@ from ..profiles import AbstractProfile
 from ..programs import Program
 from ..supports import Spring
 from .angle import fit_angle
-from .angle_fit import AngleFit
+from .angle_fit import AngleFit, intervals_text
 from .fit_status import FitStatus
 from .free_parameter import free_parameter
-from .quantities import quantity_of
-from .steady_slide import SteadySlide, mean_forces, steady_slide
+from .quantities import QUANTITIES, quantity_of
+from .steady_slide import MeanForces, SteadySlide, mean_forces, spring_of, steady_slide
 
 _SCAN = 33  # values of an admissible interval at which slides are integrated
 _MARGIN = 1e-3  # of an interval: nearer to its ends forces have poles, or G > 0 fails
@@ -68,11 +68,10 @@ class SlideFit(eqx.Module):
         )
         value = f"{limit.free} = {as_text(self.value)}"
         if self.status == FitStatus.UNREACHABLE:
-            pairs = np.asarray(self.reachable)
-            reach = " or ".join(f"({as_text(a)}, {as_text(b)})" for a, b in pairs)
             return (
-                f"{asked} cannot be reached by {limit.free}: steady slides show {reach}; "
-                f"nearest: {as_text(self.achieved)} at {value}"
+                f"{asked} cannot be reached by {limit.free}: steady slides show "
+                f"{intervals_text(self.reachable)}; nearest: {as_text(self.achieved)} "
+                f"at {value}"
             )
         return f"{asked}: {self.status.message}, {value}"
 
@@ -80,13 +79,17 @@ class SlideFit(eqx.Module):
         return f"SlideFit({self.message})"
 
 
+def _forces_at(free, bristle, profile, value, numbers) -> MeanForces:
+    part = free.put(bristle, value)
+    return mean_forces(BristlePotential(profile, part), *numbers)
+
+
 @Program
 def _quantities(free, bristle, profile, which, values, numbers):
     """The quantity at values (n,) of the number, NaN where there is no slide."""
 
     def one(value):
-        part = free.put(bristle, value)
-        forces = mean_forces(BristlePotential(profile, part), *numbers)
+        forces = _forces_at(free, bristle, profile, value, numbers)
         return jnp.where(forces.good, quantity_of(forces, which), jnp.nan)
 
     return jax.vmap(one)(values)
@@ -95,9 +98,7 @@ def _quantities(free, bristle, profile, which, values, numbers):
 @Program
 def _slope(free, bristle, profile, which, value, numbers):
     def one(value):
-        part = free.put(bristle, value)
-        forces = mean_forces(BristlePotential(profile, part), *numbers)
-        return quantity_of(forces, which)
+        return quantity_of(_forces_at(free, bristle, profile, value, numbers), which)
 
     return jax.jvp(one, (value,), (jnp.ones_like(value),))[1]
 
@@ -121,9 +122,7 @@ def fit_slide(
 
     Raises `ValueError` as `fit_angle` and `steady_slide` do, and for several targets.
     """
-    support = Spring(as_real(1.0)) if support is None else support
-    known = isinstance(support, Spring)
-    require(known, "support", type(support).__name__, "a frictionjax.supports.Spring")
+    support = spring_of(support)
     for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
         require_real(name, value, f"{name} > 0", lambda v: v > 0)
     limit = fit_angle(profile, bristle, **wanted)
@@ -131,9 +130,7 @@ def fit_slide(
     require(limit.code.ndim == 0, limit.quantity, limit.target, "one number")
     numbers = tuple(as_real(v) for v in (eps, gamma, rate, support.stiffness))
     free = free_parameter(limit.bristle, limit.free)
-    which = np.asarray(
-        ("rho_plus", "rho_minus", "ratio", "difference").index(limit.quantity)
-    )
+    which = np.asarray(QUANTITIES.index(limit.quantity))
     target = float(limit.target)
 
     def quantities(values):
@@ -150,15 +147,13 @@ def fit_slide(
     require(known.any(), "eps", eps, "an eps at which some bristle slides (G > 0)")
     status = FitStatus.OK if roots.size else FitStatus.UNREACHABLE
     now = float(free_parameter(bristle, limit.free).now(bristle))
-    at = (
-        roots[np.argmin(np.abs(roots - now))]
-        if roots.size
-        else _nearest(grid, values, target)
-    )
+    at = _nearest(grid, values, target)
+    if roots.size:
+        at = float(roots[np.argmin(np.abs(roots - now))])
     part = free.put(limit.bristle, jnp.asarray(at))
     require_reach(BristlePotential(profile, part), numbers[0])
     slide = steady_slide(profile, part, eps, gamma, rate, support)
-    achieved = quantity_of(_Means(slide.mean_plus, slide.mean_minus), which)
+    achieved = quantity_of(MeanForces(slide.mean_plus, slide.mean_minus, slide.ok), which)
     by = 1 / _slope(free, limit.bristle, profile, which, jnp.asarray(at), numbers)
     reach = [(np.nanmin(row), np.nanmax(row)) for row in values[known]]
     return SlideFit(
@@ -173,11 +168,6 @@ def fit_slide(
         limit,
         status,
     )
-
-
-class _Means(eqx.Module):
-    rho_plus: Real
-    rho_minus: Real
 
 
 def _roots(

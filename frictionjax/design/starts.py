@@ -9,7 +9,7 @@ from .constraints import ORDERS, Layout, Unknowns, basis, heights_of, waves_of
 from .interior import Task
 
 _GENTLE = 0.3  # of the nearest bound, at most
-_SHARES = (0.02, 0.98)  # of the bounds of free parameters
+SHARES = (0.02, 0.98)  # of the bounds of free parameters
 _PLACES = (1 / 2, 1 / 3, 1 / 4, 1 / 5, 2 / 5, 1 / 6, 3 / 8, 1 / 8)
 
 
@@ -67,6 +67,6 @@ def _pressing(task: Task, share: Array, own: Array) -> Array:
     """The nearest to `share` on the way from `own` at which bristles press as they do."""
     before = task.law.at(own).alpha
     steps = jnp.linspace(1.0, 0.0, 16)
-    ways = jnp.clip(own + steps[:, None] * (share - own), *_SHARES)
+    ways = jnp.clip(own + steps[:, None] * (share - own), *SHARES)
     good = jax.vmap(lambda free: jnp.all(task.law.at(free).alpha * before > 0))(ways)
     return ways[jnp.argmax(good)]

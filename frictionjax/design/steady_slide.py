@@ -113,6 +113,15 @@ def _code(period: Period, mean: Real) -> Real:
     return jnp.where(jnp.isfinite(mean), code, int(Status.NOT_FINITE))
 
 
+def spring_of(support: Spring | None) -> Spring:
+    """The support, of 1 N/m where none is given; raises `ValueError` for other kinds."""
+    if support is None:
+        return Spring(as_real(1.0))
+    known = isinstance(support, Spring)
+    require(known, "support", type(support).__name__, "a frictionjax.supports.Spring")
+    return support
+
+
 def steady_slide(
     profile: AbstractProfile,
     bristle: AbstractBristle,
@@ -136,9 +145,7 @@ def steady_slide(
     Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, and for
     numbers that are not positive. A slide that is not found has its `status`.
     """
-    support = Spring(as_real(1.0)) if support is None else support
-    known = isinstance(support, Spring)
-    require(known, "support", type(support).__name__, "a frictionjax.supports.Spring")
+    support = spring_of(support)
     wiggle = potential(profile, bristle)
     require_x64(wiggle, support)
     require_numbers("eps", eps, "eps > 0, one or an array of shape (n,)", lambda v: v > 0)

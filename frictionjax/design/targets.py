@@ -13,7 +13,11 @@ from ..profiles import Sine
 from ..programs import Program
 
 _GENTLE: Any = 1e-9
-_NEARLY_FLAT = Sine(_GENTLE)
+
+
+def _on_nearly_flat(bristle: AbstractBristle) -> BristlePotential:
+    """Made when asked for: at import JAX may still be in 32 bits."""
+    return BristlePotential(Sine(_GENTLE), bristle)
 
 
 class Target(NamedTuple):
@@ -42,7 +46,7 @@ class Geometry(NamedTuple):
 
 def geometry(bristle: AbstractBristle) -> Geometry:
     """Of one bristle, traceable. `1 + a omega > 0` is part of the slopes allowed."""
-    bare = BristlePotential(_NEARLY_FLAT, bristle)
+    bare = _on_nearly_flat(bristle)
     a, bounds = bare.a(), bristle.slope_bounds()
     end = -1 / jnp.where(a == 0, 1.0, a)
     lower = jnp.maximum(bounds.lower, jnp.where(a > 0, end, -jnp.inf))
@@ -103,7 +107,7 @@ def _require_target(name: str, target: Any) -> None:
     if target.uncertainty is not None:
         _require_uncertainty(f"{name}.uncertainty", target.uncertainty)
     try:
-        require_admissible(BristlePotential(_NEARLY_FLAT, bristle))
+        require_admissible(_on_nearly_flat(bristle))
     except ValueError as problem:
         raise ValueError(f"{name}.{problem}") from None
 

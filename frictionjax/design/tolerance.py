@@ -10,17 +10,16 @@ import xarray as xr
 
 from ..arguments import as_text, known_numbers, require, require_x64
 from ..bristles import AbstractBristle
-from ..extrema import periodic_extrema, slope_of
 from ..friction_law import friction
 from ..potentials import potential
 from ..profiles import AbstractProfile
 from ..programs import Program
+from .aligned_text import aligned
 from .free_parameter import FreeParameter, entries_of, free_parameter, with_arrays
-from .quantities import QUANTITIES, Slopes, on_slopes, quantity_of, side_of
+from .quantities import QUANTITIES, on_slopes, quantity_of, side_of, slopes_of
 
 _QUANTILES = (0.025, 0.25, 0.5, 0.75, 0.975)
 _CHUNK = 4096  # samples of one compiled call
-_UNITS = {"rho_plus": "N", "rho_minus": "N", "ratio": "1", "difference": "N"}
 
 
 class _Spread(NamedTuple):
@@ -36,11 +35,11 @@ class _Spread(NamedTuple):
 def _sampled(numbers, of_profile, bristle, profile, values):
     """The four quantities (n, 4) at values (n, m) of the numbers, and alpha's side (n,)."""
     grounds = any(of_profile)
-    still = None if grounds else _slopes(profile)
+    still = None if grounds else slopes_of(profile)
 
     def one(row):
         part, surface = _changed(numbers, of_profile, bristle, profile, row)
-        slopes = _slopes(surface) if still is None else still
+        slopes = slopes_of(surface) if still is None else still
         found = on_slopes(part, slopes)
         side = jnp.where(slopes.minus < 0, side_of(part, found), 0.0)
         side = jnp.where((slopes.plus > 0) & _in_range(numbers, row), side, 0.0)
@@ -55,15 +54,10 @@ def _jacobian(numbers, of_profile, bristle, profile, values):
 
     def one(row):
         part, surface = _changed(numbers, of_profile, bristle, profile, row)
-        found = on_slopes(part, _slopes(surface))
+        found = on_slopes(part, slopes_of(surface))
         return jnp.stack([quantity_of(found, i) for i in range(4)])
 
     return jax.jacrev(one)(values)
-
-
-def _slopes(profile: AbstractProfile) -> Slopes:
-    found = periodic_extrema(slope_of(profile), profile.points)
-    return Slopes(found.max, found.min)
 
 
 def _changed(numbers, of_profile, bristle, profile, row):
@@ -115,12 +109,10 @@ class Tolerance:
             line = data.sel(quantity=name)
             numbers = [float(line[n]) for n in names] + line["quantiles"].values.tolist()
             rows.append([str(name), *(f"{v:.6g}" for v in numbers)])
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        lines = ["  ".join(map(str.rjust, row, widths)).rstrip() for row in rows]
         count = data.sizes["sample"]
         told = f"{count} samples, {self.inadmissible:.3%} inadmissible and left out"
         flipped = f", {self.flipped:.3%} press from the other side" if self.flipped else ""
-        return "\n".join([told + flipped, *lines])
+        return f"{told}{flipped}\n{aligned(rows)}"
 
 
 def tolerance(
@@ -164,8 +156,8 @@ def _dataset(profile, bristle, spread, samples, seed, levels) -> xr.Dataset:
     stds = np.array([s.std for s in spread])
     draws = np.random.default_rng(seed).standard_normal((samples, len(spread)))
     values = np.vstack([own, own + stds * draws])
-    short = np.pad(values, ((0, -len(values) % min(_CHUNK, samples)), (0, 0)), mode="edge")
     size = min(_CHUNK, samples)
+    short = np.pad(values, ((0, -len(values) % size), (0, 0)), mode="edge")
     parts = [
         _sampled(numbers, where, bristle, profile, short[at : at + size])
         for at in range(0, len(short), size)

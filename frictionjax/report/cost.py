@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 
 from ..cost_of_accuracy import ACCURACIES, METHODS, work_precision
-from ..eps_grids import OrderCost, order_cost
 from ..instants import slips_of
 from ..plot import draw_work_precision
 from ..scene import Scene
@@ -73,38 +72,6 @@ def run_cost(
     write_record(folder, {"cost": data}, toml, text)
     write_figures(folder, iter([("work_precision", draw_work_precision(data))]))
     return text
-
-
-def run_order_cost(job: Job, within: float) -> str:
-    """Tables of the eps grids that give the order of each gamma to +- `within`."""
-    eps, gammas = job.study["eps"], np.unique(job.study["gamma"]).tolist()
-    sections = [("", line) for line in job.notes]
-    for gamma in gammas:
-        found = order_cost(job.scene, eps, gamma, within, job.study["accuracy"])
-        sections.append((f"gamma = {gamma:.4g}: {found.message}", _grid_table(found)))
-    sections.append(("", _GRIDS))
-    return joined(sections)
-
-
-_GRIDS = (
-    "Grids that no cheaper one beats. interval: half of the 95% interval of the order of\n"
-    "sup |z_eps - z|, the widest of seven such grids; s: predicted for this machine."
-)
-
-
-def _grid_table(found: OrderCost) -> str:
-    rows = [
-        (
-            f"{grid.eps_max:.3g}",
-            f"{grid.eps_min:.3g}",
-            str(grid.points),
-            f"{grid.order:.3f}",
-            f"{grid.half_width:.2g}",
-            f"{grid.seconds:.2g}",
-        )
-        for grid in found.front
-    ]
-    return table(("eps from", "to", "eps", "order", "interval", "s"), rows)
 
 
 def cost_sections(data: xr.Dataset) -> list[tuple[str, str]]:

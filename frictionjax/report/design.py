@@ -11,7 +11,7 @@ from .. import plot
 from ..arguments import as_text, require
 from ..bristles import AbstractBristle
 from ..design.angle import fit_angle
-from ..design.angle_fit import AngleFit
+from ..design.angle_fit import AngleFit, intervals_text
 from ..design.design_check import check_design
 from ..design.heights import surface_heights, write_heights
 from ..design.maps import design_map
@@ -23,7 +23,7 @@ from ..scene import Scene
 from ..scene_files import scene_document
 from ..supports import Spring
 from .folder import write_figures
-from .job import Job, joined
+from .job import Job, exchanged, joined
 from .tables import coefficient_table, table
 
 _MAP = 121  # values of an axis
@@ -88,17 +88,13 @@ def _parts(scene: Scene) -> tuple[AbstractProfile, AbstractBristle]:
     return scene.profile, scene.bristle
 
 
-def _with_parts(scene: Scene, profile: Any, bristle: Any) -> Scene:
-    return Scene(profile, bristle, scene.support, scene.load, scene.duration, scene.z0)
-
-
 def _bristle(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
     profile, bristle = _parts(job.scene)
     options: Any = wanted | {"free": asked.free, "bounds": asked.bounds}
     fit = fit_angle(profile, bristle, **options)
     if not fit.success:
         raise ValueError(fit.message)
-    found = _with_parts(job.scene, profile, fit.bristle)
+    found = exchanged(job.scene, profile, fit.bristle)
     pictures = _bristle_pictures(fit)
     return _Design(found, [("Inverse design", angle_table(fit))], pictures, {})
 
@@ -106,15 +102,13 @@ def _bristle(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
 def angle_table(fit: AngleFit) -> str:
     """What one `fit_angle` found: value, reach, other solutions, sensitivities."""
     moved = fit.sensitivities
-    known = np.asarray(fit.reachable)
-    reach = [f"({as_text(a)}, {as_text(b)})" for a, b in known[~np.isnan(known[:, 0])]]
     others = [as_text(v) for v in np.asarray(fit.solutions) if v != float(fit.value)]
     rows = [
         ("wanted", f"{fit.quantity} = {as_text(fit.target)}"),
         ("achieved", f"{float(fit.achieved):.10g}"),
         (fit.free, f"{float(fit.value):.10g}"),
         ("other solutions", ", ".join(others) or "none"),
-        ("reachable", " or ".join(dict.fromkeys(reach))),
+        ("reachable", intervals_text(fit.reachable)),
         (f"d {fit.free}/d {fit.quantity}", as_text(moved.target)),
         (f"d {fit.free}/d omega_plus", as_text(moved.omega_plus)),
         (f"d {fit.free}/d omega_minus", as_text(moved.omega_minus)),
@@ -139,7 +133,7 @@ def _surface(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
     fit = fit_profile(target, harmonics=asked.harmonics)
     if not fit.success:
         raise ValueError(fit.message)
-    found = _with_parts(job.scene, fit.profile, bristle)
+    found = exchanged(job.scene, fit.profile, bristle)
     pictures = iter([("design", plot.draw_profile_fit(fit))])
     return _Design(
         found, [("Inverse design", repr(fit))], pictures, {"fit.json": fit.to_json()}

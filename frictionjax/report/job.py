@@ -17,7 +17,7 @@ from ..measured import (
     row_coefficients,
 )
 from ..scene import Scene
-from ..scene_files import SceneFile, default_study, load_study
+from ..scene_files import default_study, load_study
 
 _FEW_PERIODS = 2.0
 _BRISTLES: dict[str, tuple[Any, dict[str, float]]] = {  # as the command line names them
@@ -74,12 +74,12 @@ def read_job(
         given = {"pixel": pixel, "height_scale": height_scale, **fit}
         for name, value in given.items():
             require(value is None, name, value, "--heights FILE beside it")
-        return Job(_exchanged(file, file.scene.profile, chosen), study, [], None)
+        return Job(exchanged(file.scene, file.scene.profile, chosen), study, [], None)
     measured = read_heights(heights, pixel, height_scale)
     harmonics = 8 if fit["harmonics"] is None else fit["harmonics"]
     row, period = fit["row"], fit["period"]
     found = fit_profile(measured, period, harmonics, row)
-    scene = _exchanged(file, found.profile, chosen)
+    scene = exchanged(file.scene, found.profile, chosen)
     notes = _notes(heights, measured, found, row)
     rows = None
     if measured.heights.shape[0] > 1:
@@ -87,8 +87,8 @@ def read_job(
     return Job(scene, study, notes, rows, row)
 
 
-def _exchanged(file: SceneFile, profile: Any, bristle: AbstractBristle) -> Scene:
-    old = file.scene
+def exchanged(old: Scene, profile: Any, bristle: AbstractBristle) -> Scene:
+    """The scene with another surface and bristle."""
     return Scene(profile, bristle, old.support, old.load, old.duration, old.z0)
 
 

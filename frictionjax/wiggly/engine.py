@@ -20,9 +20,8 @@ from .lanes import Room, prepare
 from .layout import Needs, cost_of, lay_out, wells_of
 from .path import Path, path_of
 from .riding import find_rides
-from .rodas4p2 import Rodas4P2
 from .rodas5p import Rodas5P
-from .rosenbrock import AbstractRosenbrock, Tableau
+from .rosenbrock import Tableau
 from .rounds import CLOSED, LONG_MEMORY, MARGIN, WORKERS, Report, Rounds, collect
 from .series_bristle import series_of
 from .status import Status
@@ -38,14 +37,14 @@ _TILES = 128
 _NODES, _MOST_NODES, _SURVEYS = 17, 65, 3
 # Wells that one lane alone goes through at most: a minute or two.
 _AFFORDABLE = 2e5
-_TIGHT = 3e-5  # tolerance below which the scheme of order 5 is the cheaper one
+# Of order 5: the cheaper one at tolerances below 3e-5, as all are at `LOOSEST`.
+TABLEAU = Rodas5P.tableau
 _NEAR_STRIP = 1e-3  # wells
 # Looser brackets and surveys save a fifth of the time, and at gamma = 0.75 were off by up
 # to 6 times an accuracy of 1e-1, and twice one of 1e-2.
 LOOSEST = 1e-3
 _CELLS = 32  # at least, in a compiled call: 64 take 4 ms, 32 two
-# Accuracy below which the tolerance is below `_TIGHT`, and values worth a guess at rooms.
-_LIKELY_TIGHT, _FEW = 100 * _TIGHT, 500
+_FEW = 500  # values that are worth a guess at rooms
 # Wells of a slide that are worth a slip map, where windows set off far back.
 _LONG_SLIDE = 300.0
 
@@ -62,11 +61,6 @@ def _controls(scene, eps, gamma, accuracy, rho: tuple | None = None) -> StepPlan
         found = coefficients_jit(scene.potential)
         rho = found.rho_plus, found.rho_minus
     return _plans(scene, *map(np.asarray, rho), eps, gamma, np.asarray(accuracy))
-
-
-def scheme_of(tolerance: float) -> type[AbstractRosenbrock]:
-    """The scheme that lanes take at a tolerance (periods of the surface)."""
-    return Rodas5P if tolerance < _TIGHT else Rodas4P2
 
 
 def _fixed(values: np.ndarray) -> np.ndarray:
@@ -292,13 +286,12 @@ def integrate_cells(
         return None
     accuracy = min(accuracy, LOOSEST)
     lanes = lane_scene(scene, float(eps.max()))
-    _prepare(lanes, eps.size, ts.size, accuracy, balanced)
+    _prepare(lanes, eps.size, ts.size, balanced)
     plan = planned(scene, lanes, path, eps, gamma, ts.size, accuracy, method)
     control, ground, needs = plan
-    scheme = scheme_of(float(np.min(control.tolerance)))
     cells = Cells(eps, eps**gamma, control.tolerance, control.reach, control.first_step)
     every = _Cellwise(eps, ground, cells, needs)
-    sweep = _Sweep(scene, path, lanes, scheme.tableau, ts, accuracy, balanced, report)
+    sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, balanced, report)
     if method != "resolved":
         every = _ridden(sweep, every, eps**gamma)
     answers, never = sweep.attempt(every)
@@ -365,11 +358,11 @@ def _ridden(sweep: _Sweep, every: _Cellwise, viscosity: np.ndarray) -> _Cellwise
     return every._replace(needs=every.needs._replace(nodes=nodes))
 
 
-def _prepare(lanes: LaneScene, cells: int, times: int, accuracy: float, balanced) -> None:
-    """Have the loop compiled beside the planning, where its scheme is known already."""
-    if accuracy < _LIKELY_TIGHT and cells * times > _FEW:
+def _prepare(lanes: LaneScene, cells: int, times: int, balanced: bool) -> None:
+    """Have the loop compiled beside the planning."""
+    if cells * times > _FEW:
         legs = cells * times // WORKERS
-        prepare(lanes, Rodas5P.tableau, Room(cells, legs // 2, legs), balanced)
+        prepare(lanes, TABLEAU, Room(cells, legs // 2, legs), balanced)
 
 
 def _affordable(path: Path, cells: _Cellwise) -> np.ndarray:

@@ -4,11 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..potentials import BristlePotential
 from ..profiles import Fourier
 from ..scene import Scene
-from .engine import LOOSEST, lane_scene, planned, remembers_long, scheme_of
+from .engine import LOOSEST, lane_scene, planned, remembers_long
+from .lane import LaneScene
 from .layout import Needs, cost_of, wells_of
 from .path import Path, path_of
+from .series_bristle import SeriesBristle
 
 # Steps a well: exp of a polynomial in the orders of magnitude of tolerance and drag, and
 # in the lag. 73 cells of two scenes (vertical and angular, gamma 0.5 to 2, eps 1e-1 to
@@ -17,16 +20,18 @@ _CONSTANT, _TOLERANCE, _SQUARE = 3.905, -0.493, 0.066
 _LAG, _DRAG, _SMALL_DRAG, _KNEE = -0.103, 0.086, 1.047, 1.0
 # Rides, in the same cells: steps over those of one run-up; and wells that lanes, one after
 # the other, wait for each other. Both for a thousand wells, and how they grow with wells.
-_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH = 3.3, 1.9e4, 0.4
-_FREE, _HARMONIC = 4, 0.08  # harmonics that cost nothing, and what each more adds
+_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH = 3.3, 1.9e4, 0.05
+# What a step costs more: for each harmonic after the first (1.2 at 4, 2.3 at 16, 5.7 at 64
+# were measured), for each degree of the bristle's series after the first (1.35 at 4), and
+# for a bristle without one.
+_HARMONIC, _DEGREE, _NO_SERIES = 0.075, 0.1, 3.0
 
 
 class Workload(NamedTuple):
     """Work of lanes in each cell, shape (cells,).
 
     `steps`: of all lanes. `chain`: those that one lane takes after the other. `jobs`:
-    lanes that set off. `weight`: of a step, relative to a profile of few harmonics and a
-    scheme of eight stages.
+    lanes that set off. `weight`: of a step, relative to a linear spring on a sine.
     """
 
     steps: np.ndarray
@@ -61,9 +66,7 @@ def workload(
         growth = (path.travel[-1] / eps / 1e3) ** _RIDE_GROWTH
         total = np.where(ridden, _RIDE_STEPS * needs.warm * steps * growth, total)
         chain = np.where(ridden, _RIDE_CHAIN * steps * growth, chain)
-    stages = len(scheme_of(float(np.min(control.tolerance))).tableau.a)
-    weight = _weight_of(scene) * stages / 8
-    return Workload(total, chain, _jobs(path, eps, needs, times), weight)
+    return Workload(total, chain, _jobs(path, eps, needs, times), _weight_of(lanes))
 
 
 def _steps_a_well(tolerance: np.ndarray, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
@@ -80,7 +83,7 @@ def _steps_a_well(tolerance: np.ndarray, lag: np.ndarray, drag: np.ndarray) -> n
 
 def _longest_lane(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:
     """Wells of a tile and its run-up, at most all of them."""
-    return np.minimum(path.travel[-1] / eps, np.minimum(needs.tile, 1e300) + needs.warm)
+    return np.minimum(path.travel[-1] / eps, needs.tile + needs.warm)
 
 
 def _jobs(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray:
@@ -91,7 +94,13 @@ def _jobs(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray:
     return 2 * (1 + outer / needs.tile + needs.nodes * slides * (inner > 0) + shown)
 
 
-def _weight_of(scene: Scene) -> float:
-    profile = scene.profile
+def _weight_of(lanes: LaneScene) -> float:
+    potential = lanes.potential
+    if not isinstance(potential, BristlePotential):
+        return 1.0
+    profile, bristle = potential.profile, potential.bristle
     harmonics = profile.cos.shape[0] if isinstance(profile, Fourier) else 1
-    return 1.0 + _HARMONIC * max(0, harmonics - _FREE)
+    shape = _NO_SERIES
+    if isinstance(bristle, SeriesBristle):
+        shape = 1 + _DEGREE * (bristle.ahead.shape[0] - 2)
+    return (1 + _HARMONIC * (harmonics - 1)) * shape

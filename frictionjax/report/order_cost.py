@@ -1,0 +1,39 @@
+"""Which eps give the orders of a study, and what that costs: tables."""
+
+import numpy as np
+
+from ..eps_grids import OrderCost, order_cost
+from .job import Job, joined
+from .tables import table
+
+
+def run_order_cost(job: Job, within: float) -> str:
+    """Tables of the eps grids that give the order of each gamma to +- `within`."""
+    eps, gammas = job.study["eps"], np.unique(job.study["gamma"]).tolist()
+    sections = [("", line) for line in job.notes]
+    for gamma in gammas:
+        found = order_cost(job.scene, eps, gamma, within, job.study["accuracy"])
+        sections.append((f"gamma = {gamma:.4g}: {found.message}", _grid_table(found)))
+    sections.append(("", _GRIDS))
+    return joined(sections)
+
+
+_GRIDS = (
+    "Grids that no cheaper one beats. interval: half of the 95% interval of the order of\n"
+    "sup |z_eps - z|, the widest of seven such grids; s: predicted for this machine."
+)
+
+
+def _grid_table(found: OrderCost) -> str:
+    rows = [
+        (
+            f"{grid.eps_max:.3g}",
+            f"{grid.eps_min:.3g}",
+            str(grid.points),
+            f"{grid.order:.3f}",
+            f"{grid.half_width:.2g}",
+            f"{grid.seconds:.2g}",
+        )
+        for grid in found.front
+    ]
+    return table(("eps from", "to", "eps", "order", "interval", "s"), rows)
