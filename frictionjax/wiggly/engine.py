@@ -45,6 +45,11 @@ _NEAR_STRIP = 1e-3  # wells
 LOOSEST = 1e-3
 _CELLS = 32  # at least, in a compiled call: 64 take 4 ms, 32 two
 _FEW = 500  # values that are worth a guess at rooms
+# Wells after a slip at which lanes may set off, and the shortest rest that is worth it.
+_AFTER_SLIP, _SHORT_REST = 0.05, 0.2
+# Lanes set off in the middle of a slip or two, and forget less in their first wells. (1:
+# brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the first.)
+_SLIPS_FORGET = 1.5
 # Wells of a slide that are worth a slip map, where windows set off far back.
 _LONG_SLIDE = 300.0
 
@@ -77,7 +82,7 @@ def ground_of(
     scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray, folds: Folds
 ) -> Ground:
     """What windows need to know of each cell."""
-    lags = _lags(scene.potential, eps, folds, path.speed * eps**gamma)
+    lags = lag_forces(scene.potential, eps, folds, path.speed * eps**gamma)
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
     well, tip = _tips(scene.potential, scene.z0, _fixed(eps))
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
@@ -93,21 +98,6 @@ def ground_of(
         relaxed=_relaxation(scene, path, eps, gamma),
         rides=_no_rides(eps.size),
     )
-
-
-def _lags(potential: AbstractPotential, eps, folds: Folds, drag) -> list[np.ndarray]:
-    """Forces in N by which slides lag, right and left, (cells,); once for each eps.
-
-    (Of the largest eps for all: what a cell gives then depends on its neighbours.)
-    """
-    lags = [np.zeros(eps.size), np.zeros(eps.size)]
-    for value in np.unique(eps):
-        same = eps == value
-        own = Folds(*(np.asarray(f)[same][0] for f in folds))
-        found = lag_forces(potential, float(value), own, drag[same])
-        for lag, force in zip(lags, found, strict=True):
-            lag[same] = force
-    return lags
 
 
 def _relaxation(scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray):
@@ -143,10 +133,25 @@ def _needs(control: StepPlan, ground: Ground, path: Path, accuracy: float) -> Ne
     """How far back windows start: until a bracket as wide as the lag has closed."""
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     memory = np.asarray(control.memory)[: lag.size]
-    folds = np.log((lag + 2) / (0.1 * accuracy))
-    warm = np.ceil(MARGIN + memory * folds)
+    forgets = memory * np.log((lag + 2) / (0.1 * accuracy))
+    slow = np.ceil(MARGIN + forgets)
+    warm = np.minimum(slow, _resting(ground, lag, forgets))
     settle = np.ceil(lag + warm + 2)
-    return Needs(warm, settle, 3 * warm, np.zeros(lag.size), _offsets(ground, path))
+    return Needs(warm, settle, 3 * slow, np.zeros(lag.size), _offsets(ground, path))
+
+
+def _resting(ground: Ground, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
+    """Wells back to a start between slips, from which a bracket closes at rest.
+
+    Windows begin half a period behind slips. Where tips lag by less than that, both lanes
+    of a bracket that sets off a little after a slip come to rest in one well; `forgets`
+    wells more pass where the rest of half a period is too short. Infinite where tips lag
+    further: their lanes have to catch up with each other.
+    """
+    shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
+    rest = 0.5 - _AFTER_SLIP - lag - shift
+    wells = rest + np.ceil(np.maximum(_SLIPS_FORGET * forgets - rest, 0.0))
+    return np.where(rest > _SHORT_REST, wells, np.inf)
 
 
 def _offsets(ground: Ground, path: Path) -> np.ndarray:
@@ -200,6 +205,7 @@ class _Sweep(NamedTuple):
     ts: np.ndarray
     accuracy: float
     balanced: bool
+    summed: bool
     report: Report
 
     def rounds(self, ground: Ground, cells: Cells) -> Rounds:
@@ -210,12 +216,15 @@ class _Sweep(NamedTuple):
     def attempt(self, cells: _Cellwise) -> tuple[Answers, np.ndarray]:
         """Answers of some cells, and which of them have a bracket that stays open."""
         rides = cells.ground.rides
-        layout = lay_out(self.scene, self.path, cells.eps, self.ts, cells.needs, rides)
+        layout = lay_out(
+            self.scene, self.path, cells.eps, self.ts, cells.needs, rides, self.summed
+        )
         rounds = self.rounds(cells.ground, cells.cells)
         found, open_ = collect(rounds, layout, cells.needs)
         start = cells.ground.start_well, cells.ground.start_tip
+        wanted = self.balanced, self.summed
         answers = evaluate(
-            self.scene, self.path, cells.eps, self.ts, layout, found, self.balanced, start
+            self.scene, self.path, cells.eps, self.ts, layout, found, *wanted, start
         )
         never = np.zeros(cells.eps.size, dtype=bool)
         never[layout.windows.cell[open_]] = True
@@ -270,6 +279,7 @@ def integrate_cells(
     method: str,
     balanced: bool = True,
     report: Report = lambda share: None,
+    suprema: bool = True,
 ) -> Answers | None:
     """Every cell (eps, gamma), shape (cells,): values at `ts` and sums over [0, T].
 
@@ -277,7 +287,8 @@ def integrate_cells(
     is long enough; "auto" what passes through fewer wells. Surveys that are too rough are
     made again with more periods; where brackets stay open, tiles measure every slip; and
     where theirs do too, one lane goes through all. Accuracies looser than 1e-3 are solved
-    as that.
+    as that. Where neither energies are `balanced` nor `suprema` wanted, "windowed" and
+    "auto" leave out all slips between the times.
     `report` is told the share of each batch of jobs that is done. None where the load
     turns more often than the scene has room for.
     """
@@ -291,7 +302,8 @@ def integrate_cells(
     control, ground, needs = plan
     cells = Cells(eps, eps**gamma, control.tolerance, control.reach, control.first_step)
     every = _Cellwise(eps, ground, cells, needs)
-    sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, balanced, report)
+    summed = balanced or suprema or method == "resolved"
+    sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, balanced, summed, report)
     if method != "resolved":
         every = _ridden(sweep, every, eps**gamma)
     answers, never = sweep.attempt(every)

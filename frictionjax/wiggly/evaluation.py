@@ -183,9 +183,13 @@ def evaluate(
     layout: Layout,
     found: Found,
     balanced: bool,
+    summed: bool,
     start: tuple[np.ndarray, np.ndarray],
 ) -> Answers:
-    """Values of all cells from what was found at the stops of the layout."""
+    """Values of all cells from what was found at the stops of the layout.
+
+    Suprema are NaN where nothing was `summed`.
+    """
     stops = _stops(scene, layout, found, eps)
     count = eps.size
     guide = np.full(count, path.states[0])
@@ -210,7 +214,7 @@ def evaluate(
             (
                 z,
                 *energetics,
-                *_deviations(cell, stops),
+                *(_deviations(cell, stops) if summed else (np.nan, np.nan)),
                 np.where(output >= 0, found.how[output], 0),
                 np.where(output >= 0, found.gap[output], 0.0),
                 _share(cell, path, whole),

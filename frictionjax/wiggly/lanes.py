@@ -18,6 +18,7 @@ from .rosenbrock import Tableau
 # XLA splits the arrays over threads, 0.17. A few jobs go through the narrow loop, whose
 # steps take less time.
 WIDTH, NARROW = 64, 8
+_FEW_JOBS = 20  # a step of the wide loop takes 2.6 times as long as one of the narrow
 
 
 class Room(NamedTuple):
@@ -123,6 +124,6 @@ def march(
         rows = (_padded(t, size) for t, size in zip(tables, room, strict=True))
         return Tables(*rows, waiting=np.asarray(needed.jobs))
 
-    width = NARROW if needed.jobs <= NARROW else WIDTH
+    width = NARROW if needed.jobs <= _FEW_JOBS else WIDTH
     found = _LOOPS.run((scene, tableau, balanced, width), needed, fill)
     return Arrivals(*np.asarray(found)[: needed.legs].T)

@@ -36,6 +36,16 @@ _BATCH = 1e5  # wells: a few seconds, between two reports
 Report = Callable[[float], None]
 
 
+# Started with the first sweep, and kept: a pool for each took 1 ms.
+_POOL = ThreadPoolExecutor(WORKERS)
+
+
+def _seats(count: int, seats: int) -> np.ndarray:
+    """Seats dealt there and back, so that none gets all the lanes behind of brackets."""
+    row, seat = np.divmod(np.arange(count), seats)
+    return np.where(row % 2 == 0, seat, seats - 1 - seat)
+
+
 def _merged(one: Arrivals, other: Arrivals) -> Arrivals:
     """Each leg from the queue that ran it."""
     pairs = zip(one, other, strict=True)
@@ -87,14 +97,12 @@ class Rounds(NamedTuple):
         order = np.argsort(-cost, kind="stable")
         batches = int(np.ceil(cost.sum() / _BATCH))
         found = _nothing(legs)
-        with ThreadPoolExecutor(WORKERS) as pool:
-            for batch in range(batches):
-                queues = [
-                    order[batch + i * batches :: batches * WORKERS] for i in range(WORKERS)
-                ]
-                for part in pool.map(lambda q: self._queue(jobs, legs, q), queues):
-                    found = _merged(found, part)
-                self.report(1 / batches)
+        seat = _seats(order.size, batches * WORKERS)
+        for batch in range(batches):
+            queues = [order[seat == batch + i * batches] for i in range(WORKERS)]
+            for part in _POOL.map(lambda q: self._queue(jobs, legs, q), queues):
+                found = _merged(found, part)
+            self.report(1 / batches)
         return found
 
     def _queue(self, jobs: Jobs, legs: Legs, chosen: np.ndarray) -> Arrivals:
@@ -150,12 +158,15 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
         worst = np.zeros(some.cell.size)
         np.maximum.at(worst, some.owner, np.nan_to_num(gaps, nan=np.inf))
         # Lanes that met before a stop part again for a moment where it is at a slip: the
-        # start is forgotten all the same, and the gap is reported as it is.
-        worst = np.minimum(worst, np.nan_to_num(meets, nan=np.inf))
+        # start is forgotten all the same, and the gap is reported as it is. Lanes from
+        # close by have had steps of their own, which part them further: they go back once.
+        far = wells[open_] > MARGIN
+        met = np.where(far, np.nan_to_num(meets, nan=np.inf), np.inf)
+        worst = np.minimum(worst, met)
         open_ = open_[worst > CLOSED * rounds.accuracy]
         if open_.size == 0:
             break
-        wells[open_] *= EARLIER
+        wells[open_] = np.maximum(EARLIER * wells[open_], MARGIN + 1)
         back[open_] *= EARLIER
     result = Found(Arrivals(*values), Legs(*legs), gap, how, steps, rejected)
     return result, open_
