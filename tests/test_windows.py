@@ -135,7 +135,8 @@ def test_values_alone_are_the_same_and_leave_slips_out(gamma):
 
 
 def test_the_start_alone_can_be_asked_for():
-    found = cells(scene_of(z0=0.02), 0.05, 1.0, "auto", 1e-3, np.zeros(1), suprema=False)
+    alone = {"balanced": False, "suprema": False}
+    found = cells(scene_of(z0=0.02), 0.05, 1.0, "auto", 1e-3, np.zeros(1), **alone)
     assert found.z[0] == pytest.approx([0.02])
 
 
