@@ -43,7 +43,7 @@ _NEAR_STRIP = 1e-3  # wells
 # Looser brackets and surveys save a fifth of the time, and at gamma = 0.75 were off by up
 # to 6 times an accuracy of 1e-1, and twice one of 1e-2.
 LOOSEST = 1e-3
-_CELLS = 32  # at least, in a compiled call: 64 take 4 ms, 32 two
+_CELLS = 16  # at least, in a compiled call: 64 take 4 ms, 16 one
 _FEW = 500  # values that are worth a guess at rooms
 # Wells after a slip at which lanes may set off, and the shortest rest that is worth it.
 _AFTER_SLIP, _SHORT_REST = 0.05, 0.2
