@@ -3,7 +3,7 @@
 Under a rising load the tip waits at the first place where the surface and the support hold
 as much, `z(t) = inf {z >= z0: Phi'(z) + V_eps'(z) >= l(t)}`, and under a falling one
 likewise; a slip turns all the energy it frees into heat. What viscosity adds is a delay at
-each fold, of about `(eps^(1 + gamma))^(2/3)` s: 1% of a slip period at gamma = 1 and
+each fold, of about `(eps^(1 + gamma))^(2/3)` s: 3% of a slip period at gamma = 1 and
 eps = 1e-6. Times so near to a slip count as inside.
 """
 
@@ -14,7 +14,7 @@ import reference as ref
 from entry import Entry, load_of, strip_of
 from scipy.optimize import minimize_scalar
 
-_WIDER = 6.0  # than what counts as inside a slip where viscosity is known
+_WIDER = 12.0  # than what counts as inside a slip where viscosity is known: 6% of a period
 _GRID = 400  # places in a well; crossings are then bisected
 
 
