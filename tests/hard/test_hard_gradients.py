@@ -67,6 +67,7 @@ def check(one, width, seed=0):
     assert abs(sum(terms) - central) < 1e-5 * max(abs(central), *map(abs, terms))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", named(_EVERY, slow=[n for n in HARD if n not in _QUICK]))
 def test_derivatives_by_every_number_are_central_differences(name):
     check(HARD[name], 1e-5)
