@@ -12,7 +12,7 @@ from ..arguments import Real
 from ..loads import AbstractLoad
 from ..potentials import AbstractPotential
 from ..supports import AbstractSupport
-from .balance import Balance, advance, end_slope
+from .balance import Balance, advance, arrival, end_slope
 from .extent import Extent, Guide, spend, widen
 from .field import Point, TipField
 from .rosenbrock import Linearised, Tableau, rosenbrock_step
@@ -123,6 +123,7 @@ def step_of_lane(
     tip = jnp.where(accepted, tip, motion.tip)
     time = jnp.where(cut, task.stop, motion.time + step)
     end = field.point(time, tip)
+    arrived = arrival(field, motion.time, step, end)
     sums = motion.sums
     if balanced:
         sums = advance(
@@ -133,7 +134,7 @@ def step_of_lane(
             motion.tip,
             tip,
             motion.point,
-            end,
+            arrived,
             task.guide.__call__,
         )
     after = Motion(
@@ -143,7 +144,7 @@ def step_of_lane(
         level=level,
         before=size,
         sums=sums,
-        extent=_extent(task, motion, step, time, end, sums),
+        extent=_extent(task, motion, step, time, arrived, sums),
         steps=motion.steps,
         rejected=motion.rejected,
         code=motion.code,
