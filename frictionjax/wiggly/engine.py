@@ -15,7 +15,7 @@ from ..programs import Program, room
 from ..scene import Scene
 from .evaluation import Answers, evaluate
 from .forgetting import lag_forces
-from .lane import Cells, LaneScene
+from .lane import Cells, LaneScene, Sums
 from .lanes import Room, prepare
 from .layout import Needs, cost_of, lay_out, wells_of
 from .path import Path, path_of
@@ -204,27 +204,26 @@ class _Sweep(NamedTuple):
     tableau: Tableau
     ts: np.ndarray
     accuracy: float
-    balanced: bool
-    summed: bool
+    wanted: Sums
+    every_slip: bool
     report: Report
 
     def rounds(self, ground: Ground, cells: Cells) -> Rounds:
         """What rounds of windows of some cells need."""
         parts = self.scene, self.lanes, self.path, ground, cells
-        return Rounds(*parts, self.tableau, self.balanced, self.accuracy, self.report)
+        return Rounds(*parts, self.tableau, self.wanted, self.accuracy, self.report)
 
     def attempt(self, cells: _Cellwise) -> tuple[Answers, np.ndarray]:
         """Answers of some cells, and which of them have a bracket that stays open."""
-        rides = cells.ground.rides
+        rides, whole = cells.ground.rides, any(self.wanted) or self.every_slip
         layout = lay_out(
-            self.scene, self.path, cells.eps, self.ts, cells.needs, rides, self.summed
+            self.scene, self.path, cells.eps, self.ts, cells.needs, rides, whole
         )
         rounds = self.rounds(cells.ground, cells.cells)
         found, open_ = collect(rounds, layout, cells.needs)
         start = cells.ground.start_well, cells.ground.start_tip
-        wanted = self.balanced, self.summed
         answers = evaluate(
-            self.scene, self.path, cells.eps, self.ts, layout, found, *wanted, start
+            self.scene, self.path, cells.eps, self.ts, layout, found, self.wanted, start
         )
         never = np.zeros(cells.eps.size, dtype=bool)
         never[layout.windows.cell[open_]] = True
@@ -233,7 +232,7 @@ class _Sweep(NamedTuple):
     def is_rough(self, answers: Answers, eps: np.ndarray) -> np.ndarray:
         """Cells whose surveys are not good to the accuracy."""
         rough = answers.survey_error > CLOSED * self.accuracy * eps
-        if self.balanced:
+        if self.wanted.energies:
             share = answers.survey_work_error > CLOSED * self.accuracy * np.abs(
                 answers.dissipation[:, -1]
             )
@@ -297,23 +296,24 @@ def integrate_cells(
         return None
     accuracy = min(accuracy, LOOSEST)
     lanes = lane_scene(scene, float(eps.max()))
-    _prepare(lanes, eps.size, ts.size, balanced)
+    wanted = Sums(energies=balanced, extremes=balanced or suprema)
+    _prepare(lanes, eps.size, ts.size, wanted)
     plan = planned(scene, lanes, path, eps, gamma, ts.size, accuracy, method)
     control, ground, needs = plan
     cells = Cells(eps, eps**gamma, control.tolerance, control.reach, control.first_step)
-    every = _Cellwise(eps, ground, cells, needs)
-    summed = balanced or suprema or method == "resolved"
-    sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, balanced, summed, report)
+    parts = _Cellwise(eps, ground, cells, needs)
+    every = method == "resolved"
+    sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, wanted, every, report)
     if method != "resolved":
-        every = _ridden(sweep, every, eps**gamma)
-    answers, never = sweep.attempt(every)
+        parts = _ridden(sweep, parts, eps**gamma)
+    answers, never = sweep.attempt(parts)
     answers = answers._replace(tolerance=np.asarray(control.tolerance))
     for _ in range(_SURVEYS):
         rough = np.flatnonzero(sweep.is_rough(answers, eps) & ~never)
-        if not _surveyed_again(sweep, every, answers, never, rough):
+        if not _surveyed_again(sweep, parts, answers, never, rough):
             break
-    _in_tiles(sweep, every, answers, never)
-    _from_the_start(sweep, every, answers, np.flatnonzero(never))
+    _in_tiles(sweep, parts, answers, never)
+    _from_the_start(sweep, parts, answers, np.flatnonzero(never))
     return answers
 
 
@@ -370,11 +370,11 @@ def _ridden(sweep: _Sweep, every: _Cellwise, viscosity: np.ndarray) -> _Cellwise
     return every._replace(needs=every.needs._replace(nodes=nodes))
 
 
-def _prepare(lanes: LaneScene, cells: int, times: int, balanced: bool) -> None:
+def _prepare(lanes: LaneScene, cells: int, times: int, wanted: Sums) -> None:
     """Have the loop compiled beside the planning."""
     if cells * times > _FEW:
         legs = cells * times // WORKERS
-        prepare(lanes, TABLEAU, Room(cells, legs // 2, legs), balanced)
+        prepare(lanes, TABLEAU, Room(cells, legs // 2, legs), wanted)
 
 
 def _affordable(path: Path, cells: _Cellwise) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 from ..scene import Scene
 from .evaluation import Found
 from .job_queue import Arrivals, Jobs, Legs
-from .lane import Cells, LaneScene
+from .lane import Cells, LaneScene, Sums
 from .lanes import march
 from .layout import Layout, Needs
 from .path import Path, states_at
@@ -72,7 +72,7 @@ class Rounds(NamedTuple):
     ground: Ground
     cells: Cells
     tableau: Tableau
-    balanced: bool
+    wanted: Sums
     accuracy: float
     report: Report
 
@@ -115,7 +115,7 @@ class Rounds(NamedTuple):
         rows = np.repeat(mine.first_leg - (past - count), count) + np.arange(count.sum())
         mine = mine._replace(first_leg=past - count, past_leg=past)
         some = Legs(*(column[rows] for column in legs))
-        found = march(self.lanes, self.cells, mine, some, self.tableau, self.balanced)
+        found = march(self.lanes, self.cells, mine, some, self.tableau, self.wanted)
         return Arrivals(*(_spread(v, rows, legs.start.size) for v in found))
 
 
