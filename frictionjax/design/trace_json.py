@@ -63,7 +63,8 @@ def fields(source: Any) -> dict[str, Any]:
     require(known, "source", "another document", f"JSON with kind = {_KIND!r}")
     missing = sorted({*_PLAIN, *_ROWS, *_PARTS} - set(document))
     require(not missing, "source", f"without {', '.join(missing)}", "a whole fit")
-    seen = document["identifiability"]
+    entries = document["identifiability"].items()
+    seen: dict[str, Any] = {k: v if k == "rank" else _array(k, v) for k, v in entries}
     profile: dict[str, Any] = {k: np.array(v) for k, v in document["profile"].items()}
     found = {name: _number(document[name]) for name in _PLAIN}
     found |= {name: _array(name, document[name]) for name in (*_ROWS, "used", "slipping")}
@@ -72,9 +73,7 @@ def fields(source: Any) -> dict[str, Any]:
         "trace": Trace(**document["trace"]),
         "status": TraceStatus[document["status"]],
         "history": {k: _array(k, v, counts=True) for k, v in document["history"].items()},
-        "identifiability": Identifiability(
-            **{k: v if k == "rank" else _array(k, v) for k, v in seen.items()}
-        ),
+        "identifiability": Identifiability(**seen),
     }
 
 

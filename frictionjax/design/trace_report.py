@@ -33,12 +33,12 @@ def report(trace: Trace, problem: Problem, found: Descent, within: float) -> Tra
     if trace.uncertainty is None:
         scale = max(1.0, float(np.sqrt(excess / freedom)))
     sd = sd * scale
-    bumps = problem.run_bumps(found.numbers)
-    tips = problem.tips(found.numbers, found.flow.z)
+    by_bumps = np.asarray(problem.run_bumps(found.numbers).by)
+    tips = problem.tips(found.numbers, np.asarray(found.flow.z))
     judged = identify(
         found.numbers,
-        (found.flow.by / sd)[:, now.used],
-        (bumps.by / sd)[:, now.used],
+        (np.asarray(found.flow.by) / sd)[:, now.used],
+        (by_bumps / sd)[:, now.used],
         tips[now.used],
         within,
     )
@@ -74,9 +74,9 @@ def _status(
 def _fit(trace, problem, found, now, judged, status, sd, tips, chi2) -> TraceFit:
     stiffness = problem.reading.support if trace.quantity == "force" else 1.0
     achieved = problem.quantity_of(trace.quantity, found.flow.z)
-    cos, sin = np.split(found.numbers, 2)
+    waves: Any = np.split(found.numbers, 2)
     return TraceFit(
-        profile=Fourier(cos, sin),
+        profile=Fourier(*waves),
         trace=trace,
         eps=float(problem.eps),
         gamma=float(problem.gamma),
