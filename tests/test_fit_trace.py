@@ -153,6 +153,7 @@ def test_derivatives_of_the_trace_agree_with_central_differences():
         assert np.max(error) < 1e-5 * np.max(np.abs(slope[rest]))
 
 
+@pytest.mark.slow
 def test_derivatives_by_local_bumps_are_those_of_their_series():
     scene = scene_of()
     centres, width = bumps_of(4)
