@@ -24,7 +24,7 @@ from scenes import AMPLITUDE, PERIOD, SLOPE, TWO_PI, scene
 import frictionjax as fx
 from frictionjax.wiggly.field import TipField
 from frictionjax.wiggly.job_queue import Jobs, Legs
-from frictionjax.wiggly.lane import Cells, LaneScene
+from frictionjax.wiggly.lane import Cells, LaneScene, Sums
 from frictionjax.wiggly.lanes import WIDTH, march
 from frictionjax.wiggly.rodas4p2 import Rodas4P2
 from frictionjax.wiggly.rosenbrock import Linearised, rosenbrock_step
@@ -128,7 +128,9 @@ def whole() -> None:
     edge = AMPLITUDE * np.sin(TWO_PI * start / PERIOD) - SLOPE
     ends = edge, edge + SLIPS * EPS, 2 * ones, 2 * ones
     legs = Legs(start, end, *ends, friction=SLOPE * ones, budget=1e6 * ones)
-    found, seconds = best(lambda: march(parts, cells, jobs, legs, SCHEME, balanced=False))
+    found, seconds = best(
+        lambda: march(parts, cells, jobs, legs, SCHEME, Sums(energies=False))
+    )
     steps = found.steps.sum()
     scalar = best(lambda: scalar_whole(start, end, well, EPS, 1 / DRAG, TOLERANCE))
     (y, (scalar_steps, *_)), scalar_seconds = scalar

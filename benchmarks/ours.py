@@ -16,10 +16,13 @@ jax.config.update("jax_enable_x64", True)
 _LONG = 5.0  # s of one run, beyond which two repeats are enough
 
 
-def solve(one: fx.Scene, eps, gamma, accuracy: float, method: str = "auto"):
-    """Answers of all cells at once, at TIMES."""
+def solve(
+    one: fx.Scene, eps, gamma, accuracy: float, method: str = "auto", suprema: bool = False
+):
+    """Answers of all cells at once: z at TIMES, as of peers, and `suprema` beside it."""
     eps, gamma = np.atleast_1d(eps), np.atleast_1d(gamma)
-    return integrate_cells(one, eps, gamma, TIMES, accuracy, method, balanced=False)
+    wanted = {"balanced": False, "suprema": suprema}
+    return integrate_cells(one, eps, gamma, TIMES, accuracy, method, **wanted)
 
 
 class Timed(NamedTuple):

@@ -15,7 +15,7 @@ from scenes import AMPLITUDE, PERIOD, SLOPE, TWO_PI, scene
 
 import frictionjax as fx
 from frictionjax.wiggly.job_queue import Jobs, Legs
-from frictionjax.wiggly.lane import Cells, LaneScene
+from frictionjax.wiggly.lane import Cells, LaneScene, Sums
 from frictionjax.wiggly.lanes import march
 from frictionjax.wiggly.rodas4p2 import Rodas4P2
 from frictionjax.wiggly.rodas5p import Rodas5P
@@ -91,7 +91,7 @@ def run(tableau: Tableau, eps: float, gamma: float, tolerance: float):
     seconds = []
     for _ in range(3):
         begin = time.perf_counter()
-        found = march(parts, cells, jobs, legs, tableau, balanced=False)
+        found = march(parts, cells, jobs, legs, tableau, Sums(energies=False))
         seconds.append(time.perf_counter() - begin)
     steps = found.steps.sum()
     shares = steps / LANES / SLIPS, found.rejected.sum() / steps

@@ -32,7 +32,7 @@ _COLUMNS = "load | gamma | eps | s | steps | error/eps | open | widest | from z0
 def row(load: str, gamma: float, eps: float, with_error: bool) -> tuple[float, float]:
     """Prints a cell; its seconds and steps."""
     one = scene("vertical", LOADS[load])
-    found, best, *_ = timed(lambda: solve(one, eps, gamma, ACCURACY, "windowed"))
+    found, best, *_ = timed(lambda: solve(one, eps, gamma, ACCURACY, "windowed", True))
     error = np.nan
     if with_error:
         error = error_of(found.z[0], own(one, eps, gamma, 1e-5), eps)

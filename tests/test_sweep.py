@@ -135,6 +135,19 @@ def test_without_dissipation_its_variables_are_absent(data):
     assert "dissipation_order" not in fx.study(bare).orders
 
 
+def test_without_suprema_theirs_are_absent(data):
+    options = {"dissipation": False, "suprema": False}
+    bare = fx.sweep(scene_of(), EPS, GAMMA, ts=data.time.values, **options)
+    left_out = {"sup_error", "strip_excess", "survey_error", "dissipation"}
+    assert left_out.isdisjoint(bare.variables)
+    assert np.abs(bare.z - data.z).max() < 1e-3 * max(EPS)
+    kept = fx.sweep(scene_of(), EPS, GAMMA, ts=data.time.values, suprema=False)
+    assert np.allclose(kept.dissipation, data.dissipation, rtol=0, atol=1e-12)
+    assert "sup_error" not in kept
+    with pytest.raises(ValueError, match="sup_error"):
+        fx.study(bare)
+
+
 def test_progress_goes_to_standard_error(capsys):
     fx.sweep(scene_of(), EPS, GAMMA, ts=np.linspace(0, 3, 61), progress=True)
     captured = capsys.readouterr()

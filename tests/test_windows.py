@@ -104,6 +104,42 @@ def test_cost_does_not_grow_as_eps_falls(load, gamma):
     assert np.all(found.sup_error / [1e-5, 1e-8] < 3)
 
 
+@pytest.mark.parametrize("gamma", [1.0, 2.0])
+def test_lanes_that_set_off_at_rest_find_the_same_in_fewer_steps(gamma, monkeypatch):
+    scene, eps = scene_of(), [1e-3, 7e-4]
+    gammas = [gamma] * 2
+    near = cells(scene, eps, gammas, "windowed")
+    monkeypatch.setattr(engine, "_SHORT_REST", np.inf)
+    far = cells(scene, eps, gammas, "windowed")
+    assert near.steps.sum() < 0.6 * far.steps.sum()
+    for i, e in enumerate(eps):
+        _, counted = outside_slips(scene, e, gamma)
+        assert counted.sum() > 20
+        assert np.abs(near.z[i] - far.z[i])[counted].max() < 1e-3 * e
+    assert np.allclose(near.sup_error, far.sup_error, rtol=0, atol=1e-3 * np.array(eps))
+    assert near.gap.max() < 1e-3
+
+
+@pytest.mark.parametrize("gamma", [0.6, 1.0, 2.0])
+def test_values_alone_are_the_same_and_leave_slips_out(gamma):
+    scene, eps = scene_of(), [0.05, 1.3e-3, 1e-4]
+    wanted = scene, eps, [gamma] * 3, "auto"
+    every = cells(*wanted, balanced=False)
+    alone = cells(*wanted, balanced=False, suprema=False)
+    gaps = np.abs(alone.z - every.z).max(axis=1) / eps
+    assert gaps.max() < 1e-3 * 1e-3
+    assert np.all(alone.status == fx.Status.OK)
+    assert alone.steps.sum() < 0.75 * every.steps.sum()
+    assert np.all(np.isnan(alone.sup_error))
+    assert np.all(np.isnan(alone.strip_excess))
+
+
+def test_the_start_alone_can_be_asked_for():
+    alone = {"balanced": False, "suprema": False}
+    found = cells(scene_of(z0=0.02), 0.05, 1.0, "auto", 1e-3, np.zeros(1), **alone)
+    assert found.z[0] == pytest.approx([0.02])
+
+
 def test_values_just_before_slips_at_small_eps():
     """Where a tip that is 1e-5 of a period off would slip too early."""
     scene, eps, gamma = scene_of(), 1e-7, 2.0

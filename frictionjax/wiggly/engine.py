@@ -15,7 +15,7 @@ from ..programs import Program, room
 from ..scene import Scene
 from .evaluation import Answers, evaluate
 from .forgetting import lag_forces
-from .lane import Cells, LaneScene
+from .lane import Cells, LaneScene, Sums
 from .lanes import Room, prepare
 from .layout import Needs, cost_of, lay_out, wells_of
 from .path import Path, path_of
@@ -43,8 +43,13 @@ _NEAR_STRIP = 1e-3  # wells
 # Looser brackets and surveys save a fifth of the time, and at gamma = 0.75 were off by up
 # to 6 times an accuracy of 1e-1, and twice one of 1e-2.
 LOOSEST = 1e-3
-_CELLS = 32  # at least, in a compiled call: 64 take 4 ms, 32 two
+_CELLS = 16  # at least, in a compiled call: 64 take 4 ms, 16 one
 _FEW = 500  # values that are worth a guess at rooms
+# Wells after a slip at which lanes may set off, and the shortest rest that is worth it.
+_AFTER_SLIP, _SHORT_REST = 0.05, 0.2
+# Lanes set off in the middle of a slip or two, and forget less in their first wells. (1:
+# brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the first.)
+_SLIPS_FORGET = 1.5
 # Wells of a slide that are worth a slip map, where windows set off far back.
 _LONG_SLIDE = 300.0
 
@@ -77,7 +82,7 @@ def ground_of(
     scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray, folds: Folds
 ) -> Ground:
     """What windows need to know of each cell."""
-    lags = _lags(scene.potential, eps, folds, path.speed * eps**gamma)
+    lags = lag_forces(scene.potential, eps, folds, path.speed * eps**gamma)
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
     well, tip = _tips(scene.potential, scene.z0, _fixed(eps))
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
@@ -93,21 +98,6 @@ def ground_of(
         relaxed=_relaxation(scene, path, eps, gamma),
         rides=_no_rides(eps.size),
     )
-
-
-def _lags(potential: AbstractPotential, eps, folds: Folds, drag) -> list[np.ndarray]:
-    """Forces in N by which slides lag, right and left, (cells,); once for each eps.
-
-    (Of the largest eps for all: what a cell gives then depends on its neighbours.)
-    """
-    lags = [np.zeros(eps.size), np.zeros(eps.size)]
-    for value in np.unique(eps):
-        same = eps == value
-        own = Folds(*(np.asarray(f)[same][0] for f in folds))
-        found = lag_forces(potential, float(value), own, drag[same])
-        for lag, force in zip(lags, found, strict=True):
-            lag[same] = force
-    return lags
 
 
 def _relaxation(scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray):
@@ -143,10 +133,25 @@ def _needs(control: StepPlan, ground: Ground, path: Path, accuracy: float) -> Ne
     """How far back windows start: until a bracket as wide as the lag has closed."""
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     memory = np.asarray(control.memory)[: lag.size]
-    folds = np.log((lag + 2) / (0.1 * accuracy))
-    warm = np.ceil(MARGIN + memory * folds)
+    forgets = memory * np.log((lag + 2) / (0.1 * accuracy))
+    slow = np.ceil(MARGIN + forgets)
+    warm = np.minimum(slow, _resting(ground, lag, forgets))
     settle = np.ceil(lag + warm + 2)
-    return Needs(warm, settle, 3 * warm, np.zeros(lag.size), _offsets(ground, path))
+    return Needs(warm, settle, 3 * slow, np.zeros(lag.size), _offsets(ground, path))
+
+
+def _resting(ground: Ground, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
+    """Wells back to a start between slips, from which a bracket closes at rest.
+
+    Windows begin half a period behind slips. Where tips lag by less than that, both lanes
+    of a bracket that sets off a little after a slip come to rest in one well; `forgets`
+    wells more pass where the rest of half a period is too short. Infinite where tips lag
+    further: their lanes have to catch up with each other.
+    """
+    shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
+    rest = 0.5 - _AFTER_SLIP - lag - shift
+    wells = rest + np.ceil(np.maximum(_SLIPS_FORGET * forgets - rest, 0.0))
+    return np.where(rest > _SHORT_REST, wells, np.inf)
 
 
 def _offsets(ground: Ground, path: Path) -> np.ndarray:
@@ -199,23 +204,26 @@ class _Sweep(NamedTuple):
     tableau: Tableau
     ts: np.ndarray
     accuracy: float
-    balanced: bool
+    wanted: Sums
+    every_slip: bool
     report: Report
 
     def rounds(self, ground: Ground, cells: Cells) -> Rounds:
         """What rounds of windows of some cells need."""
         parts = self.scene, self.lanes, self.path, ground, cells
-        return Rounds(*parts, self.tableau, self.balanced, self.accuracy, self.report)
+        return Rounds(*parts, self.tableau, self.wanted, self.accuracy, self.report)
 
     def attempt(self, cells: _Cellwise) -> tuple[Answers, np.ndarray]:
         """Answers of some cells, and which of them have a bracket that stays open."""
-        rides = cells.ground.rides
-        layout = lay_out(self.scene, self.path, cells.eps, self.ts, cells.needs, rides)
+        rides, whole = cells.ground.rides, any(self.wanted) or self.every_slip
+        layout = lay_out(
+            self.scene, self.path, cells.eps, self.ts, cells.needs, rides, whole
+        )
         rounds = self.rounds(cells.ground, cells.cells)
         found, open_ = collect(rounds, layout, cells.needs)
         start = cells.ground.start_well, cells.ground.start_tip
         answers = evaluate(
-            self.scene, self.path, cells.eps, self.ts, layout, found, self.balanced, start
+            self.scene, self.path, cells.eps, self.ts, layout, found, self.wanted, start
         )
         never = np.zeros(cells.eps.size, dtype=bool)
         never[layout.windows.cell[open_]] = True
@@ -224,7 +232,7 @@ class _Sweep(NamedTuple):
     def is_rough(self, answers: Answers, eps: np.ndarray) -> np.ndarray:
         """Cells whose surveys are not good to the accuracy."""
         rough = answers.survey_error > CLOSED * self.accuracy * eps
-        if self.balanced:
+        if self.wanted.energies:
             share = answers.survey_work_error > CLOSED * self.accuracy * np.abs(
                 answers.dissipation[:, -1]
             )
@@ -270,6 +278,7 @@ def integrate_cells(
     method: str,
     balanced: bool = True,
     report: Report = lambda share: None,
+    suprema: bool = True,
 ) -> Answers | None:
     """Every cell (eps, gamma), shape (cells,): values at `ts` and sums over [0, T].
 
@@ -277,7 +286,8 @@ def integrate_cells(
     is long enough; "auto" what passes through fewer wells. Surveys that are too rough are
     made again with more periods; where brackets stay open, tiles measure every slip; and
     where theirs do too, one lane goes through all. Accuracies looser than 1e-3 are solved
-    as that.
+    as that. Where neither energies are `balanced` nor `suprema` wanted, "windowed" and
+    "auto" leave out all slips between the times.
     `report` is told the share of each batch of jobs that is done. None where the load
     turns more often than the scene has room for.
     """
@@ -286,22 +296,24 @@ def integrate_cells(
         return None
     accuracy = min(accuracy, LOOSEST)
     lanes = lane_scene(scene, float(eps.max()))
-    _prepare(lanes, eps.size, ts.size, balanced)
+    wanted = Sums(energies=balanced, extremes=balanced or suprema)
+    _prepare(lanes, eps.size, ts.size, wanted)
     plan = planned(scene, lanes, path, eps, gamma, ts.size, accuracy, method)
     control, ground, needs = plan
     cells = Cells(eps, eps**gamma, control.tolerance, control.reach, control.first_step)
-    every = _Cellwise(eps, ground, cells, needs)
-    sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, balanced, report)
+    parts = _Cellwise(eps, ground, cells, needs)
+    every = method == "resolved"
+    sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, wanted, every, report)
     if method != "resolved":
-        every = _ridden(sweep, every, eps**gamma)
-    answers, never = sweep.attempt(every)
+        parts = _ridden(sweep, parts, eps**gamma)
+    answers, never = sweep.attempt(parts)
     answers = answers._replace(tolerance=np.asarray(control.tolerance))
     for _ in range(_SURVEYS):
         rough = np.flatnonzero(sweep.is_rough(answers, eps) & ~never)
-        if not _surveyed_again(sweep, every, answers, never, rough):
+        if not _surveyed_again(sweep, parts, answers, never, rough):
             break
-    _in_tiles(sweep, every, answers, never)
-    _from_the_start(sweep, every, answers, np.flatnonzero(never))
+    _in_tiles(sweep, parts, answers, never)
+    _from_the_start(sweep, parts, answers, np.flatnonzero(never))
     return answers
 
 
@@ -358,11 +370,11 @@ def _ridden(sweep: _Sweep, every: _Cellwise, viscosity: np.ndarray) -> _Cellwise
     return every._replace(needs=every.needs._replace(nodes=nodes))
 
 
-def _prepare(lanes: LaneScene, cells: int, times: int, balanced: bool) -> None:
+def _prepare(lanes: LaneScene, cells: int, times: int, wanted: Sums) -> None:
     """Have the loop compiled beside the planning."""
     if cells * times > _FEW:
         legs = cells * times // WORKERS
-        prepare(lanes, TABLEAU, Room(cells, legs // 2, legs), balanced)
+        prepare(lanes, TABLEAU, Room(cells, legs // 2, legs), wanted)
 
 
 def _affordable(path: Path, cells: _Cellwise) -> np.ndarray:

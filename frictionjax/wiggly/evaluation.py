@@ -9,6 +9,7 @@ from ..arguments import Real
 from ..programs import Program, in_chunks
 from ..scene import Scene
 from .job_queue import Arrivals, Legs
+from .lane import Sums
 from .layout import Layout, Slide
 from .path import Path, states_at
 from .status import Status
@@ -182,10 +183,13 @@ def evaluate(
     ts: np.ndarray,
     layout: Layout,
     found: Found,
-    balanced: bool,
+    wanted: Sums,
     start: tuple[np.ndarray, np.ndarray],
 ) -> Answers:
-    """Values of all cells from what was found at the stops of the layout."""
+    """Values of all cells from what was found at the stops of the layout.
+
+    Suprema are NaN where no extremes were `wanted`.
+    """
     stops = _stops(scene, layout, found, eps)
     count = eps.size
     guide = np.full(count, path.states[0])
@@ -201,7 +205,7 @@ def evaluate(
         own = [layout.slides[i] for i in mine], [surveys[i] for i in mine]
         cell = _cell_of(layout.chain[c], *own, stops)
         energetics = _no_energetics(ts.size)
-        if balanced:
+        if wanted.energies:
             of = layout, layout.output[c], energy0[c], of_path, path, eps[c]
             energetics = _energetics(cell, stops, *of)
         output = layout.output[c]
@@ -210,13 +214,13 @@ def evaluate(
             (
                 z,
                 *energetics,
-                *_deviations(cell, stops),
+                *(_deviations(cell, stops) if wanted.extremes else (np.nan, np.nan)),
                 np.where(output >= 0, found.how[output], 0),
                 np.where(output >= 0, found.gap[output], 0.0),
                 _share(cell, path, whole),
                 max([s.error_extreme for s in cell.surveys], default=0.0),
-                sum(s.error_work for s in cell.surveys) if balanced else 0.0,
-                _status(cell, stops, layout, found, output, path, eps[c], balanced),
+                sum(s.error_work for s in cell.surveys) if wanted.energies else 0.0,
+                _status(cell, stops, layout, found, output, path, eps[c], wanted.energies),
             )
         )
     columns = [np.array(column) for column in zip(*rows, strict=True)]

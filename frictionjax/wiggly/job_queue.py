@@ -10,7 +10,7 @@ from ..programs import Program
 from .balance import Balance
 from .extent import Extent, Guide
 from .field import Point
-from .lane import Cells, LaneScene, Motion, Task, field_of, keep, step_of_lane
+from .lane import Cells, LaneScene, Motion, Sums, Task, field_of, keep, step_of_lane
 from .rosenbrock import Tableau
 from .step_sizes import level_below
 
@@ -181,11 +181,9 @@ def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
 
 @Program
 def run_queue(
-    scene: LaneScene, tableau: Tableau, balanced: bool, width: int, tables: Tables
+    scene: LaneScene, tableau: Tableau, wanted: Sums, width: int, tables: Tables
 ) -> Float[Array, "legs 13"]:
-    step = jax.vmap(
-        lambda task, motion: step_of_lane(scene, tableau, balanced, task, motion)
-    )
+    step = jax.vmap(lambda task, motion: step_of_lane(scene, tableau, wanted, task, motion))
     point = jax.vmap(lambda task, time, tip: field_of(scene, task).point(time, tip))
 
     def look(work: _Work) -> _Work:

@@ -12,7 +12,7 @@ from ..arguments import Real
 from ..loads import AbstractLoad
 from ..potentials import AbstractPotential
 from ..supports import AbstractSupport
-from .balance import Balance, advance, end_slope
+from .balance import Balance, advance, arrival, end_slope
 from .extent import Extent, Guide, spend, widen
 from .field import Point, TipField
 from .rosenbrock import Linearised, Tableau, rosenbrock_step
@@ -38,6 +38,13 @@ class LaneScene(eqx.Module):
     potential: AbstractPotential
     support: AbstractSupport
     load: AbstractLoad
+
+
+class Sums(NamedTuple):
+    """What lanes add up besides their way: `energies`, and `extremes` of it."""
+
+    energies: bool = True
+    extremes: bool = True
 
 
 class Task(NamedTuple):
@@ -102,7 +109,7 @@ def keep(condition: Real, new: Any, old: Any) -> Any:
 
 
 def step_of_lane(
-    scene: LaneScene, tableau: Tableau, balanced: bool, task: Task, motion: Motion
+    scene: LaneScene, tableau: Tableau, wanted: Sums, task: Task, motion: Motion
 ) -> Motion:
     """One step of one lane; a lane that has reached its stop stays as it is."""
     field = field_of(scene, task)
@@ -123,8 +130,9 @@ def step_of_lane(
     tip = jnp.where(accepted, tip, motion.tip)
     time = jnp.where(cut, task.stop, motion.time + step)
     end = field.point(time, tip)
-    sums = motion.sums
-    if balanced:
+    sums, extent = motion.sums, motion.extent
+    arrived = arrival(field, motion.time, step, end) if any(wanted) else end
+    if wanted.energies:
         sums = advance(
             field,
             sums,
@@ -133,9 +141,11 @@ def step_of_lane(
             motion.tip,
             tip,
             motion.point,
-            end,
+            arrived,
             task.guide.__call__,
         )
+    if wanted.extremes:
+        extent = _extent(task, motion, step, time, arrived, sums)
     after = Motion(
         tip=tip,
         time=time,
@@ -143,7 +153,7 @@ def step_of_lane(
         level=level,
         before=size,
         sums=sums,
-        extent=_extent(task, motion, step, time, end, sums),
+        extent=extent,
         steps=motion.steps,
         rejected=motion.rejected,
         code=motion.code,

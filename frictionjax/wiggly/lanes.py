@@ -11,13 +11,14 @@ import numpy as np
 from jaxtyping import Array
 
 from .job_queue import Arrivals, Jobs, Legs, Tables, run_queue
-from .lane import Cells, LaneScene
+from .lane import Cells, LaneScene, Sums
 from .rosenbrock import Tableau
 
 # Lanes side by side. Seconds of one lane and step, one core: 0.09 us at 64; at 256, where
 # XLA splits the arrays over threads, 0.17. A few jobs go through the narrow loop, whose
 # steps take less time.
 WIDTH, NARROW = 64, 8
+_FEW_JOBS = 20  # a step of the wide loop takes 2.6 times as long as one of the narrow
 
 
 class Room(NamedTuple):
@@ -86,9 +87,7 @@ def _kind(program: tuple) -> tuple:
 _LOOPS = _Loops()
 
 
-def prepare(
-    scene: LaneScene, tableau: Tableau, needed: Room, balanced: bool = True
-) -> None:
+def prepare(scene: LaneScene, tableau: Tableau, needed: Room, wanted: Sums) -> None:
     """Compile the loop that `march` will want, in the background; a guess may be wrong."""
 
     def nothing(room: Room) -> Tables:
@@ -99,7 +98,7 @@ def prepare(
     def compile_quietly() -> None:
         # What cannot be compiled fails again in `march`, where somebody hears of it.
         with contextlib.suppress(Exception):
-            _LOOPS.run((scene, tableau, balanced, WIDTH), needed, nothing)
+            _LOOPS.run((scene, tableau, wanted, WIDTH), needed, nothing)
 
     threading.Thread(target=compile_quietly).start()
 
@@ -110,7 +109,7 @@ def march(
     jobs: Jobs,
     legs: Legs,
     tableau: Tableau,
-    balanced: bool = True,
+    wanted: Sums,
 ) -> Arrivals:
     """Run all jobs side by side; each lane takes the next job when it is through.
 
@@ -123,6 +122,6 @@ def march(
         rows = (_padded(t, size) for t, size in zip(tables, room, strict=True))
         return Tables(*rows, waiting=np.asarray(needed.jobs))
 
-    width = NARROW if needed.jobs <= NARROW else WIDTH
-    found = _LOOPS.run((scene, tableau, balanced, width), needed, fill)
+    width = NARROW if needed.jobs <= _FEW_JOBS else WIDTH
+    found = _LOOPS.run((scene, tableau, wanted, width), needed, fill)
     return Arrivals(*np.asarray(found)[: needed.legs].T)

@@ -273,16 +273,31 @@ def _cuts(parts: _Inner, cell: int, fixed: np.ndarray, lattice: np.ndarray):
     return opening, own, np.searchsorted(opening, own, side="left") - 1
 
 
+def _tiles(segment: np.ndarray, tile: np.ndarray) -> list[np.ndarray]:
+    """Stops of a chain that one window holds: of one segment and one tile of it."""
+    cut = (np.diff(segment) != 0) | (np.diff(tile) > 0)
+    return np.split(np.arange(segment.size), np.flatnonzero(cut) + 1)
+
+
 def lay_out(
-    scene: Scene, path: Path, eps: np.ndarray, ts: np.ndarray, needs: Needs, rides
+    scene: Scene,
+    path: Path,
+    eps: np.ndarray,
+    ts: np.ndarray,
+    needs: Needs,
+    rides: np.ndarray,
+    summed: bool = True,
 ) -> Layout:
     """Windows that give every requested time, and sums and extremes over [0, T].
 
     Outside the inner parts of slides everything is measured, in tiles that follow each
-    other; inside, some periods, and one window for each requested time.
+    other; inside, some periods, and one window for each requested time. Where nothing is
+    `summed`, only windows with requested times are left.
     """
+    summed = summed or not np.any(ts > 0)
     parts = _inner_parts(scene, path, eps, needs, rides)
-    who, node_start, node_end = _sample(scene, path, eps, needs, parts, rides)
+    measured = parts if summed else _Inner(*(column[:0] for column in parts))
+    who, node_start, node_end = _sample(scene, path, eps, needs, measured, rides)
     lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts)
     edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
     fixed = np.unique(np.concatenate([edges, ts]))
@@ -303,20 +318,23 @@ def lay_out(
         tile = np.floor(since / needs.tile[cell] - 1e-9)
         begins = own > opening[segment]
         own, segment, tile = own[begins], segment[begins], tile[begins]
-        cut = np.concatenate([[True], (np.diff(segment) != 0) | (np.diff(tile) > 0)])
-        for group in np.split(np.arange(own.size), np.flatnonzero(cut)[1:]):
+        tiles = _tiles(segment, tile)
+        if not summed:
+            wanted = np.isin(own, ts)
+            tiles = [group for group in tiles if wanted[group].any()]
+        for group in tiles:
             first = group[0]
             fresh = first == 0 or segment[first] != segment[first - 1]
             begin = opening[segment[first]] if fresh else own[first - 1]
             rows.append((cell, begin, False, own[group]))
+        own = own[np.concatenate([*tiles, np.zeros(0, dtype=int)])]
         chain.append(count + np.arange(own.size))
-        at = np.searchsorted(own, ts)
-        hit = (at < own.size) & (own[np.minimum(at, own.size - 1)] == ts)
-        output[cell, hit] = count + at[hit]
+        hit, which = np.nonzero(ts[:, None] == own)
+        output[cell, hit] = count + which
         count += own.size
     slides: list[Slide] = []
     lows, highs = (states_at(scene, path, t) for t in (parts.low, parts.high))
-    for i in range(parts.cell.size):
+    for i in range(measured.cell.size):
         mine = who == i
         starts, ends = node_start[mine], node_end[mine]
         stops = count + np.arange(starts.size)

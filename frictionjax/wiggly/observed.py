@@ -10,7 +10,7 @@ import jax.numpy as jnp
 from jaxtyping import PyTree
 
 from ..arguments import Real
-from .balance import advance, at_rest, dissipated
+from .balance import advance, arrival, at_rest, dissipated
 from .field import TipField
 
 
@@ -48,7 +48,8 @@ class Recorder(eqx.Module):
         after: list = []
         spent = jnp.zeros_like(y1)
         if self.balanced:
-            ends = self.field.point(t0, y0), self.field.point(t1, y1)
+            end = arrival(self.field, t0, t1 - t0, self.field.point(t1, y1))
+            ends = self.field.point(t0, y0), end
             balance = advance(self.field, memory[0], t0, t1 - t0, y0, y1, *ends)
             after.append(balance)
         if self.watch is not None:

@@ -9,7 +9,7 @@ import numpy as np
 from ..scene import Scene
 from .evaluation import Found
 from .job_queue import Arrivals, Jobs, Legs
-from .lane import Cells, LaneScene
+from .lane import Cells, LaneScene, Sums
 from .lanes import march
 from .layout import Layout, Needs
 from .path import Path, states_at
@@ -34,6 +34,16 @@ LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast
 _BATCH = 1e5  # wells: a few seconds, between two reports
 
 Report = Callable[[float], None]
+
+
+# Started with the first sweep, and kept: a pool for each took 1 ms.
+_POOL = ThreadPoolExecutor(WORKERS)
+
+
+def _seats(count: int, seats: int) -> np.ndarray:
+    """Seats dealt there and back, so that none gets all the lanes behind of brackets."""
+    row, seat = np.divmod(np.arange(count), seats)
+    return np.where(row % 2 == 0, seat, seats - 1 - seat)
 
 
 def _merged(one: Arrivals, other: Arrivals) -> Arrivals:
@@ -62,7 +72,7 @@ class Rounds(NamedTuple):
     ground: Ground
     cells: Cells
     tableau: Tableau
-    balanced: bool
+    wanted: Sums
     accuracy: float
     report: Report
 
@@ -87,14 +97,12 @@ class Rounds(NamedTuple):
         order = np.argsort(-cost, kind="stable")
         batches = int(np.ceil(cost.sum() / _BATCH))
         found = _nothing(legs)
-        with ThreadPoolExecutor(WORKERS) as pool:
-            for batch in range(batches):
-                queues = [
-                    order[batch + i * batches :: batches * WORKERS] for i in range(WORKERS)
-                ]
-                for part in pool.map(lambda q: self._queue(jobs, legs, q), queues):
-                    found = _merged(found, part)
-                self.report(1 / batches)
+        seat = _seats(order.size, batches * WORKERS)
+        for batch in range(batches):
+            queues = [order[seat == batch + i * batches] for i in range(WORKERS)]
+            for part in _POOL.map(lambda q: self._queue(jobs, legs, q), queues):
+                found = _merged(found, part)
+            self.report(1 / batches)
         return found
 
     def _queue(self, jobs: Jobs, legs: Legs, chosen: np.ndarray) -> Arrivals:
@@ -107,7 +115,7 @@ class Rounds(NamedTuple):
         rows = np.repeat(mine.first_leg - (past - count), count) + np.arange(count.sum())
         mine = mine._replace(first_leg=past - count, past_leg=past)
         some = Legs(*(column[rows] for column in legs))
-        found = march(self.lanes, self.cells, mine, some, self.tableau, self.balanced)
+        found = march(self.lanes, self.cells, mine, some, self.tableau, self.wanted)
         return Arrivals(*(_spread(v, rows, legs.start.size) for v in found))
 
 
@@ -150,12 +158,15 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
         worst = np.zeros(some.cell.size)
         np.maximum.at(worst, some.owner, np.nan_to_num(gaps, nan=np.inf))
         # Lanes that met before a stop part again for a moment where it is at a slip: the
-        # start is forgotten all the same, and the gap is reported as it is.
-        worst = np.minimum(worst, np.nan_to_num(meets, nan=np.inf))
+        # start is forgotten all the same, and the gap is reported as it is. Lanes from
+        # close by have had steps of their own, which part them further: they go back once.
+        far = wells[open_] > MARGIN
+        met = np.where(far, np.nan_to_num(meets, nan=np.inf), np.inf)
+        worst = np.minimum(worst, met)
         open_ = open_[worst > CLOSED * rounds.accuracy]
         if open_.size == 0:
             break
-        wells[open_] *= EARLIER
+        wells[open_] = np.maximum(EARLIER * wells[open_], MARGIN + 1)
         back[open_] *= EARLIER
     result = Found(Arrivals(*values), Legs(*legs), gap, how, steps, rejected)
     return result, open_

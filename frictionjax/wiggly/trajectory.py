@@ -96,7 +96,9 @@ def _solve(scene, eps, gamma, ts, accuracy, solver, balanced, max_steps, adjoint
 def _through_lanes(scene, eps, gamma, ts, accuracy, method, balanced) -> Solution | None:
     """The solution by lanes; None where the scene has no room for the load's turns."""
     cell = np.atleast_1d(float(eps)), np.atleast_1d(float(gamma))
-    found = integrate_cells(scene, *cell, np.asarray(ts), accuracy, method, balanced)
+    found = integrate_cells(
+        scene, *cell, np.asarray(ts), accuracy, method, balanced, suprema=False
+    )
     if found is None:
         return None
     dissipation = jnp.asarray(found.dissipation[0]) if balanced else None

@@ -1,0 +1,73 @@
+"""What the compiler is told matters neither to values nor, much, to memory."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from frictionjax.compilation import FAST_CPU_FLAGS
+
+_HERE = Path(__file__).parent
+_MODULES = os.pathsep.join([str(_HERE), str(_HERE.parent)])
+
+_SCRIPT = """
+import sys, jax
+jax.config.update("jax_enable_x64", True)
+import numpy as np, frictionjax as fx
+from catalogue import HARD
+found = {}
+for name, one in HARD.items():
+    run = fx.solve(one.build(), one.eps, one.gamma, one.ts)
+    assert run.ok, (name, run.status.message)
+    found[name] = np.stack([run.z / one.eps, run.dissipation / run.dissipation[-1]])
+np.savez(sys.argv[1], **{name.replace("/", "|"): value for name, value in found.items()})
+"""
+
+
+@pytest.mark.slow
+def test_compiler_flags_do_not_matter_in_any_scene(tmp_path):
+    flags = {
+        "plain": "",
+        "fast": FAST_CPU_FLAGS,
+        "quick": "--xla_backend_optimization_level=0",
+    }
+    found = {}
+    for name, value in flags.items():
+        path = tmp_path / f"{name}.npz"
+        env = os.environ | {"XLA_FLAGS": value, "PYTHONPATH": _MODULES}
+        subprocess.run([sys.executable, "-c", _SCRIPT, path], check=True, env=env)
+        found[name] = dict(np.load(path))
+    for scene, values in found["plain"].items():
+        for name in ("fast", "quick"):
+            assert np.abs(found[name][scene] - values).max() < 1e-6, (name, scene)
+
+
+_COMPILED = """
+import resource, sys
+resource.setrlimit(resource.RLIMIT_DATA, (8 * 2**30, 8 * 2**30))
+import jax
+jax.config.update("jax_enable_x64", True)
+import numpy as np
+import frictionjax as fx
+from springs import Spring, scene_of
+k = np.arange(1, int(sys.argv[1]) + 1)
+cos = 0.1 / k**4 / (2 * np.pi * np.sum(1.0 / k**3))
+scene = scene_of(Spring("", surface=(cos, 0.3 * cos)))
+data = fx.sweep(scene, [1e-3], [0.5], np.linspace(0, 3, 61))  # wide and narrow loops
+assert int(data.status.max()) == 0, data.status.values
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("harmonics", [8, 16, 33])
+def test_compilation_with_fast_flags_takes_little_memory(harmonics):
+    # Sums of 14 and 16 harmonics, written out, took LLVM more than 20 GB.
+    env = os.environ | {"XLA_FLAGS": FAST_CPU_FLAGS, "PYTHONPATH": _MODULES}
+    env.pop("JAX_COMPILATION_CACHE_DIR", None)
+    command = [sys.executable, "-c", _COMPILED, str(harmonics)]
+    done = subprocess.run(command, check=True, env=env, capture_output=True, text=True)
+    assert float(done.stdout) < 2.0  # GB
