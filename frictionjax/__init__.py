@@ -39,6 +39,9 @@ _HOME = {
     "design_map": "design.maps",
     "Target": "design.targets",
     "fit_profile": "design.profile_fit",
+    "Trace": "design.trace",
+    "simulate_trace": "design.trace",
+    "fit_trace": "design.trace_fit",
     "load_scene": "scene_files",
     "save_scene": "scene_files",
     "use_fast_cpu": "compilation",
@@ -67,6 +70,9 @@ if TYPE_CHECKING:
     from .design.steady_slide import steady_slide as steady_slide
     from .design.targets import Target as Target
     from .design.tolerance import tolerance as tolerance
+    from .design.trace import Trace as Trace
+    from .design.trace import simulate_trace as simulate_trace
+    from .design.trace_fit import fit_trace as fit_trace
     from .eps_grids import order_cost as order_cost
     from .friction_law import friction as friction
     from .limit_system import solve_limit as solve_limit

@@ -1,0 +1,144 @@
+"""A measured friction trace: force or position against time."""
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import jax
+import numpy as np
+
+from ..arguments import as_text, known_numbers, require, require_real
+from ..programs import Program
+from ..scene import Scene, require_times
+from ..wiggly.trajectory import solve
+
+QUANTITIES = ("force", "z")
+
+
+class Trace:
+    """What was measured at the times `ts` (s, increasing), shape (n,).
+
+    One of `force`: `l(t) - Phi'(z)` in N, the friction of a loop, and `z`: the state in
+    m. `uncertainty`: standard deviation of one sample in the same unit, a number or (n,);
+    None where it is not known: then it is taken from what the fit leaves.
+
+    Raises `ValueError` for shapes that differ, values that are not finite, times that do
+    not increase from 0 on, uncertainties that are not positive, or both quantities.
+    """
+
+    def __init__(self, ts: Any, force: Any = None, z: Any = None, uncertainty: Any = None):
+        given = [name for name, v in (("force", force), ("z", z)) if v is not None]
+        allowed = "one of force and z"
+        require(len(given) == 1, "trace", " and ".join(given) or "nothing", allowed)
+        self.quantity = given[0]
+        self.ts = known_numbers(ts).astype(float)
+        good = self.ts.ndim == 1 and self.ts.size >= 4
+        require(good, "trace.ts", self.ts.shape, "4 or more times, shape (n,)")
+        require(np.all(np.isfinite(self.ts)), "trace.ts", self.ts, "finite times")
+        require(np.all(np.diff(self.ts) > 0), "trace.ts", self.ts, "increasing times")
+        require(self.ts[0] >= 0, "trace.ts", self.ts[0], "times from 0 on")
+        name = f"trace.{self.quantity}"
+        self.values = known_numbers(force if z is None else z).astype(float)
+        shape = f"the shape {self.ts.shape} of ts"
+        require(self.values.shape == self.ts.shape, name, self.values.shape, shape)
+        require(np.all(np.isfinite(self.values)), name, self.values, "finite values")
+        self.uncertainty = None
+        if uncertainty is not None:
+            self.uncertainty = _deviations(uncertainty, self.ts.shape)
+
+    @classmethod
+    def from_csv(cls, path: Any) -> "Trace":
+        """Read a file with a line of names, `t`, one of `force` and `z`, and, where it is
+        known, `uncertainty`, separated by commas, in s, N or m.
+
+        Raises `ValueError`, one line, for a file that is no such table.
+        """
+        try:
+            columns = _columns(Path(path))
+            names = [name for name in QUANTITIES if name in columns]
+            require("t" in columns, "columns", ", ".join(columns), "t among them")
+            require(bool(names), "columns", ", ".join(columns), "force or z among them")
+            values = {name: columns[name] for name in names}
+            return cls(columns["t"], **values, uncertainty=columns.get("uncertainty"))
+        except OSError as error:
+            raise ValueError(f"{path}: {error.strerror or error}") from None
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
+
+    def to_csv(self, path: Any) -> None:
+        """Write the file that `from_csv` reads."""
+        columns = {"t": self.ts, self.quantity: self.values}
+        if self.uncertainty is not None:
+            columns["uncertainty"] = self.uncertainty
+        with Path(path).open("w", newline="", encoding="utf-8") as file:
+            rows = csv.writer(file)
+            rows.writerow(columns)
+            rows.writerows(zip(*(v.tolist() for v in columns.values()), strict=True))
+
+    def __repr__(self) -> str:
+        times = f"{self.ts.size} times in [{as_text(self.ts[0])}, {as_text(self.ts[-1])}] s"
+        return f"Trace({self.quantity}: {times})"
+
+
+def _deviations(uncertainty: Any, shape: tuple) -> np.ndarray:
+    name, known = "trace.uncertainty", known_numbers(uncertainty).astype(float)
+    allowed = f"one number or the shape {shape} of ts"
+    require(known.ndim == 0 or known.shape == shape, name, known.shape, allowed)
+    good = np.all(np.isfinite(known)) and np.all(known > 0)
+    require(good, name, known, "uncertainties > 0")
+    return np.broadcast_to(known, shape).copy()
+
+
+def _columns(path: Path) -> dict[str, np.ndarray]:
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        rows = [row for row in csv.reader(file) if any(map(str.strip, row))]
+    require(len(rows) > 1, "rows", len(rows), "a line of names and lines of numbers")
+    names = [name.strip() for name in rows[0]]
+    for number, row in enumerate(rows, start=1):
+        same = len(row) == len(names)
+        require(same, f"row {number}", f"{len(row)} fields", f"{len(names)}")
+    try:
+        block = np.array(rows[1:], dtype=float)
+    except ValueError:
+        raise ValueError("rows: need numbers below the line of names") from None
+    return dict(zip(names, block.T, strict=True))
+
+
+@Program
+def forces_at(scene: Scene, ts, z):
+    """Load in N, and the support's force in N and stiffness in N/m at states z."""
+    support = scene.support
+    return (
+        jax.vmap(scene.load)(ts),
+        jax.vmap(support.force)(z),
+        jax.vmap(support.stiffness_at)(z),
+    )
+
+
+def simulate_trace(
+    scene: Scene,
+    eps: Any,
+    gamma: Any = 1.0,
+    ts: Any = None,
+    quantity: str = "force",
+    noise: Any = 0.0,
+    seed: int = 0,
+    accuracy: Any = 1e-4,
+) -> Trace:
+    """The trace that a scene would give: `solve`, with normal noise added.
+
+    `ts`: 301 evenly spaced times where None. `noise`: standard deviation in N or m; it
+    becomes the trace's `uncertainty` where it is not 0. `accuracy`: as in `solve`.
+
+    Raises `ValueError` as `solve`, for an unknown quantity, and a trajectory that failed.
+    """
+    require(quantity in QUANTITIES, "quantity", quantity, "one of force, z")
+    require_real("noise", noise, "noise >= 0", lambda v: v >= 0)
+    ts = np.asarray(require_times(scene, ts, 301))
+    found = solve(scene, eps, gamma, ts, accuracy, dissipation=False)
+    require(found.ok, "scene", found.status.message, "a trajectory that can be trusted")
+    load, force, _ = (np.asarray(v) for v in forces_at(scene, ts, np.asarray(found.z)))
+    values = np.asarray(found.z) if quantity == "z" else load - force
+    random = np.random.default_rng(seed).normal(size=ts.size)
+    measured: Any = {quantity: values + float(noise) * random}
+    return Trace(ts, **measured, uncertainty=float(noise) or None)

@@ -1,0 +1,88 @@
+"""Fits to traces as JSON, and back."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..arguments import require
+from ..profiles import Fourier
+from .trace import Trace
+from .trace_seen import Identifiability
+from .trace_status import TraceStatus
+
+_KIND = "frictionjax.TraceFit"
+_PLAIN = ("eps", "gamma", "disputed", "chi2", "degrees_of_freedom")
+_ROWS = ("achieved", "residuals", "deviation", "tips")
+_FLAGS = ("used", "slipping", "determined", "visited")  # bool
+_PARTS = ("profile", "trace", "status", "used", "slipping", "history", "identifiability")
+
+
+def dump(fit: Any) -> str:
+    """The JSON text of a fit; numbers keep all digits, those not finite become null."""
+    trace = fit.trace
+    document: dict[str, Any] = {"kind": _KIND, "status": fit.status.name}
+    document |= {name: getattr(fit, name) for name in _PLAIN}
+    document |= {name: getattr(fit, name) for name in (*_ROWS, "used", "slipping")}
+    document["profile"] = {"cos": fit.profile.cos, "sin": fit.profile.sin}
+    document["trace"] = {"ts": trace.ts, trace.quantity: trace.values}
+    if trace.uncertainty is not None:
+        document["trace"]["uncertainty"] = trace.uncertainty
+    document["history"] = fit.history._asdict()
+    document["identifiability"] = fit.identifiability._asdict()
+    return json.dumps(_plain(document), indent=1)
+
+
+def _plain(value: Any) -> Any:
+    """JSON has no arrays and no NaN."""
+    if isinstance(value, dict):
+        return {name: _plain(entry) for name, entry in value.items()}
+    if hasattr(value, "shape"):
+        return _plain(np.asarray(value).tolist())
+    if isinstance(value, list):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None if np.isnan(value) else ("inf" if value > 0 else "-inf")
+    return value
+
+
+def fields(source: Any) -> dict[str, Any]:
+    """The fields of a fit, of a JSON text or file; see `TraceFit.from_json`."""
+    text = str(source)
+    if not text.lstrip().startswith("{"):
+        try:
+            text = Path(source).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError):
+            require(False, "source", str(source), "the text or the file of a fit's JSON")
+    try:
+        document = json.loads(text)
+    except json.JSONDecodeError as problem:
+        raise ValueError(f"source: not JSON ({problem})") from None
+    known = isinstance(document, dict) and document.get("kind") == _KIND
+    require(known, "source", "another document", f"JSON with kind = {_KIND!r}")
+    missing = sorted({*_PLAIN, *_ROWS, *_PARTS} - set(document))
+    require(not missing, "source", f"without {', '.join(missing)}", "a whole fit")
+    entries = document["identifiability"].items()
+    seen: dict[str, Any] = {k: v if k == "rank" else _array(k, v) for k, v in entries}
+    profile: dict[str, Any] = {k: np.array(v) for k, v in document["profile"].items()}
+    found = {name: _number(document[name]) for name in _PLAIN}
+    found |= {name: _array(name, document[name]) for name in (*_ROWS, "used", "slipping")}
+    return found | {
+        "profile": Fourier(**profile),
+        "trace": Trace(**document["trace"]),
+        "status": TraceStatus[document["status"]],
+        "history": {k: _array(k, v, counts=True) for k, v in document["history"].items()},
+        "identifiability": Identifiability(**seen),
+    }
+
+
+def _array(name: str, rows: Any, counts: bool = False) -> np.ndarray:
+    if name in _FLAGS and not counts:
+        return np.array(rows, dtype=bool)
+    whole = counts and name in ("used", "slipping", "disputed")
+    return np.array(rows, dtype=int if whole else float)  # null becomes NaN
+
+
+def _number(value: Any) -> Any:
+    return float("nan" if value is None else value) if not isinstance(value, int) else value

@@ -1,0 +1,117 @@
+"""From a descent to the result of a fit to a trace."""
+
+from typing import Any
+
+import numpy as np
+
+from ..profiles import Fourier
+from .trace import Trace
+from .trace_descent import Descent, Step, View, view
+from .trace_flow import Flow
+from .trace_problem import Problem
+from .trace_result import TraceFit, TraceHistory
+from .trace_seen import Identifiability, identify
+from .trace_status import TraceStatus
+
+# Both: 5 standard deviations of chi2, and half more than expected, which small errors of
+# eps, gamma or the stiffness may add at thousands of samples.
+_SIGMAS, _TOO_MUCH = 5.0, 1.5
+_DISPUTED = 0.01  # of the samples may be in other wells
+_ROUGHEST = 0.1  # eps: residuals of unknown uncertainty that still show a phase
+_LITTLE = 0.05  # of the period
+_UNTRUSTED = (TraceStatus.MISFIT, TraceStatus.OTHER_SLIPS, TraceStatus.MAX_STEPS)
+
+
+def report(trace: Trace, problem: Problem, found: Descent, within: float) -> TraceFit:
+    """Judge where the descent ended."""
+    now = view(problem.observed(), found.flow)
+    sd = problem.observed().sd
+    excess = float(np.sum((now.away / sd)[now.used] ** 2))
+    freedom = max(1, int(np.sum(now.used)) - found.numbers.size)
+    # Where uncertainties are not known, what is left over is taken for them.
+    scale = 1.0
+    if trace.uncertainty is None:
+        scale = max(1.0, float(np.sqrt(excess / freedom)))
+    sd = sd * scale
+    by_bumps = np.asarray(problem.run_bumps(found.numbers).by)
+    tips = problem.tips(found.numbers, np.asarray(found.flow.z))
+    judged = identify(
+        found.numbers,
+        (np.asarray(found.flow.by) / sd)[:, now.used],
+        (by_bumps / sd)[:, now.used],
+        tips[now.used],
+        within,
+    )
+    status = _status(problem, found, now, judged, excess / scale**2 / freedom, freedom, sd)
+    if status in _UNTRUSTED:  # derivatives at a surface that is not the trace's
+        judged = judged._replace(determined=np.zeros_like(judged.determined))
+    return _fit(trace, problem, found, now, judged, status, sd, tips, excess / scale**2)
+
+
+def _status(
+    problem: Problem,
+    found: Descent,
+    now: View,
+    judged: Identifiability,
+    chi2: float,
+    freedom: int,
+    sd: np.ndarray,
+) -> TraceStatus:
+    samples, eps = now.used.size, float(problem.eps)
+    disputed = int(np.sum(now.disputed))
+    high = chi2 > max(_TOO_MUCH, 1 + _SIGMAS * np.sqrt(2 / freedom))
+    known = (
+        (high or np.median(sd) > _ROUGHEST * eps, TraceStatus.MISFIT),
+        (disputed > 0.2 * samples, TraceStatus.MISFIT),
+        (disputed > max(2, _DISPUTED * samples), TraceStatus.OTHER_SLIPS),
+        (not found.converged, TraceStatus.MAX_STEPS),
+        (np.ptp(problem.reading.z) < eps, TraceStatus.NO_SLIDE),
+        (judged.share < _LITTLE, TraceStatus.UNDETERMINED),
+    )
+    return next((status for bad, status in known if bad), TraceStatus.FITTED)
+
+
+def _fit(trace, problem, found, now, judged, status, sd, tips, chi2) -> TraceFit:
+    stiffness = problem.reading.support if trace.quantity == "force" else 1.0
+    achieved = problem.quantity_of(trace.quantity, found.flow.z)
+    waves: Any = np.split(found.numbers, 2)
+    return TraceFit(
+        profile=Fourier(*waves),
+        trace=trace,
+        eps=float(problem.eps),
+        gamma=float(problem.gamma),
+        achieved=achieved,
+        residuals=achieved - trace.values,
+        deviation=sd * stiffness,
+        used=now.used,
+        slipping=~now.clear,
+        disputed=int(np.sum(now.disputed)),
+        tips=tips,
+        chi2=chi2,
+        degrees_of_freedom=int(np.sum(now.used)) - found.numbers.size,
+        status=status,
+        history=_history(found.steps),
+        identifiability=judged,
+    )
+
+
+def _history(steps: list[Step]) -> TraceHistory:
+    return TraceHistory(*(np.array(column) for column in zip(*steps, strict=True)))
+
+
+def without_trajectory(trace: Trace, problem: Problem, harmonics: int) -> TraceFit:
+    """The result where no start has a trajectory: nothing is determined."""
+    count, unknowns = trace.ts.size, 2 * harmonics
+    numbers = np.full(unknowns, 1e-300)  # no surface, which a profile cannot be
+    nothing = np.full(count, np.nan)
+    empty: Any = nothing, nothing, np.zeros((unknowns, count)), 0
+    off = np.zeros(count, dtype=bool)
+    sd = problem.reading.sd
+    now = View(nothing, sd, sd, off, off, off, 1.0)
+    judged = identify(
+        numbers, np.zeros((unknowns, 1)), np.zeros((2 * unknowns, 1)), np.zeros(0), 0.0
+    )
+    step = Step(np.nan, np.nan, 0, 0, 0, np.nan, 0.0)
+    found = Descent(numbers, Flow(*empty), [step], False)
+    known = judged, TraceStatus.NOT_FINITE, now.sd, nothing, float("nan")
+    return _fit(trace, problem, found, now, *known)

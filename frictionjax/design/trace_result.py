@@ -1,0 +1,132 @@
+"""What the fit to a trace returns."""
+
+import dataclasses
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..profiles import Fourier
+from .trace import Trace
+from .trace_json import dump, fields
+from .trace_seen import Identifiability
+from .trace_status import TraceStatus
+
+
+class TraceHistory(NamedTuple):
+    """Every iterate of a fit, arrays (steps,).
+
+    `objective`: robust, with the prior, per sample. `chi2`: mean square of the residuals
+    used, in standard deviations. `used`, `slipping`, `disputed`: samples that count, are
+    inside slips of the model, and are more than a quarter of a well off outside of them.
+    `damping`: Marquardt's. `blur`: of the samples, in eps.
+    """
+
+    objective: np.ndarray
+    chi2: np.ndarray
+    used: np.ndarray
+    slipping: np.ndarray
+    disputed: np.ndarray
+    damping: np.ndarray
+    blur: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class TraceFit:
+    """Result of `fit_trace`.
+
+    `profile`: the surface found. `trace`: what was asked for, at `eps` and `gamma`.
+    `achieved`: the same quantity of the surface found; `residuals`: achieved minus
+    measured; `deviation`: standard deviation of a sample, with the accuracy of
+    trajectories, or taken from the residuals where it was not known; N or m, (n,).
+    `used`: samples that count; `slipping`: inside a slip of the model, left out;
+    `disputed`: how many others are in another well. `tips`: phases of the tip, (n,).
+    `chi2`: of samples used, in units of `deviation`; `degrees_of_freedom` of them, samples
+    less coefficients. `identifiability`: what the trace determines of the surface.
+    """
+
+    profile: Fourier
+    trace: Trace
+    eps: float
+    gamma: float
+    achieved: np.ndarray
+    residuals: np.ndarray
+    deviation: np.ndarray
+    used: np.ndarray
+    slipping: np.ndarray
+    disputed: int
+    tips: np.ndarray
+    chi2: float
+    degrees_of_freedom: int
+    status: TraceStatus
+    history: TraceHistory
+    identifiability: Identifiability
+
+    @property
+    def success(self) -> bool:
+        """Whether the surface explains the trace, and the trace determines some of it."""
+        return self.status == TraceStatus.FITTED
+
+    @property
+    def message(self) -> str:
+        """Why, for people, and what is determined."""
+        seen = self.identifiability
+        if not seen.determined.any():
+            return f"{self.status.message}; no slope is determined"
+        parts = ", ".join(f"[{a:.3f}, {b:.3f}]" for a, b in seen.intervals)
+        return (
+            f"{self.status.message}; slopes determined at y in {parts} ({seen.share:.0%})"
+        )
+
+    @property
+    def reduced_chi2(self) -> float:
+        """`chi2` per degree of freedom; NaN where there is none."""
+        free = self.degrees_of_freedom
+        return self.chi2 / free if free > 0 else float("nan")
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Of cos and sin, without a prior; see `identifiability`."""
+        return self.identifiability.covariance
+
+    @property
+    def singular_values(self) -> np.ndarray:
+        """Of the derivatives of the samples used; see `identifiability`."""
+        return self.identifiability.singular_values
+
+    def plot(self, truth: Any = None):
+        """Data, fit, residuals and slopes with their errors, as a Figure.
+
+        `truth`: a profile to draw beside the one found.
+        """
+        from ..plot.trace_fit import draw_trace_fit
+
+        return draw_trace_fit(self, truth)
+
+    def to_json(self, path: Any = None) -> str:
+        """Everything as JSON; written to `path` where given."""
+        text = dump(self)
+        if path is not None:
+            Path(path).write_text(text, encoding="utf-8")
+        return text
+
+    @classmethod
+    def from_json(cls, source: Any) -> "TraceFit":
+        """The result again, from the text or the path of its JSON.
+
+        Raises `ValueError` for what is no such JSON.
+        """
+        known = fields(source)
+        known["history"] = TraceHistory(**known["history"])
+        return cls(**known)
+
+    def __repr__(self) -> str:
+        used = f"{int(np.sum(self.used))} of {self.used.size} samples used"
+        left = f"{int(np.sum(self.slipping))} in slips, {self.disputed} in other wells"
+        return "\n".join(
+            [
+                f"TraceFit({self.status.name}: {self.message})",
+                f"  {used}, {left}; reduced chi2 = {self.reduced_chi2:.4g}, "
+                f"{self.history.chi2.size} steps",
+            ]
+        )
