@@ -27,6 +27,8 @@ _LONGEST = (
     "test_windows",
     "test_fit_angle",
     "test_fit_profile",
+    "test_fit_trace",
+    "test_hard_accuracy",
     "test_solvers",
     "test_cost_model",
     "test_steady_slide",

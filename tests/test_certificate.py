@@ -88,6 +88,8 @@ CASES = {
 _LESS = (
     "angular",
     "slide",
+    "stick and slip",
+    "down",
     "10000",
     "alpha < 0",
     "given",

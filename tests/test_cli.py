@@ -104,6 +104,7 @@ def test_friction_of_a_measured_map(tmp_path):
     assert scaled["rho_plus"] == pytest.approx(numbers["rho_plus"], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_study_of_a_measured_map(tmp_path):
     folder = tmp_path / "out"
     options = ["--heights", grooves(tmp_path), "--harmonics", "2", "--out", folder]

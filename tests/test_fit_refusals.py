@@ -31,7 +31,13 @@ UNREACHABLE = [
 ]
 
 
-@pytest.mark.parametrize(("part", "plus", "minus", "bounds", "status", "said"), UNREACHABLE)
+@pytest.mark.parametrize(
+    ("part", "plus", "minus", "bounds", "status", "said"),
+    [
+        *UNREACHABLE[:2],
+        *(pytest.param(*u, marks=pytest.mark.slow) for u in UNREACHABLE[2:]),
+    ],
+)
 def test_unreachable_targets_say_what_is_reachable(part, plus, minus, bounds, status, said):
     fit = fx.fit_profile(fx.Target(part, plus, minus), starts=2, **bounds)
     assert fit.status is status

@@ -35,9 +35,11 @@ def truth(scene):
     [
         "auto",
         "windowed",
-        "Kvaerno5",
         diffrax.Dopri8(),
-        *(pytest.param(m, marks=pytest.mark.slow) for m in ("Tsit5", diffrax.Kvaerno3)),
+        *(
+            pytest.param(m, marks=pytest.mark.slow)
+            for m in ("Kvaerno5", "Tsit5", diffrax.Kvaerno3)
+        ),
     ],
     ids=str,
 )
@@ -72,6 +74,7 @@ def test_budget_of_steps_ends_as_a_status(scene):
     assert np.isnan(np.asarray(found.z)[-1])
 
 
+@pytest.mark.slow
 def test_slips_below_the_spacing_of_floats_end_as_a_status(scene):
     found = fx.solve(scene, 1e-4, 4.0, [0.5, 1.0], method="Kvaerno3")
     assert found.status is fx.Status.STEP_TOO_SMALL
@@ -150,6 +153,7 @@ def test_rosenbrock_damps_stiff_transients():
     assert abs(float(found.ys[0]) - np.sin(1.0)) < 1e-6
 
 
+@pytest.mark.slow
 def test_a_solution_goes_through_jit_and_vmap_whole(scene):
     ts = jnp.asarray([0.5, 1.0])
     many = jax.jit(jax.vmap(lambda eps: fx.solve(scene, eps, 1.0, ts)))

@@ -240,15 +240,19 @@ def given_potential() -> Case:
 
 CASES = [
     vertical_sine,
+    angular_convex_triangle,
+    homothetic_ramp_far_below,
+    given_potential,
+]
+_MORE = [
     stretched_vertical_triangle,
     slanted_fourier_far_above,
     slanted_back_alpha_negative_plateau,
-    angular_convex_triangle,
-    homothetic_ramp_far_below,
     custom_everything,
     spline_vertical,
-    given_potential,
 ]
+# Each compiles its own program, for 10 to 30 s.
+CASES += [pytest.param(make, marks=pytest.mark.slow) for make in _MORE]
 
 
 @pytest.mark.parametrize("make", CASES, ids=lambda make: make.__name__)
@@ -267,7 +271,7 @@ def test_accuracy_is_met(make):
         assert found.stats["dissipation_gap"] < accuracy * expected.dissipation[-1]
 
 
-@pytest.mark.parametrize("eps", [1e-2, 1e-3])
+@pytest.mark.parametrize("eps", [1e-2, pytest.param(1e-3, marks=pytest.mark.slow)])
 def test_benchmark_scene(eps):
     one = vertical_sine()
     scene = fx.Scene(

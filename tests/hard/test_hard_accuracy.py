@@ -8,11 +8,17 @@ from catalogue import HARD
 import frictionjax as fx
 
 ACCURACY = 1e-3
-
-
-@pytest.mark.parametrize(
-    "name", named(slow=("1e6 slips, gamma 1/2", "eps 1e-8", "soft support"))
+_LATE = (
+    "1e6 slips, gamma 1/2",
+    "1e6 slips in 3 s",
+    "eps 1e-8",
+    "slips shorter than floats",
+    "soft support",
+    "gamma 4",
 )
+
+
+@pytest.mark.parametrize("name", named(slow=_LATE))
 def test_values_against_the_independent_reference(name):
     """Values of every method that can be asked; finite, and with a status that is good."""
     one = HARD[name]
@@ -32,6 +38,7 @@ def test_values_against_the_independent_reference(name):
         assert float(found.residual[-1]) < 0.005 * expected.dissipation[-1], method
 
 
+@pytest.mark.slow
 def test_eps_over_seven_decades_in_one_batch():
     scene = HARD["kinks and plateaus"].build()
     eps = 0.97 * np.geomspace(1e-1, 1e-8, 8)
