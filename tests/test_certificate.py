@@ -90,6 +90,8 @@ _LESS = (
     "slide",
     "stick and slip",
     "down",
+    "10",
+    "fast slips",
     "10000",
     "alpha < 0",
     "given",

@@ -28,6 +28,7 @@ def scene():
     )
 
 
+@pytest.mark.slow
 def test_the_grid_does_what_it_says(scene):
     found = fx.order_cost(scene, RANGE, 1.0, within=0.02)
     assert found.success

@@ -137,7 +137,10 @@ SPLINE = (build_spline, [0.0, 0.03, -0.02, 0.01, 0.04, -1.5])
 VERTICAL = (build_vertical, [0.2, 1.5, 0.8, 1.0])
 
 
-@pytest.mark.parametrize(("build", "numbers"), [SLANTED, ANGULAR, SPLINE, VERTICAL])
+@pytest.mark.parametrize(
+    ("build", "numbers"),
+    [pytest.param(*SLANTED, marks=pytest.mark.slow), ANGULAR, SPLINE, VERTICAL],
+)
 def test_gradients_in_every_parameter_of_every_part(build, numbers):
     p = jnp.asarray(numbers)
     rho = jax.jit(

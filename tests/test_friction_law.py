@@ -26,7 +26,10 @@ def test_R_is_positively_homogeneous():
     np.testing.assert_allclose(found, [0.4, 0.2, 0.0, 0.3, 0.9], rtol=1e-15)
 
 
-@pytest.mark.parametrize("kind", ["vertical", "slanted", "angular", "given"])
+@pytest.mark.parametrize(
+    "kind",
+    ["vertical", "slanted", pytest.param("angular", marks=pytest.mark.slow), "given"],
+)
 def test_K_against_brute_quadrature(kind):
     if kind == "given":
         potential = fx.GivenPotential(

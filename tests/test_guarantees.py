@@ -33,6 +33,7 @@ def test_guarantees_hold(kind, genes, turn):
         assert not violation > 1, (check.__name__, violation, case)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("exponent", [-9, 9])
 def test_units_do_not_matter(exponent):
     # A support given as a function once lost its root where states were 1e-8 m.

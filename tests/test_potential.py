@@ -143,6 +143,7 @@ def test_state_to_tip_and_back(kind):
             np.testing.assert_allclose(eps * (number + inside) + ahead, z, atol=1e-14 * eps)
 
 
+@pytest.mark.slow
 def test_a_rod_nearly_upright_keeps_its_digits():
     # L - h = 1e-9 L: the rod reaches over 1e-9 L of height only, so eps is tiny.
     rod = fx.bristles.AngularSpring(1.0, 1.0, 1.0 - 1e-9, -0.3)

@@ -58,7 +58,7 @@ def random_case(seed, kind):
 @pytest.mark.parametrize(
     ("kind", "seed"),
     [
-        ("angular", 0),
+        pytest.param("angular", 0, marks=pytest.mark.slow),
         *(
             pytest.param(kind, seed, marks=pytest.mark.slow)
             for kind in ("slanted", "angular")

@@ -89,6 +89,7 @@ def plain_passage(scene, eps, gamma, sign, place, time, state):
     return eps * found.y[0, -1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("name", ["several folds", "convex"])
 def test_passages_are_those_of_a_plain_integration(name, sign):
@@ -199,9 +200,10 @@ def test_sums_and_extremes_are_those_of_every_slip(name, gamma):
     assert abs(few.dissipation_error - every.dissipation_error)[0] < 1e-3 * whole
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "gamma"),
-    [pytest.param("sine", 0.25, marks=pytest.mark.slow), ("overshoot", 0.5)],
+    [("sine", 0.25), ("overshoot", 0.5)],
 )
 def test_small_eps_is_no_harder(name, gamma):
     """At a thousand times smaller eps: brackets closed, few steps more."""
@@ -230,6 +232,7 @@ def test_lag_follows_the_averaged_equation():
     assert abs(2.0 - force - float(found.z[-1])) < 2 * eps
 
 
+@pytest.mark.slow
 def test_a_ride_alone_equals_the_batch():
     scene, times = SCENES["sine"], TIMES
     eps = np.array([1e-2, 2e-4, 3e-5])

@@ -11,6 +11,7 @@ SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
 ANGULAR = fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, 0.3)
 
 
+@pytest.mark.slow
 def test_small_spreads_agree_with_first_order():
     spreads = {"angle": 2e-5, "height": 1e-5, "profile.sin": [1e-6, 2e-6]}
     found = fx.tolerance(WAVES, SLANTED, spreads, samples=20_000, seed=3)

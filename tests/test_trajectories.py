@@ -240,11 +240,11 @@ def given_potential() -> Case:
 
 CASES = [
     vertical_sine,
-    angular_convex_triangle,
     homothetic_ramp_far_below,
     given_potential,
 ]
 _MORE = [
+    angular_convex_triangle,
     stretched_vertical_triangle,
     slanted_fourier_far_above,
     slanted_back_alpha_negative_plateau,

@@ -90,6 +90,7 @@ def test_reach_is_a_quarter_of_the_narrowest_branch():
     assert 0.5 / 32 < branch < 1.1 / 32
 
 
+@pytest.mark.slow
 def test_steps_end_at_kinks_of_the_load():
     """The same load with a kink that no time asked for shows: values on both sides."""
     load = fx.loads.PiecewiseLinear([0.0, 0.4137, 1.0], [0.0, 0.5, -0.3])

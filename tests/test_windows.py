@@ -69,7 +69,7 @@ def outside_slips(scene, eps, gamma):
         ("sine load", 1.0),
         ("sine load", 2.0),
         pytest.param("piecewise load", 1.0, marks=pytest.mark.slow),
-        ("piecewise load", 2.0),
+        pytest.param("piecewise load", 2.0, marks=pytest.mark.slow),
         pytest.param("several folds", 2.0, marks=pytest.mark.slow),
         pytest.param("convex support", 1.0, marks=pytest.mark.slow),
         ("far start", 2.0),
@@ -186,6 +186,7 @@ def test_brackets_hold_the_tip():
     assert np.ptp(ends, axis=0).max() < 5  # and not far away
 
 
+@pytest.mark.slow
 def test_memory_is_that_of_the_flatter_fold():
     # From the sharper one, brackets of this slide stayed open and 1.3e6 steps were taken.
     waves = fx.profiles.Fourier([0.004, -0.002, 0.0, 0.0005], [0.008, 0.003, -0.001, 0.0])

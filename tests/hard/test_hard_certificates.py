@@ -70,6 +70,7 @@ def test_a_curve_that_skips_a_well_is_not(name):
     assert not spoiled.ok
 
 
+@pytest.mark.slow
 def test_slips_that_floats_cannot_sample_are_said_to_be():
     one = HARD["slips shorter than floats"]
     begin, end = window_of(one)
