@@ -30,10 +30,9 @@ class CostPrediction(NamedTuple):
 
     `seconds`: of the warm sweep, NaN where the load turns more often than lanes have room
     for; `low`, `high`: half and twice that, which nine of ten cells keep to while nothing
-    else runs. `cells`: each
-    cell alone, s, shape (gamma, eps). `compilation`: s that the first sweep of its kind may
-    take longer. `memory`: of the process, bytes. `measured`: whether this machine was
-    measured; else the numbers are those of another one.
+    else runs. `cells`: each cell alone, s, shape (gamma, eps). `compilation`: s that the
+    first sweep of its kind may take longer. `memory`: of the process, bytes. `measured`:
+    whether this machine was measured; else the numbers are those of another one.
     """
 
     seconds: float

@@ -153,7 +153,7 @@ def sweep(
     as in `solve`. `progress`: a bar on standard error. `dissipation=False` integrates no
     energies and leaves their variables out; `suprema=False` leaves out `sup_error`,
     `strip_excess` and `survey_error`. Without both only `z` at `ts` is left, and no slips
-    between are looked at: about half of the time.
+    between are looked at: two thirds of the time that suprema take.
 
     Returns a data set with dims (gamma, eps, time): `z`, `dissipation`; over (gamma, eps)
     `sup_error` = sup |z_eps - z| and `dissipation_error` over all of [0, T], `residual`

@@ -134,6 +134,11 @@ def test_values_alone_are_the_same_and_leave_slips_out(gamma):
     assert alone.steps.sum() < 0.75 * every.steps.sum()
     assert np.all(np.isnan(alone.sup_error))
     assert np.all(np.isnan(alone.strip_excess))
+    assert np.all(np.isnan(alone.sampled))
+    bare = fx.solve(scene, 1e-3, gamma, TIMES, dissipation=False)
+    assert "values at the times alone" in bare.how
+    every_one = fx.solve(scene, 0.05, gamma, TIMES, method="resolved", dissipation=False)
+    assert "every slip" in every_one.how
 
 
 def test_the_start_alone_can_be_asked_for():

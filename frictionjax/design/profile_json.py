@@ -2,16 +2,15 @@
 
 import dataclasses
 import json
-from pathlib import Path
 from typing import Any
 
 import equinox as eqx
 import numpy as np
 
 from .. import bristles
-from ..arguments import require
 from ..coefficients import Coefficients
 from ..profiles import Fourier
+from .fit_json import document_of
 from .open_directions import Identifiability
 from .profile_history import History, Start
 from .profile_status import ProfileStatus
@@ -70,21 +69,7 @@ def dump(fit: Any) -> str:
 
 def fields(source: Any) -> dict[str, Any]:
     """The fields of a fit, of a JSON text or file; see `ProfileFit.from_json`."""
-    text = str(source)
-    if not text.lstrip().startswith("{"):
-        try:
-            text = Path(source).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError):
-            require(False, "source", str(source), "the text or the file of a fit's JSON")
-    try:
-        document = json.loads(text)
-    except json.JSONDecodeError as problem:
-        raise ValueError(f"source: not JSON ({problem})") from None
-    known = isinstance(document, dict) and document.get("kind") == _KIND
-    require(known, "source", "another document", f"JSON with kind = {_KIND!r}")
-    missing = sorted({*_PLAIN, *_PARTS} - set(document))
-    require(not missing, "source", f"without {', '.join(missing)}", "a whole fit")
-    return _fields(document)
+    return _fields(document_of(source, _KIND, {*_PLAIN, *_PARTS}))
 
 
 def _fields(document: dict[str, Any]) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """What the fit of a profile returns."""
 
 import dataclasses
-from pathlib import Path
 from typing import Any
 
 import jax
@@ -12,6 +11,7 @@ from ..bristles import AbstractBristle
 from ..coefficients import Coefficients
 from ..profiles import Fourier
 from .constraints import heights_of, waves_of
+from .fit_json import written
 from .open_directions import Identifiability, members
 from .profile_history import History, Start
 from .profile_json import dump, fields
@@ -98,10 +98,7 @@ class ProfileFit:
 
     def to_json(self, path: Any = None) -> str:
         """Everything but the iterates' shapes as JSON; written to `path` where given."""
-        text = dump(self)
-        if path is not None:
-            Path(path).write_text(text, encoding="utf-8")
-        return text
+        return written(dump(self), path)
 
     @classmethod
     def from_json(cls, source: Any) -> "ProfileFit":

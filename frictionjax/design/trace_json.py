@@ -1,13 +1,12 @@
 """Fits to traces as JSON, and back."""
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..arguments import require
 from ..profiles import Fourier
+from .fit_json import document_of
 from .trace import Trace
 from .trace_seen import Identifiability
 from .trace_status import TraceStatus
@@ -49,20 +48,7 @@ def _plain(value: Any) -> Any:
 
 def fields(source: Any) -> dict[str, Any]:
     """The fields of a fit, of a JSON text or file; see `TraceFit.from_json`."""
-    text = str(source)
-    if not text.lstrip().startswith("{"):
-        try:
-            text = Path(source).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError):
-            require(False, "source", str(source), "the text or the file of a fit's JSON")
-    try:
-        document = json.loads(text)
-    except json.JSONDecodeError as problem:
-        raise ValueError(f"source: not JSON ({problem})") from None
-    known = isinstance(document, dict) and document.get("kind") == _KIND
-    require(known, "source", "another document", f"JSON with kind = {_KIND!r}")
-    missing = sorted({*_PLAIN, *_ROWS, *_PARTS} - set(document))
-    require(not missing, "source", f"without {', '.join(missing)}", "a whole fit")
+    document = document_of(source, _KIND, {*_PLAIN, *_ROWS, *_PARTS})
     entries = document["identifiability"].items()
     seen: dict[str, Any] = {k: v if k == "rank" else _array(k, v) for k, v in entries}
     profile: dict[str, Any] = {k: np.array(v) for k, v in document["profile"].items()}

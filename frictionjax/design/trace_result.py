@@ -1,12 +1,12 @@
 """What the fit to a trace returns."""
 
 import dataclasses
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..profiles import Fourier
+from .fit_json import written
 from .trace import Trace
 from .trace_json import dump, fields
 from .trace_seen import Identifiability
@@ -105,10 +105,7 @@ class TraceFit:
 
     def to_json(self, path: Any = None) -> str:
         """Everything as JSON; written to `path` where given."""
-        text = dump(self)
-        if path is not None:
-            Path(path).write_text(text, encoding="utf-8")
-        return text
+        return written(dump(self), path)
 
     @classmethod
     def from_json(cls, source: Any) -> "TraceFit":

@@ -50,8 +50,9 @@ class Answers(NamedTuple):
     `tolerance`: of steps, in periods. `how`: 0 where one lane has integrated every slip
     since z0, 1 where a bracket has closed, 2 where one has that set off from a slip map.
     `gap`: how closely, in eps. `sampled`: share of the path's way in slides of which only
-    some periods were measured. `survey_error`, `survey_work_error`: estimates of the
-    errors that this makes in `sup_error` (m) and in the dissipation (J).
+    some periods were measured, NaN where only the times were. `survey_error`,
+    `survey_work_error`: estimates of the errors that this makes in `sup_error` (m) and in
+    the dissipation (J).
     """
 
     z: np.ndarray
@@ -217,7 +218,7 @@ def evaluate(
                 *(_deviations(cell, stops) if wanted.extremes else (np.nan, np.nan)),
                 np.where(output >= 0, found.how[output], 0),
                 np.where(output >= 0, found.gap[output], 0.0),
-                _share(cell, path, whole),
+                _share(cell, path, whole) if layout.whole else np.nan,
                 max([s.error_extreme for s in cell.surveys], default=0.0),
                 sum(s.error_work for s in cell.surveys) if wanted.energies else 0.0,
                 _status(cell, stops, layout, found, output, path, eps[c], wanted.energies),

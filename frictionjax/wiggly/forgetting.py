@@ -48,7 +48,7 @@ class Wells(NamedTuple):
         return self.folds[:, None] * whole
 
 
-def wells_of(
+def from_fold_to_fold(
     potential: AbstractPotential, eps: np.ndarray, place: np.ndarray, side: np.ndarray
 ) -> Wells:
     """Wells at each eps from the extreme fold `place`, right (`side` 1) or left (-1)."""
@@ -80,7 +80,7 @@ def lag_forces(
     own, first, which = np.unique(eps, return_index=True, return_inverse=True)
     places = [np.asarray(v)[first] for v in (folds.place_plus, folds.place_minus)]
     sides = np.repeat([1.0, -1.0], own.size)
-    wells = wells_of(potential, np.tile(own, 2), np.concatenate(places), sides)
+    wells = from_fold_to_fold(potential, np.tile(own, 2), np.concatenate(places), sides)
     both = np.concatenate([which, which + own.size])
     cells = Wells(*(part[both] for part in wells))
     needed = _needed(cells, np.log(np.maximum(np.tile(drag, 2), 1e-300)))

@@ -39,13 +39,15 @@ class Layout(NamedTuple):
 
     `chain`: for each cell, the stops that follow each other through everything that is
     not inside a slide, in time. `slides`: of all cells. `output` (cells, n): the stop at
-    each requested time.
+    each requested time. `whole`: whether chain and
+    slides cover [0, T].
     """
 
     windows: Windows
     chain: list[np.ndarray]
     slides: list[Slide]
     output: np.ndarray
+    whole: bool
 
 
 class Needs(NamedTuple):
@@ -351,7 +353,7 @@ def lay_out(
             rows.append((one, start, True, ts[index : index + 1]))
             output[one, index] = count
             count += 1
-    return Layout(_windows(rows), chain, slides, output)
+    return Layout(_windows(rows), chain, slides, output, summed)
 
 
 def _period_before(scene, path, eps, needs, cell, times) -> np.ndarray:

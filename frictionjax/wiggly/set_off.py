@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..potentials import AbstractPotential
-from .forgetting import FORCES, wells_of
+from .forgetting import FORCES, from_fold_to_fold
 
 _GRID = np.concatenate([np.logspace(-9, 0, 400), np.linspace(1.05, 25.0, 480)])
 
@@ -24,7 +24,7 @@ def first_wells(
     the fold, on a grid that nears the steady X like 1 - exp(-u). `fold`: tip coordinate of
     the extreme fold; `viscosity`: eps^gamma; `rate`: l' in N/s; `stiffness`: Phi'', N/m.
     """
-    well = wells_of(potential, *(np.array([v]) for v in (eps, fold, side)))
+    well = from_fold_to_fold(potential, *(np.array([v]) for v in (eps, fold, side)))
     speeds = -np.log(viscosity * well.passages(FORCES[None])[0])
 
     def speed(force: np.ndarray) -> np.ndarray:

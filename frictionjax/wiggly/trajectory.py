@@ -30,7 +30,7 @@ class Solution(eqx.Module):
     every slip since z0 is integrated, 1 where a bracket from below and above has closed, 2
     where one has that set off from a slip map, as wide as the map's measured error;
     `bracket` (n,): how closely, in eps; `sampled`: share of the way that is known from some
-    of its slips.
+    of its slips, NaN where only values at `ts` were wanted.
     """
 
     ts: Float[Array, " n"]
@@ -129,6 +129,8 @@ def _in_words(how: np.ndarray, sampled: float) -> str:
     share = f"{np.mean(how > 0):.0%} of them from brackets that closed"
     if np.any(how == 2):
         share += f", {np.mean(how == 2):.0%} set off from a slip map"
+    if np.isnan(sampled):
+        return f"windowed, values at the times alone; {share}"
     if sampled:
         return f"windowed, {share}; {sampled:.0%} of the way known from some of its slips"
     return f"resolved, every slip, in tiles; {share}"
