@@ -5,9 +5,14 @@ import os
 import sys
 import threading
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import click
+
+
+class Left(click.Abort):
+    """Ctrl-C while compiled code runs, which cannot be stopped, only left."""
 
 
 class OneLineErrors(click.Group):
@@ -21,6 +26,8 @@ class OneLineErrors(click.Group):
         kwargs["standalone_mode"] = False
         try:
             sys.exit(super().main(*args, **kwargs))
+        except Left:
+            os._exit(130)
         except click.Abort:
             sys.exit(130)
         except click.ClickException as error:
@@ -87,6 +94,16 @@ def _start() -> None:
     matplotlib.use("Agg")
 
 
+def _write(folder: Path, work: Callable[[Path], str]) -> None:
+    """Run `work` on a place for its files, and print the tables that it returns."""
+    from .report.folder import filled
+
+    with filled(folder) as place:
+        text = _interruptible(lambda: work(place))
+    click.echo(text)
+    click.echo(f"\nWritten to {folder}")
+
+
 def _interruptible(work: Callable[[], Any]) -> Any:
     """Run `work` in a thread, so that Ctrl-C is heard while compiled code runs."""
     result: dict[str, Any] = {}
@@ -102,7 +119,7 @@ def _interruptible(work: Callable[[], Any]) -> Any:
     try:
         thread.join()
     except KeyboardInterrupt:
-        os._exit(130)  # compiled code cannot be stopped, only left
+        raise Left from None
     if "error" in result:
         raise result["error"]
     return result["value"]
@@ -179,8 +196,7 @@ def study(
         job = within_budget(job, budget, method, accuracy)
     elif (expected := expected_cost(job, method)) is not None:
         click.echo(f"Expected: {expected}", err=True)
-    click.echo(_interruptible(lambda: run_study(job, folder, method, progress)))
-    click.echo(f"\nWritten to {folder}")
+    _write(folder, lambda place: run_study(job, place, method, progress))
 
 
 @main.command()
@@ -243,8 +259,7 @@ def cost(
     asked = number_list("accuracies", accuracies) if accuracies else None
     names = [name.strip() for name in methods.split(",")] if methods else None
     options = names, asked, seconds, progress
-    click.echo(_interruptible(lambda: run_cost(job, folder, *options)))
-    click.echo(f"\nWritten to {folder}")
+    _write(folder, lambda place: run_cost(job, place, *options))
 
 
 @main.command()
@@ -302,8 +317,7 @@ def design(
     folder = require_folder(out)
     job = read_job(scene, bristle)
     asked = Asked(wanted, free, bounds, period, samples, harmonics)
-    click.echo(_interruptible(lambda: run_design(job, folder, asked)))
-    click.echo(f"\nWritten to {folder}")
+    _write(folder, lambda place: run_design(job, place, asked))
 
 
 @main.command()
@@ -313,7 +327,7 @@ def figures(out: str) -> None:
     _start()
     from .report.folder import paper_figures, require_folder, write_figures
 
-    folder = require_folder(out)
-    for path in write_figures(folder, paper_figures()):
-        click.echo(path.name)
-    click.echo(f"Written to {folder}")
+    def draw(place: Path) -> str:
+        return "\n".join(path.name for path in write_figures(place, paper_figures()))
+
+    _write(require_folder(out), draw)

@@ -6,7 +6,7 @@ from sweep_like import EPS, sweep_like
 
 import frictionjax as fx
 from frictionjax.measured import RowCoefficients
-from frictionjax.report.folder import require_folder
+from frictionjax.report.folder import filled, require_folder
 from frictionjax.report.job import number_list, read_job
 from frictionjax.report.tables import (
     coefficient_table,
@@ -125,6 +125,26 @@ def test_a_folder_is_checked_but_not_made(tmp_path):
     for path in (tmp_path / "file", tmp_path / "file" / "b"):
         with pytest.raises(ValueError, match=r"needs a folder, but .*file is a file"):
             require_folder(path)
+
+
+def test_a_folder_is_filled_whole(tmp_path):
+    folder = tmp_path / "deep" / "out"
+    with filled(folder) as place:
+        (place / "one").write_text("old")
+        assert not folder.exists()
+    with filled(folder) as place:
+        (place / "one").write_text("new")
+    assert [path.name for path in tmp_path.iterdir()] == ["deep"]
+    assert [path.name for path in folder.iterdir()] == ["one"]
+    assert (folder / "one").read_text() == "new"
+
+
+def test_an_interrupted_folder_is_left_alone(tmp_path):
+    folder = tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt), filled(folder) as place:
+        (place / "one").write_text("half")
+        raise KeyboardInterrupt
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_named_bristle_takes_the_place_of_the_scenes():

@@ -72,7 +72,6 @@ def run_design(job: Job, folder: Path, asked: Asked) -> str:
         check = check_design(profile, bristle, support=scene.support)
         sections.append(("On the dynamics", repr(check)))
     text = joined(sections)
-    folder.mkdir(parents=True, exist_ok=True)
     (folder / "design.toml").write_text(scene_document(scene, job.study), encoding="utf-8")
     (folder / "tables.txt").write_text(text + "\n", encoding="utf-8")
     write_heights(folder / "heights.csv", profile, asked.period, asked.samples)

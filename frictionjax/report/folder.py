@@ -1,7 +1,10 @@
 """The folder that a study leaves behind."""
 
 import os
+import shutil
+import tempfile
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -21,12 +24,32 @@ def require_folder(path: Any) -> Path:
     Raises `ValueError` where a file is in the way or its parent cannot be written to.
     """
     folder = Path(path)
-    parent = folder
-    while not parent.exists() and parent != parent.parent:
-        parent = parent.parent
+    parent = _standing(folder)
     require(parent.is_dir(), "out", str(folder), f"a folder, but {parent} is a file")
     require(os.access(parent, os.W_OK), "out", str(folder), f"leave to write in {parent}")
     return folder
+
+
+def _standing(folder: Path) -> Path:
+    while not folder.exists() and folder != folder.parent:
+        folder = folder.parent
+    return folder
+
+
+@contextmanager
+def filled(folder: Path) -> Iterator[Path]:
+    """A place for files that move into `folder` once all of them are written.
+
+    Work that is interrupted or fails leaves nothing behind.
+    """
+    place = Path(tempfile.mkdtemp(prefix=".frictionjax-", dir=_standing(folder)))
+    try:
+        yield place
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in place.iterdir():
+            shutil.move(path, folder / path.name)
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
 
 
 def study_figures(
@@ -50,8 +73,7 @@ def paper_figures() -> Iterator[tuple[str, Figure]]:
 
 
 def write_figures(folder: Path, figures: Iterator[tuple[str, Figure]]) -> list[Path]:
-    """Save pictures as PNG in `folder`, made where it is not there."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Save pictures as PNG in `folder`."""
     paths = []
     for name, figure in figures:
         paths.append(folder / f"{name}.png")
@@ -62,8 +84,7 @@ def write_figures(folder: Path, figures: Iterator[tuple[str, Figure]]) -> list[P
 def write_record(
     folder: Path, data: Mapping[str, xr.Dataset], toml: str, text: str
 ) -> None:
-    """Write data sets by name, scene and tables into `folder`, made where it is missing."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Write data sets by name, scene and tables into `folder`."""
     for name, one in data.items():
         one.to_netcdf(folder / f"{name}.nc", engine="h5netcdf")
     (folder / "tables.txt").write_text(text + "\n", encoding="utf-8")

@@ -51,7 +51,7 @@ def study_times(job: Job) -> np.ndarray:
 def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
     """Run the study that a job asks for, write it into `folder`, return its tables.
 
-    Nothing is written before all cells are done. Raises `ValueError` as `sweep` does.
+    Raises `ValueError` as `sweep` does.
     """
     scene = job.scene
     law = friction(scene)
