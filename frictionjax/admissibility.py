@@ -12,10 +12,11 @@ from .arguments import Real, as_text, is_concrete, require
 from .coefficients import Coefficients, coefficients_jit
 from .extrema import smallest
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
-from .programs import Program
+from .programs import Program, in_chunks
 from .supports import AbstractSupport
 
 _EPS64 = float(np.finfo(np.float64).eps)
+_TOGETHER = 8  # eps of one compiled call
 
 
 @Program
@@ -85,8 +86,12 @@ _stretch = Program(smallest_stretch)
 
 
 @Program
-def _stretches(potential: AbstractPotential, eps: Real):
+def _some_stretches(potential: AbstractPotential, eps: Real):
     return jax.lax.map(lambda e: smallest_stretch(potential, e), eps)
+
+
+def _stretches(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:
+    return in_chunks(_some_stretches, _TOGETHER, (potential,), (eps,))
 
 
 def require_reach(potential: AbstractPotential, eps: Real) -> None:
@@ -97,7 +102,7 @@ def require_reach(potential: AbstractPotential, eps: Real) -> None:
     if not is_concrete(potential, eps):
         return
     sizes = np.unique(np.asarray(eps, dtype=float))
-    stretch = np.asarray(_stretches(potential, sizes))
+    stretch = _stretches(potential, sizes)
     if np.all(stretch > 0):
         return
     worst = float(sizes[~(stretch > 0)][0])
@@ -111,7 +116,7 @@ def largest_eps(potential: AbstractPotential, upper: float) -> float:
     A scan over 12 decades for the first failure, then bisection in log eps.
     """
     grid = np.geomspace(1e-12 * upper, upper, 241)
-    fails = ~(np.asarray(_stretches(potential, grid)) > 0)
+    fails = ~(_stretches(potential, grid) > 0)
     if not fails.any():
         return upper
     first = int(np.argmax(fails))

@@ -141,9 +141,14 @@ def test_a_folder_is_filled_whole(tmp_path):
 
 def test_an_interrupted_folder_is_left_alone(tmp_path):
     folder = tmp_path / "out"
-    with pytest.raises(KeyboardInterrupt), filled(folder) as place:
-        (place / "one").write_text("half")
-        raise KeyboardInterrupt
+
+    def work():
+        with filled(folder) as place:
+            (place / "one").write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
     assert not list(tmp_path.iterdir())
 
 

@@ -102,7 +102,7 @@ def test_one_compilation_for_any_values(data):
     fx.sweep(scene_of(0.08, 0.97, 0.3), [0.08, 0.06, 0.04], [0.6, 1.1, 1.7], ts, 1e-2)
     assert compiled == []
     fx.sweep(scene_of(0.07), np.geomspace(0.09, 0.03, 5), [0.6, 0.9, 1.1, 1.7], ts)
-    assert len(compiled) <= 2  # checks of the other number of eps, never the trajectories
+    assert compiled == []
 
 
 def test_netcdf_without_loss(data, tmp_path):
@@ -121,7 +121,7 @@ def test_failed_cells_keep_their_place(data, monkeypatch):
     good = mixed.sel(gamma=1.0, eps=0.05)
     same = data.sel(gamma=1.0, eps=0.05)
     assert int(good.status) == fx.Status.OK
-    assert np.abs(good.z - same.z).max() < 1e-4 * 0.05  # another scheme
+    assert np.abs(good.z - same.z).max() < 5e-4 * 0.05  # another scheme
     failed = fx.study(mixed).failed
     assert [cell["status"] for cell in failed] == ["step_too_small"]
     assert failed[0]["gamma"] == 5.0

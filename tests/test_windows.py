@@ -7,7 +7,7 @@ from reference import System, sine
 from reference import solve as solve_plainly
 
 import frictionjax as fx
-from frictionjax.wiggly import engine, rounds
+from frictionjax.wiggly import engine, planning, rounds
 from frictionjax.wiggly.path import path_of, states_at, times_at
 from frictionjax.wiggly.windows import starts_of
 
@@ -111,7 +111,7 @@ def test_lanes_that_set_off_at_rest_find_the_same_in_fewer_steps(gamma, monkeypa
     scene, eps = scene_of(), [1e-3, 7e-4]
     gammas = [gamma] * 2
     near = cells(scene, eps, gammas, "windowed")
-    monkeypatch.setattr(engine, "_SHORT_REST", np.inf)
+    monkeypatch.setattr(planning, "_SHORT_REST", np.inf)
     far = cells(scene, eps, gammas, "windowed")
     assert near.steps.sum() < 0.6 * far.steps.sum()
     for i, e in enumerate(eps):
@@ -151,7 +151,7 @@ def test_values_just_before_slips_at_small_eps():
     """Where a tip that is 1e-5 of a period off would slip too early."""
     scene, eps, gamma = scene_of(), 1e-7, 2.0
     path = path_of(scene)
-    control = engine._controls(scene, np.full(64, eps), np.full(64, gamma), 1e-3)
+    control = planning._controls(scene, np.full(64, eps), np.full(64, gamma), 1e-3)
     wells = np.round(np.linspace(0.1, 0.9, 300) / eps)
     # 0.6% of a period before the strip's edge is at a fold; slides at gamma = 2 hardly lag.
     levels = float(control.folds.state_plus[0]) + (wells - 0.006) * eps
@@ -172,9 +172,9 @@ def test_brackets_hold_the_tip():
     """Lanes set off below and above every trajectory that there is."""
     scene, eps, gamma = scene_of(), 2e-3, 1.0
     path = path_of(scene)
-    control = engine._controls(scene, np.full(64, eps), np.full(64, gamma), 1e-3)
+    control = planning._controls(scene, np.full(64, eps), np.full(64, gamma), 1e-3)
     folds = jax.tree_util.tree_map(lambda v: np.asarray(v)[:1], control.folds)
-    ground = engine.ground_of(scene, path, np.array([eps]), np.array([gamma]), folds)
+    ground = planning.ground_of(scene, path, np.array([eps]), np.array([gamma]), folds)
     begin = np.linspace(0.1, 2.9, 200)
     far = np.full(200, 3.0)
     starts = starts_of(scene, path, ground, np.zeros(200, int), begin, far, far)

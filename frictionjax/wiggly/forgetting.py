@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..potentials import AbstractPotential
-from ..programs import Program, room
+from ..programs import Program, in_chunks
 from .tolerance import Folds
 
 # Half of the grid over a well, graded towards the fold by e-folds that resolve folds down
@@ -16,7 +16,7 @@ _GRADED = np.expm1(30.0 * np.linspace(0.0, 1.0, 1024)) / np.expm1(30.0)
 _GRID = 0.5 * np.concatenate([-_GRADED[:0:-1], _GRADED])
 _STEPS = np.diff(_GRID)
 FORCES = np.logspace(-24, 4, 85)
-_ROWS = 8  # wells in a compiled call, at least
+_ROWS = 8  # wells in a compiled call
 
 
 @Program
@@ -55,9 +55,7 @@ def from_fold_to_fold(
     count = eps.size
     scan = np.arange(potential.points) / potential.points
     around = np.concatenate([place[:, None] + _GRID, np.tile(scan, (count, 1))], axis=1)
-    more = room(count, _ROWS) - count
-    padded = np.pad(eps, (0, more), mode="edge"), np.pad(around, ((0, more), (0, 0)))
-    force, stretch = (np.asarray(v)[:count] for v in _forces(potential, *padded))
+    force, stretch = in_chunks(_forces, _ROWS, (potential,), (eps, around))
     force = side[:, None] * force
     heights, top = force[:, _GRID.size :], force[:, _GRID.size // 2, None]
     bump = (heights >= np.roll(heights, 1, 1)) & (heights > np.roll(heights, -1, 1))

@@ -12,6 +12,7 @@ from .extent import Extent, Guide
 from .field import Point
 from .lane import Cells, LaneScene, Motion, Sums, Task, field_of, keep, step_of_lane
 from .rosenbrock import Tableau
+from .step_control import no_trend
 from .step_sizes import level_below
 
 # Steps between two looks at which lanes are done: a look costs about two steps, and a
@@ -76,7 +77,7 @@ class Arrivals(NamedTuple):
 class Tables(NamedTuple):
     """Jobs, legs and cells as rows of numbers: one gather fetches a row."""
 
-    cells: Any  # Float[Array, "cells 5"]
+    cells: Any  # Float[Array, "cells 7"]
     jobs: Any  # Float[Array, "jobs 6"]
     legs: Any  # Float[Array, "legs 8"]
     waiting: Any  # Int[Array, ""], jobs in the queue
@@ -95,15 +96,14 @@ def _idle(tables: Tables, width: int) -> tuple[Task, Motion]:
     zero, one = jnp.zeros(width), jnp.ones(width)
     none = jnp.full(width, tables.jobs.shape[0], dtype=int)
     past = jnp.full(width, tables.legs.shape[0], dtype=int)
-    task = Task(
-        none, past, Cells(*[one] * 5), zero, Guide(*[one] * 7), zero, zero, budget=zero
-    )
+    cells, guide = Cells(*[one] * len(Cells._fields)), Guide(*[one] * 7)
+    task = Task(none, past, cells, zero, guide, zero, zero, budget=zero)
     motion = Motion(
         tip=zero,
         time=zero,
         point=Point(*[zero] * 5),
         level=zero,
-        before=zero,
+        trend=zero,
         sums=Balance(*[zero] * 3),
         extent=Extent(*[zero] * 4),
         steps=zero,
@@ -165,11 +165,12 @@ def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
     empty = jnp.full_like(tip, jnp.inf)
     nothing = Extent(-empty, empty, zero, zero)
     time = jnp.where(fresh, 0.0, motion.time)
+    first = level_below(cell_row.first_step)
     set_off = motion._replace(
         tip=tip - shift,
         time=time,
-        level=jnp.where(fresh, level_below(cell_row.first_step), motion.level),
-        before=jnp.where(fresh, 0.0, motion.before),
+        level=jnp.where(fresh, first, motion.level),
+        trend=jnp.where(fresh, no_trend(first), motion.trend),
         sums=keep(change, Balance(zero, zero, zero), motion.sums),
         extent=keep(change, nothing, motion.extent),
         steps=jnp.where(change, 0.0, motion.steps),

@@ -5,8 +5,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
-from jaxtyping import Array, Bool, Int
+from jaxtyping import Array, Int
 
 from ..arguments import Real
 from ..loads import AbstractLoad
@@ -17,19 +16,27 @@ from .extent import Extent, Guide, spend, widen
 from .field import Point, TipField
 from .rosenbrock import Linearised, Tableau, rosenbrock_step
 from .status import Status
-from .step_sizes import PER_OCTAVE, log2, step_of
+from .step_control import Control, judge
+from .step_sizes import PER_OCTAVE, step_of
 
 _LOWEST_LEVEL = -900 * PER_OCTAVE
 
 
 class Cells(NamedTuple):
-    """What all lanes of a cell share, shape (cells,): step control and eps^gamma."""
+    """What all lanes of a cell share, shape (cells,): eps, eps^gamma and step control."""
 
     eps: Any
     viscosity: Any
-    tolerance: Any
-    reach: Any
     first_step: Any
+    tolerance: Any
+    loosest: Any
+    pace: Any
+    reach: Any
+
+    @property
+    def control(self) -> Control:
+        """What steers their steps."""
+        return Control(*self[3:])
 
 
 class LaneScene(eqx.Module):
@@ -67,7 +74,7 @@ class Motion(NamedTuple):
     time: Real
     point: Point
     level: Real
-    before: Real
+    trend: Real
     sums: Balance
     extent: Extent
     steps: Real
@@ -76,32 +83,8 @@ class Motion(NamedTuple):
 
 
 def field_of(scene: LaneScene, task: Task) -> TipField:
-    eps, viscosity, *_ = task.cell
-    parts = scene.potential, scene.support, scene.load
-    return TipField(*parts, eps, viscosity, well=task.well, origin=task.origin)
-
-
-def _next_level(
-    tableau: Tableau, cell: Cells, before: Real, step: Real, moved: Real, error: Real
-) -> tuple[Bool[Array, ""], Real, Real]:
-    """Whether a step is accepted, the next level, and log2 of error over tolerance.
-
-    PI control with gains 0.7 and 0.4: a pure I controller loses 35% of the steps at folds,
-    this 15%. A step that moves the tip further than `reach` is rejected whatever its
-    error: see `WellGuard`.
-    """
-    excess = moved / cell.reach
-    finite = (excess < 20.0) & (error < 1e300)
-    excess = jnp.where(finite, excess, 20.0)
-    error = jnp.where(finite, jnp.maximum(error, 1e-5 * cell.tolerance), cell.tolerance)
-    size = log2(error) - log2(cell.tolerance)
-    too_far = tableau.order * log2(1.1 * jnp.maximum(excess, 1e-3))
-    size = jnp.where(excess > 1, jnp.maximum(size, too_far), size)
-    accepted = size <= 0
-    change = np.log2(0.9) - (0.7 * size - 0.4 * before) / tableau.order
-    change = jnp.clip(change, np.log2(0.1), jnp.where(accepted, np.log2(5.0), -0.125))
-    level = jnp.floor(PER_OCTAVE * (log2(step) + change) + 1e-4)
-    return accepted, level, size
+    cell, parts = task.cell, (scene.potential, scene.support, scene.load)
+    return TipField(*parts, cell.eps, cell.viscosity, well=task.well, origin=task.origin)
 
 
 def keep(condition: Real, new: Any, old: Any) -> Any:
@@ -122,10 +105,11 @@ def step_of_lane(
         tableau, field.velocity, start, motion.time, step, motion.tip
     )
     moved, error = jnp.abs(tip - motion.tip), jnp.abs(stages[-1])
-    fits, level, size = _next_level(tableau, task.cell, motion.before, step, moved, error)
+    control = task.cell.control
+    fits, level, trend = judge(tableau.order, control, motion.trend, step, moved, error)
     # A step cut short by its stop says nothing about the next one.
     level = jnp.where(fits & cut, jnp.maximum(level, motion.level), level)
-    size = jnp.where(cut, motion.before, size)
+    trend = jnp.where(cut, motion.trend, trend)
     accepted = fits & live
     tip = jnp.where(accepted, tip, motion.tip)
     time = jnp.where(cut, task.stop, motion.time + step)
@@ -151,7 +135,7 @@ def step_of_lane(
         time=time,
         point=end,
         level=level,
-        before=size,
+        trend=trend,
         sums=sums,
         extent=extent,
         steps=motion.steps,

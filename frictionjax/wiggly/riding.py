@@ -89,7 +89,7 @@ def _errors(
     starts = Starts(begin_, known, ~known, well, tip, well, tip)
     tight = np.where(np.isin(np.arange(rounds.ground.eps.size), cells), _TIGHT_RIDE, 1.0)
     tight = np.minimum(tight, rounds.cells.tolerance)
-    exact = rounds._replace(cells=rounds.cells._replace(tolerance=tight))
+    exact = rounds._replace(cells=rounds.cells._replace(tolerance=tight, loosest=tight))
     windows = Windows(whose, begin_, known, np.arange(tip.size), stop_)
     plan, found = exact.march_from(windows, starts)
     at = plan.behind

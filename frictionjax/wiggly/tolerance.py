@@ -20,6 +20,7 @@ _LOOSEST = 1e-4  # looser ones save little (46 steps a slip for 58): guard and f
 # 1e-7, gamma = 2); at 0.2 none did.
 _FOLD = 0.1
 _TIGHTEST = 1e-13
+_IN_SLIPS = 0.2  # of the accuracy: error of a step in the middle of a slip
 _SAMPLES = 64  # of the load's slope between two turning points
 _DOUBLE_SPACING = 2.0**-50  # shortest step over the duration: four spacings of floats
 
@@ -40,12 +41,15 @@ class Folds(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """Step control of one trajectory: tolerance and reach in periods, steps in s.
+    """Step control of one trajectory: tolerances and reach in periods, steps in s.
 
-    `memory`: slips back that a disturbance still matters.
+    `loosest`: tolerance in the middle of a slip; `pace`: periods a second of the fastest
+    slide: see `Control`. `memory`: slips back that a disturbance still matters.
     """
 
     tolerance: Real
+    loosest: Real
+    pace: Real
     reach: Real
     first_step: Real
     shortest_step: Real
@@ -179,8 +183,11 @@ def plan_steps(
     relaxation = eps ** (gamma + 1) / ground.steepest
     shortest = _DOUBLE_SPACING * scene.duration
     first = jnp.clip(1e-2 * relaxation, 2 * shortest, 1e-2 * scene.duration)
+    tolerance = jnp.clip(tolerance, _TIGHTEST, _LOOSEST)
     plan = Plan(
-        tolerance=jnp.clip(tolerance, _TIGHTEST, _LOOSEST),
+        tolerance=tolerance,
+        loosest=jnp.maximum(tolerance, _IN_SLIPS * accuracy / stretch),
+        pace=jnp.where(pull.fastest > 0, pull.fastest / (pull.softest * eps), jnp.inf),
         reach=0.25 * ground.branch,
         first_step=first,
         shortest_step=shortest,

@@ -7,10 +7,10 @@ import numpy as np
 from ..potentials import BristlePotential
 from ..profiles import Fourier
 from ..scene import Scene
-from .engine import LOOSEST, lane_scene, planned, remembers_long
 from .lane import LaneScene
 from .layout import Needs, cost_of, wells_of
 from .path import Path, path_of
+from .planning import LOOSEST, lane_scene, planned, remembers_long
 from .series_bristle import SeriesBristle
 
 # Steps a well: exp of a polynomial in the orders of magnitude of tolerance and drag, and

@@ -1,0 +1,207 @@
+"""What each cell's windows need, and which way is the cheapest, before anything runs."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import numpy as np
+from jaxtyping import Array
+
+from ..arguments import Real
+from ..coefficients import Coefficients, coefficients_jit
+from ..potentials import AbstractPotential, BristlePotential
+from ..profiles import AbstractProfile
+from ..programs import Program, in_chunks
+from ..scene import Scene
+from .forgetting import lag_forces
+from .lane import LaneScene
+from .layout import Needs, cost_of, wells_of
+from .path import Path
+from .rodas4p2 import Rodas4P2
+from .rodas5p import Rodas5P
+from .rosenbrock import Tableau
+from .rounds import LONG_MEMORY, MARGIN
+from .series_bristle import series_of
+from .tolerance import Folds, plan_steps, pull_of
+from .tolerance import Plan as StepPlan
+from .windows import Ground
+
+# Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as fast
+# for one cell, as lanes wait for the longest tile; three times: 0.7.) Of the whole sweep
+# (256) tiles were longer, a few percent of the steps fewer, and values depended on the
+# other cells, by up to a tenth of the accuracy.
+TILES = 128
+NODES = 17  # periods measured in a slide
+_NEAR_STRIP = 1e-3  # wells
+# Looser brackets and surveys save a fifth of the time, and at gamma = 0.75 were off by up
+# to 6 times an accuracy of 1e-1, and twice one of 1e-2.
+LOOSEST = 1e-3
+_CELLS = 16  # in a compiled call: 64 take 4 ms, 16 one
+# Wells after a slip at which lanes may set off, and the shortest rest that is worth it.
+_AFTER_SLIP, _SHORT_REST = 0.05, 0.2
+# Lanes set off in the middle of a slip or two, and forget less in their first wells. (1:
+# brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the first.)
+_SLIPS_FORGET = 1.5
+# Wells of a slide that are worth a slip map, where windows set off far back.
+_LONG_SLIDE = 300.0
+# Of order 4 down to this accuracy. At 1e-3 and 1e-4 it takes as many steps as the other
+# (vertical scene, every slip, gamma 1: 5.0 million for 5.2, 8.1 for 7.2), each a quarter
+# cheaper, and errs less; at 1e-5 it takes 14.0 for 10.8 and errs twice as much.
+_ORDER_FOUR = 0.9e-4
+
+
+def scheme_for(accuracy: float) -> Tableau:
+    """The Rosenbrock scheme that is the cheapest at an accuracy."""
+    return Rodas4P2.tableau if accuracy >= _ORDER_FOUR else Rodas5P.tableau
+
+
+@Program
+def _plans(scene, rho_plus, rho_minus, accuracy, eps, gamma) -> StepPlan:
+    pull = pull_of(scene, Coefficients(rho_plus, rho_minus))
+    return jax.vmap(lambda e, g: plan_steps(scene, e, g, accuracy, pull))(eps, gamma)
+
+
+def _controls(scene, eps, gamma, accuracy, rho: tuple | None = None) -> StepPlan:
+    """Step control of all cells. `rho`: plus and minus, N, where they are known."""
+    if rho is None:
+        found = coefficients_jit(scene.potential)
+        rho = found.rho_plus, found.rho_minus
+    fixed = scene, *map(np.asarray, rho), np.asarray(accuracy)
+    return in_chunks(_plans, _CELLS, fixed, (eps, gamma))
+
+
+@Program
+def _tips(potential: AbstractPotential, z0: Real, eps: Array):
+    return jax.vmap(lambda e: potential.tip(z0, e))(eps)
+
+
+def ground_of(
+    scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray, folds: Folds
+) -> Ground:
+    """What windows need to know of each cell."""
+    lags = lag_forces(scene.potential, eps, folds, path.speed * eps**gamma)
+    forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
+    well, tip = in_chunks(_tips, _CELLS, (scene.potential, scene.z0), (eps,))
+    shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
+    return Ground(
+        eps,
+        folds,
+        lag_plus=lags[0] / path.stiffness,
+        lag_minus=lags[1] / path.stiffness,
+        shift_plus=shifts[0],
+        shift_minus=shifts[1],
+        start_well=well,
+        start_tip=tip,
+        relaxed=_relaxation(scene, path, eps, gamma),
+        rides=_no_rides(eps.size),
+    )
+
+
+def _relaxation(scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray):
+    """Time in s until z0 is within a thousandth of a well of the strip (Lemma 7)."""
+    far = abs(float(scene.z0) - path.states[0])
+    efolds = np.log(np.maximum(far / (_NEAR_STRIP * eps), 1.0))
+    return efolds * eps**gamma / path.stiffness
+
+
+def _no_rides(count: int) -> np.ndarray:
+    rides = np.empty(count, dtype=object)
+    rides[:] = [()] * count
+    return rides
+
+
+@Program
+def _heights(profile: AbstractProfile, places: Array) -> Array:
+    return jax.vmap(profile)(places)
+
+
+def lane_scene(scene: Scene, highest: float) -> LaneScene:
+    """The scene as lanes see it, with the bristle as a series where one converges."""
+    potential = scene.potential
+    if isinstance(potential, BristlePotential):
+        scan = np.arange(potential.points) / potential.points
+        height = float(np.max(np.abs(_heights(potential.profile, scan))))
+        bristle = series_of(potential.bristle, 1.01 * highest * height)
+        potential = BristlePotential(potential.profile, bristle)
+    return LaneScene(potential, scene.support, scene.load)
+
+
+def _needs(control: StepPlan, ground: Ground, path: Path, accuracy: float) -> Needs:
+    """How far back windows start: until a bracket as wide as the lag has closed."""
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
+    memory = np.asarray(control.memory)[: lag.size]
+    forgets = memory * np.log((lag + 2) / (0.1 * accuracy))
+    slow = np.ceil(MARGIN + forgets)
+    warm = np.minimum(slow, _resting(ground, lag, forgets))
+    settle = np.ceil(lag + warm + 2)
+    return Needs(warm, settle, 3 * slow, np.zeros(lag.size), _offsets(ground, path))
+
+
+def _resting(ground: Ground, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
+    """Wells back to a start between slips, from which a bracket closes at rest.
+
+    Windows begin half a period behind slips. Where tips lag by less than that, both lanes
+    of a bracket that sets off a little after a slip come to rest in one well; `forgets`
+    wells more pass where the rest of half a period is too short. Infinite where tips lag
+    further: their lanes have to catch up with each other.
+    """
+    shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
+    rest = 0.5 - _AFTER_SLIP - lag - shift
+    wells = rest + np.ceil(np.maximum(_SLIPS_FORGET * forgets - rest, 0.0))
+    return np.where(rest > _SHORT_REST, wells, np.inf)
+
+
+def _offsets(ground: Ground, path: Path) -> np.ndarray:
+    """From each slide's start to half a period behind a fold, in wells, (cells, pieces)."""
+    folds, up = ground.folds, path.direction > 0
+    fold = np.where(up, folds.state_plus[:, None], folds.state_minus[:, None])
+    past = path.direction * (path.states[:-1] - fold) / ground.eps[:, None]
+    return np.mod(0.5 - past, 1.0)
+
+
+def _choose(path: Path, eps: np.ndarray, needs: Needs, times: int, method: str) -> Needs:
+    """Per cell, the way that passes through fewer wells."""
+    nodes = np.full(eps.size, NODES)
+    if method == "resolved":
+        nodes = np.zeros(eps.size, dtype=int)
+    if method == "auto":
+        sampled = cost_of(path, eps, needs._replace(nodes=nodes), times)
+        every = cost_of(path, eps, needs._replace(nodes=0 * nodes), times)
+        nodes = np.where(sampled < every, nodes, 0)
+    needs = needs._replace(nodes=nodes)
+    outer, _ = wells_of(path, eps, needs)
+    return needs._replace(tile=np.maximum(needs.tile, outer / TILES))
+
+
+def remembers_long(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:
+    """Cells that remember too many slips for windows, and have slides worth a map."""
+    longest = np.max(np.abs(np.diff(path.states)), initial=0.0) / eps
+    return (needs.warm > LONG_MEMORY) & (longest > _LONG_SLIDE)
+
+
+class Planned(NamedTuple):
+    """Cells before anything has run: step control, what windows know and need."""
+
+    control: StepPlan
+    ground: Ground
+    needs: Needs
+
+
+def planned(
+    scene: Scene,
+    lanes: LaneScene,
+    path: Path,
+    eps: np.ndarray,
+    gamma: np.ndarray,
+    times: int,
+    accuracy: float,
+    method: str,
+) -> Planned:
+    """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
+    # The bristle as a series compiles faster too.
+    scene = eqx.tree_at(lambda s: s.potential, scene, lanes.potential)
+    rho = path.rho_plus, path.rho_minus
+    control = _controls(scene, eps, gamma, accuracy, rho)
+    ground = ground_of(scene, path, eps, gamma, control.folds)
+    needs = _needs(control, ground, path, accuracy)
+    return Planned(control, ground, _choose(path, eps, needs, times, method))

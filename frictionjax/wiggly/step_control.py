@@ -1,0 +1,85 @@
+"""Step sizes of lanes: as large as the error allows, foreseeing how it changes.
+
+A predictive controller after K. Gustafsson (ACM Trans. Math. Softw. 20, 1994): it goes on
+as the last steps did, which shrink or grow steadily before and after a fold. Steps of the
+two benchmark scenes with every slip, gamma 1 and 2: PI control 9.0 and 4.7 million (tips
+that come to rest after a slip allow steps that grow faster than it lets them), I control
+8.3 and 4.5 (a third of them rejected), this one 6.5 and 3.2.
+"""
+
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool
+
+from ..arguments import Real
+from .step_sizes import PER_OCTAVE, log2
+
+_SAFE = np.log2(0.9)
+_GAIN = 0.8  # of the error itself (1: a third more of the steps are rejected)
+_AHEAD = 0.2  # octaves by which the trend may exceed what the error allows
+_LEAST, _MOST, _REJECTED = np.log2(0.1), np.log2(8.0), -0.125  # octaves of one change
+_TINY = 1e-5  # of the tolerance: errors are counted as that at least
+_FAR = 20.0  # reaches: whatever is further counts as that
+
+
+class Control(NamedTuple):
+    """What steers the steps of a cell.
+
+    `tolerance`: error of a step, periods, where the tip is slower than `pace` (periods a
+    second, the fastest slide's). Faster tips are in a slip, where an error is a shift in
+    time that matters less in proportion: up to `loosest` there. `reach`: how far one step
+    may move the tip, periods, whatever its error: see `WellGuard`.
+    """
+
+    tolerance: Any
+    loosest: Any
+    pace: Any
+    reach: Any
+
+
+class Verdict(NamedTuple):
+    """Whether a step is accepted, the next one's level, and the trend to be kept."""
+
+    accepted: Bool[Array, ""]
+    level: Real
+    trend: Real
+
+
+def no_trend(level: Real) -> Real:
+    """The trend at a start, from where steps of this level are to go on."""
+    return -level / PER_OCTAVE
+
+
+def _power(x: Real, order: int) -> Real:
+    found = x
+    for _ in range(order - 1):
+        found = found * x
+    return found
+
+
+def judge(
+    order: int, control: Control, trend: Real, step: Real, moved: Real, error: Real
+) -> Verdict:
+    """Judge a step of `step` s that has moved the tip by `moved` periods.
+
+    `order`: of the error in the step. `trend`: what the last accepted step has left.
+    """
+    excess = moved / control.reach
+    finite = (excess < _FAR) & (error < 1e300)
+    excess = jnp.where(finite, excess, _FAR)
+    pace = jnp.where(finite, moved, 0.0) / (step * control.pace)
+    tolerance = control.tolerance * jnp.maximum(pace, 1.0)
+    tolerance = jnp.minimum(tolerance, control.loosest)
+    share = jnp.where(finite, jnp.maximum(error / tolerance, _TINY), 1.0)
+    # One logarithm of both: each costs as much as a stage's sine.
+    share = log2(jnp.maximum(share, _power(excess, order))) / order
+    size = log2(step)
+    accepted = share <= 0
+    allowed = _SAFE - _GAIN * share
+    foreseen = allowed - share + trend + size
+    change = jnp.where(accepted, jnp.minimum(allowed + _AHEAD, foreseen), allowed)
+    change = jnp.clip(change, _LEAST, jnp.where(accepted, _MOST, _REJECTED))
+    level = jnp.floor(PER_OCTAVE * (size + change) + 1e-4)
+    return Verdict(accepted, level, share - size)
