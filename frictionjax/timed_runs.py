@@ -10,7 +10,7 @@ import numpy as np
 from .wiggly.general import SCIPY, Run, run_scipy
 from .wiggly.integration import MAX_STEPS
 from .wiggly.methods import is_ours
-from .wiggly.planning import LOOSEST, scheme_for
+from .wiggly.planning import TABLEAU
 from .wiggly.status import Status
 from .wiggly.trajectory import Solution, solve
 
@@ -18,13 +18,13 @@ _FAST_STEP = 3e-6  # s of the fastest step through diffrax: bounds the number of
 _ENOUGH = 0.5  # s of warm runs: what takes longer is timed once
 
 
-def _work(found: Solution, accuracy: float) -> tuple[float, float]:
+def _work(found: Solution) -> tuple[float, float]:
     """Evaluations of the field and of its Jacobian of a run of ours.
 
     Lanes compute every stage of every attempt, with one Jacobian; so they wait for none.
     """
     steps = float(found.stats["steps"])
-    return len(scheme_for(min(accuracy, LOOSEST)).a) * steps, steps
+    return len(TABLEAU.a) * steps, steps
 
 
 def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
@@ -36,9 +36,7 @@ def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
     status = found.status
     if status == Status.MAX_STEPS and not ours:
         status = Status.TOO_SLOW
-    evaluations, jacobians = (
-        _work(found, accuracy) if ours else (float("nan"), float("nan"))
-    )
+    evaluations, jacobians = _work(found) if ours else (float("nan"), float("nan"))
     residual = float("nan") if found.residual is None else float(found.residual[-1])
     return Run(
         np.asarray(found.z),

@@ -14,11 +14,10 @@ from .path import Path, path_of
 from .planning import (
     LOOSEST,
     NODES,
+    TABLEAU,
     TILES,
     lane_scene,
     planned,
-    remembers_long,
-    scheme_for,
 )
 from .riding import find_rides
 from .rosenbrock import Tableau
@@ -124,17 +123,15 @@ def integrate_cells(
     accuracy = min(accuracy, LOOSEST)
     lanes = lane_scene(scene, float(eps.max()))
     wanted = Sums(energies=balanced, extremes=balanced or suprema)
-    tableau = scheme_for(accuracy)
-    _prepare(lanes, tableau, eps.size, ts.size, wanted)
+    _prepare(lanes, eps.size, ts.size, wanted)
     plan = planned(scene, lanes, path, eps, gamma, ts.size, accuracy, method)
-    control, ground, needs = plan
+    control, ground, needs, ridden = plan
     steering = control.tolerance, control.loosest, control.pace, control.reach
     cells = Cells(eps, eps**gamma, control.first_step, *steering)
     parts = _Cellwise(eps, ground, cells, needs)
     every = method == "resolved"
-    sweep = _Sweep(scene, path, lanes, tableau, ts, accuracy, wanted, every, report)
-    if method != "resolved":
-        parts = _ridden(sweep, parts, eps**gamma)
+    sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, wanted, every, report)
+    parts = _ridden(sweep, parts, eps**gamma, np.flatnonzero(ridden))
     answers, never = sweep.attempt(parts)
     answers = answers._replace(tolerance=np.asarray(control.tolerance))
     for _ in range(_SURVEYS):
@@ -181,25 +178,24 @@ def _in_tiles(sweep: _Sweep, every: _Cellwise, answers: Answers, never: np.ndarr
     never[chosen] = open_
 
 
-def _ridden(sweep: _Sweep, every: _Cellwise, viscosity: np.ndarray) -> _Cellwise:
-    """The same cells, with the rides of those that remember too many slips for windows."""
-    long = remembers_long(sweep.path, every.eps, every.needs)
-    if not long.any():
+def _ridden(
+    sweep: _Sweep, every: _Cellwise, viscosity: np.ndarray, chosen: np.ndarray
+) -> _Cellwise:
+    """The same cells, with the rides of those that are chosen."""
+    if chosen.size == 0:
         return every
     rounds = sweep.rounds(every.ground, every.cells)
-    find_rides(rounds, np.flatnonzero(long), viscosity, every.needs.warm)
+    find_rides(rounds, chosen, viscosity, every.needs.warm)
     has = np.array([len(rides) > 0 for rides in every.ground.rides])
     nodes = np.where(has, NODES, every.needs.nodes)
     return every._replace(needs=every.needs._replace(nodes=nodes))
 
 
-def _prepare(
-    lanes: LaneScene, tableau: Tableau, cells: int, times: int, wanted: Sums
-) -> None:
+def _prepare(lanes: LaneScene, cells: int, times: int, wanted: Sums) -> None:
     """Have the loop compiled beside the planning."""
     if cells * times > _FEW:
         legs = cells * times // WORKERS
-        prepare(lanes, tableau, Room(cells, legs // 2, legs), wanted)
+        prepare(lanes, TABLEAU, Room(cells, legs // 2, legs), wanted)
 
 
 def _affordable(path: Path, cells: _Cellwise) -> np.ndarray:

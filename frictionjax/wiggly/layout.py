@@ -84,6 +84,11 @@ def cost_of(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray
     return outer + 2 * needs.warm * tiles + 2 * (needs.warm + 2) * windows
 
 
+def longest_lane(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:
+    """Wells of a tile and its run-up, at most all of them."""
+    return np.minimum(path.travel[-1] / eps, needs.tile + needs.warm)
+
+
 def _inner_wells(ways: np.ndarray, needs: Needs) -> np.ndarray:
     """Wells of each slide of which only some are measured, (cells, pieces)."""
     inner = np.floor(ways) - np.ceil(needs.settle)[:, None] - _TAIL - 1

@@ -15,11 +15,9 @@ from ..programs import Program, in_chunks
 from ..scene import Scene
 from .forgetting import lag_forces
 from .lane import LaneScene
-from .layout import Needs, cost_of, wells_of
+from .layout import Needs, cost_of, longest_lane, wells_of
 from .path import Path
-from .rodas4p2 import Rodas4P2
 from .rodas5p import Rodas5P
-from .rosenbrock import Tableau
 from .rounds import LONG_MEMORY, MARGIN
 from .series_bristle import series_of
 from .tolerance import Folds, plan_steps, pull_of
@@ -44,15 +42,17 @@ _AFTER_SLIP, _SHORT_REST = 0.05, 0.2
 _SLIPS_FORGET = 1.5
 # Wells of a slide that are worth a slip map, where windows set off far back.
 _LONG_SLIDE = 300.0
-# Of order 4 down to this accuracy. At 1e-3 and 1e-4 it takes as many steps as the other
-# (vertical scene, every slip, gamma 1: 5.0 million for 5.2, 8.1 for 7.2), each a quarter
-# cheaper, and errs less; at 1e-5 it takes 14.0 for 10.8 and errs twice as much.
-_ORDER_FOUR = 0.9e-4
-
-
-def scheme_for(accuracy: float) -> Tableau:
-    """The Rosenbrock scheme that is the cheapest at an accuracy."""
-    return Rodas4P2.tableau if accuracy >= _ORDER_FOUR else Rodas5P.tableau
+# Wells of lanes that take as long as a slip map, and those of them that take as long as one
+# of the longest lane. Benchmark scene, gamma = 1/2: 0.8 s with a map at eps = 1e-4 (0.55
+# at 1e-3), 0.35 s without (0.07); gamma = 1/4, eps = 2.5e-4: 0.6 s and 1.0.
+_MAP, _ALONE = 1.2e5, 11.0
+# Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2, 16
+# eps to 1e-4: 0.62 s at 1, 0.52 at 1.5 and 2, 0.73 at 3.)
+_TILE = 1.5
+# Rodas4P2 takes as many steps, each a quarter cheaper, and errs by more than 1e-3 of a slip
+# period at times near slips in 26 of 208 cells (gamma 0.65 to 2, eps 1e-3 to 1e-6), by up
+# to a well; this one in 6.
+TABLEAU = Rodas5P.tableau
 
 
 @Program
@@ -134,7 +134,7 @@ def _needs(control: StepPlan, ground: Ground, path: Path, accuracy: float) -> Ne
     slow = np.ceil(MARGIN + forgets)
     warm = np.minimum(slow, _resting(ground, lag, forgets))
     settle = np.ceil(lag + warm + 2)
-    return Needs(warm, settle, 3 * slow, np.zeros(lag.size), _offsets(ground, path))
+    return Needs(warm, settle, _TILE * slow, np.zeros(lag.size), _offsets(ground, path))
 
 
 def _resting(ground: Ground, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
@@ -173,18 +173,28 @@ def _choose(path: Path, eps: np.ndarray, needs: Needs, times: int, method: str) 
     return needs._replace(tile=np.maximum(needs.tile, outer / TILES))
 
 
-def remembers_long(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:
+def _worth_a_map(
+    path: Path, eps: np.ndarray, needs: Needs, times: int, method: str
+) -> np.ndarray:
     """Cells that remember too many slips for windows, and have slides worth a map."""
     longest = np.max(np.abs(np.diff(path.states)), initial=0.0) / eps
-    return (needs.warm > LONG_MEMORY) & (longest > _LONG_SLIDE)
+    long = (needs.warm > LONG_MEMORY) & (longest > _LONG_SLIDE) & (method != "resolved")
+    if method == "auto":
+        wells = cost_of(path, eps, needs, times) + _ALONE * longest_lane(path, eps, needs)
+        long &= wells > _MAP
+    return long
 
 
 class Planned(NamedTuple):
-    """Cells before anything has run: step control, what windows know and need."""
+    """Cells before anything has run: step control, what windows know and need.
+
+    `ridden`: cells of which slip maps are made.
+    """
 
     control: StepPlan
     ground: Ground
     needs: Needs
+    ridden: np.ndarray
 
 
 def planned(
@@ -204,4 +214,6 @@ def planned(
     control = _controls(scene, eps, gamma, accuracy, rho)
     ground = ground_of(scene, path, eps, gamma, control.folds)
     needs = _needs(control, ground, path, accuracy)
-    return Planned(control, ground, _choose(path, eps, needs, times, method))
+    needs = _choose(path, eps, needs, times, method)
+    ridden = _worth_a_map(path, eps, needs, times, method)
+    return Planned(control, ground, needs, ridden)

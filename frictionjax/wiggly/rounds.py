@@ -10,7 +10,7 @@ from ..scene import Scene
 from .evaluation import Found
 from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
-from .lanes import march
+from .lanes import WIDTH, march
 from .layout import Layout, Needs
 from .path import Path, states_at
 from .rosenbrock import Tableau
@@ -21,6 +21,7 @@ from .windows import (
     Windows,
     gaps_of,
     plan_windows,
+    shifts_of,
     slow_share,
     starts_of,
 )
@@ -95,7 +96,9 @@ class Rounds(NamedTuple):
         wells = (way[jobs.past_leg] - way[jobs.first_leg]) / eps
         cost = wells + 1 + 0.3 * (jobs.past_leg - jobs.first_leg)
         order = np.argsort(-cost, kind="stable")
-        batches = int(np.ceil(cost.sum() / _BATCH))
+        # Batches of less than two jobs a lane leave lanes idle.
+        most = max(order.size // (2 * WORKERS * WIDTH), 1)
+        batches = min(int(np.ceil(cost.sum() / _BATCH)), most)
         found = _nothing(legs)
         seat = _seats(order.size, batches * WORKERS)
         for batch in range(batches):
@@ -144,7 +147,8 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
         plan, found = rounds.run(some, wells[open_], back[open_])
         speed = rounds.path.speed
         gaps = gaps_of(found, plan.legs, plan.behind, plan.ahead, speed)
-        meets = gaps_of(found, plan.legs, plan.meet_behind, plan.meet_ahead, speed)
+        begins = plan.meet_behind, plan.meet_ahead
+        meets = gaps_of(found, plan.legs, *begins, speed)
         # Stops that one lane alone has reached count as closed as their window's begin.
         alone = plan.ahead < 0
         gaps = np.where(alone, meets[some.owner], gaps)
@@ -161,7 +165,8 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
         # start is forgotten all the same, and the gap is reported as it is. Lanes from
         # close by have had steps of their own, which part them further: they go back once.
         far = wells[open_] > MARGIN
-        met = np.where(far, np.nan_to_num(meets, nan=np.inf), np.inf)
+        met = np.maximum(meets, shifts_of(found, plan.legs, *begins, speed))
+        met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
         worst = np.minimum(worst, met)
         open_ = open_[worst > CLOSED * rounds.accuracy]
         if open_.size == 0:

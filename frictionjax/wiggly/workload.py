@@ -8,9 +8,9 @@ from ..potentials import BristlePotential
 from ..profiles import Fourier
 from ..scene import Scene
 from .lane import LaneScene
-from .layout import Needs, cost_of, wells_of
+from .layout import Needs, cost_of, longest_lane, wells_of
 from .path import Path, path_of
-from .planning import LOOSEST, lane_scene, planned, remembers_long
+from .planning import LOOSEST, lane_scene, planned
 from .series_bristle import SeriesBristle
 
 # Steps a well: exp of a polynomial in the orders of magnitude of tolerance and drag, and
@@ -55,17 +55,15 @@ def workload(
     accuracy = min(accuracy, LOOSEST)
     lanes = lane_scene(scene, float(eps.max()))
     plan = planned(scene, lanes, path, eps, gamma, times, accuracy, method)
-    control, ground, needs = plan
+    control, ground, needs, ridden = plan
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
     drag = eps**gamma * path.speed / (path.rho_plus - path.rho_minus)
     steps = _steps_a_well(np.asarray(control.tolerance), lag, np.asarray(drag))
     total = steps * cost_of(path, eps, needs, times)
-    chain = steps * _longest_lane(path, eps, needs)
-    if method != "resolved":
-        ridden = remembers_long(path, eps, needs)
-        growth = (path.travel[-1] / eps / 1e3) ** _RIDE_GROWTH
-        total = np.where(ridden, _RIDE_STEPS * needs.warm * steps * growth, total)
-        chain = np.where(ridden, _RIDE_CHAIN * steps * growth, chain)
+    chain = steps * longest_lane(path, eps, needs)
+    growth = (path.travel[-1] / eps / 1e3) ** _RIDE_GROWTH
+    total = np.where(ridden, _RIDE_STEPS * needs.warm * steps * growth, total)
+    chain = np.where(ridden, _RIDE_CHAIN * steps * growth, chain)
     return Workload(total, chain, _jobs(path, eps, needs, times), _weight_of(lanes))
 
 
@@ -79,11 +77,6 @@ def _steps_a_well(tolerance: np.ndarray, lag: np.ndarray, drag: np.ndarray) -> n
         + _DRAG * smooth
         + _SMALL_DRAG * np.minimum(smooth, _KNEE)
     )
-
-
-def _longest_lane(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:
-    """Wells of a tile and its run-up, at most all of them."""
-    return np.minimum(path.travel[-1] / eps, needs.tile + needs.warm)
 
 
 def _jobs(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray:
