@@ -14,6 +14,7 @@ from ..supports import AbstractSupport
 from .balance import Balance, advance, arrival, end_slope
 from .extent import Extent, Guide, spend, widen
 from .field import Point, TipField
+from .once import once
 from .rosenbrock import Linearised, Tableau, rosenbrock_step
 from .status import Status
 from .step_control import Control, judge
@@ -99,7 +100,7 @@ def step_of_lane(
     live = (motion.time < task.stop) & (motion.code == 0)
     full, left = step_of(motion.level), task.stop - motion.time
     cut = full >= left
-    step = jnp.where(live, jnp.where(cut, left, full), 1.0)
+    step = once(jnp.where(live, jnp.where(cut, left, full), 1.0), task.cell.eps)
     start = Linearised(*motion.point[:3])
     tip, stages = rosenbrock_step(
         tableau, field.velocity, start, motion.time, step, motion.tip
@@ -113,7 +114,7 @@ def step_of_lane(
     accepted = fits & live
     tip = jnp.where(accepted, tip, motion.tip)
     time = jnp.where(cut, task.stop, motion.time + step)
-    end = field.point(time, tip)
+    end = once(field.point(time, tip), task.cell.eps)
     sums, extent = motion.sums, motion.extent
     arrived = arrival(field, motion.time, step, end) if any(wanted) else end
     if wanted.energies:

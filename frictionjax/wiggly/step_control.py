@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Array, Bool
 
 from ..arguments import Real
+from .once import once
 from .step_sizes import PER_OCTAVE, log2
 
 _SAFE = np.log2(0.9)
@@ -75,6 +76,7 @@ def judge(
     share = jnp.where(finite, jnp.maximum(error / tolerance, _TINY), 1.0)
     # One logarithm of both: each costs as much as a stage's sine.
     share = log2(jnp.maximum(share, _power(excess, order))) / order
+    share = once(share, control.tolerance)
     size = log2(step)
     accepted = share <= 0
     allowed = _SAFE - _GAIN * share
