@@ -11,6 +11,7 @@ from .field import Point, TipField
 # Distance in periods from its equilibrium up to which a rest counts as one: tolerances are
 # up to 1e-4, and 1e-6 with a viscosity of 1e-12 would look like a residual of 0.1 slips.
 _AT_REST = 1e-4
+_STEEP, _SWING = 10.0, 1e-3  # times the way, and periods: slopes times the step, at most
 _STIFF = 3.0  # steps longer than this many relaxation times count as rest
 _NODES = (0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5)  # two-point Gauss on [0, 1]
 
@@ -29,7 +30,21 @@ class Balance(NamedTuple):
     residual: Real
 
 
-def end_slope(point: Point, step: Real) -> tuple[Real, Real]:
+def slopes_between(start: Point, end: Point, step: Real, way: Real):
+    """Slopes for interpolating a step over `way` periods, and whether it ends in a rest.
+
+    On a step from a slip deep into the rest behind it, the first slope is a spike through
+    which the cubic would swing without bound; where a rest is on a fold, any is.
+    """
+    slope0, _ = _end_slope(start, step)
+    slope1, rest = _end_slope(end, step)
+    chord, steepest = way / step, (_STEEP * jnp.abs(way) + _SWING) / step
+    slope0 = jnp.where(jnp.abs(slope0) > steepest, chord, slope0)
+    slope1 = jnp.where(jnp.abs(slope1) > steepest, chord, slope1)
+    return slope0, slope1, rest
+
+
+def _end_slope(point: Point, step: Real) -> tuple[Real, Real]:
     """Slope for interpolating a step's end, and whether the step is a rest there.
 
     On a rest the computed velocity is the position error over a relaxation time, which
@@ -73,14 +88,7 @@ def advance(
     `reference`: any curve in m, from which the work is counted. `end`: see `arrival`.
     """
     viscosity = field.viscosity
-    slope0, _ = end_slope(start, step)
-    slope1, rest = end_slope(end, step)
-    # A step from a slip deep into the rest behind it: its first slope is a spike, and the
-    # cubic through it would dissipate without bound.
-    chord = (y1 - y0) / step
-    steepest = (10 * jnp.abs(y1 - y0) + 1e-3) / step
-    slope0 = jnp.where(jnp.abs(slope0) > steepest, chord, slope0)
-    slope1 = jnp.where(jnp.abs(slope1) > steepest, chord, slope1)
+    slope0, slope1, rest = slopes_between(start, end, step, y1 - y0)
     work = viscous = defect = jnp.zeros_like(y0)
     for s in _NODES:
         y, velocity = _cubic(s, step, y0, y1, slope0, slope1)

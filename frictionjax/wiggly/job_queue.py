@@ -12,8 +12,6 @@ from .extent import Extent, Guide
 from .field import Point
 from .lane import Cells, LaneScene, Motion, Sums, Task, field_of, keep, step_of_lane
 from .rosenbrock import Tableau
-from .step_control import no_trend
-from .step_sizes import level_below
 
 # Steps between two looks at which lanes are done: a look costs about two steps, and a
 # lane that is done idles for half of this.
@@ -165,12 +163,11 @@ def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
     empty = jnp.full_like(tip, jnp.inf)
     nothing = Extent(-empty, empty, zero, zero)
     time = jnp.where(fresh, 0.0, motion.time)
-    first = level_below(cell_row.first_step)
     set_off = motion._replace(
         tip=tip - shift,
         time=time,
-        level=jnp.where(fresh, first, motion.level),
-        trend=jnp.where(fresh, no_trend(first), motion.trend),
+        level=jnp.where(fresh, 0.0, motion.level),
+        trend=jnp.where(fresh, 0.0, motion.trend),
         sums=keep(change, Balance(zero, zero, zero), motion.sums),
         extent=keep(change, nothing, motion.extent),
         steps=jnp.where(change, 0.0, motion.steps),

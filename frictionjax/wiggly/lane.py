@@ -11,7 +11,7 @@ from ..arguments import Real
 from ..loads import AbstractLoad
 from ..potentials import AbstractPotential
 from ..supports import AbstractSupport
-from .balance import Balance, advance, arrival, end_slope
+from .balance import Balance, advance, arrival, slopes_between
 from .extent import Extent, Guide, spend, widen
 from .field import Point, TipField
 from .once import once
@@ -37,7 +37,7 @@ class Cells(NamedTuple):
     @property
     def control(self) -> Control:
         """What steers their steps."""
-        return Control(*self[3:])
+        return Control(*self[2:])
 
 
 class LaneScene(eqx.Module):
@@ -98,7 +98,7 @@ def step_of_lane(
     """One step of one lane; a lane that has reached its stop stays as it is."""
     field = field_of(scene, task)
     live = (motion.time < task.stop) & (motion.code == 0)
-    full, left = step_of(motion.level), task.stop - motion.time
+    full, left = step_of(motion.level, task.cell.first_step), task.stop - motion.time
     cut = full >= left
     step = once(jnp.where(live, jnp.where(cut, left, full), 1.0), task.cell.eps)
     start = Linearised(*motion.point[:3])
@@ -130,7 +130,7 @@ def step_of_lane(
             task.guide.__call__,
         )
     if wanted.extremes:
-        extent = _extent(task, motion, step, time, arrived, sums)
+        extent = _extent(task, motion, step, time, tip, arrived, sums)
     after = Motion(
         tip=tip,
         time=time,
@@ -154,12 +154,13 @@ def step_of_lane(
 
 
 def _extent(
-    task: Task, motion: Motion, step: Real, time: Real, end: Point, sums: Balance
+    task: Task, motion: Motion, step: Real, time: Real, tip: Real, end: Point, sums: Balance
 ) -> Extent:
     guide, eps = task.guide, task.cell.eps
     pace = guide.rise / guide.length
-    points = motion.point, end
-    slopes = [eps * p.stretch * end_slope(p, step)[0] - pace for p in points]
-    gaps = motion.point.state - guide(motion.time), end.state - guide(time)
-    extent = widen(motion.extent, step, gaps, (slopes[0], slopes[1]))
+    start = motion.point
+    slope0, slope1, _ = slopes_between(start, end, step, tip - motion.tip)
+    slopes = eps * start.stretch * slope0 - pace, eps * end.stretch * slope1 - pace
+    gaps = start.state - guide(motion.time), end.state - guide(time)
+    extent = widen(motion.extent, step, gaps, slopes)
     return spend(extent, sums.viscous - guide.friction * guide.way(time))

@@ -81,7 +81,9 @@ def cost_of(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray
     shown = times * inner / np.maximum(inner + outer, 1e-9)
     tiles = outer / needs.tile
     windows = slides * needs.nodes + shown
-    return outer + 2 * needs.warm * tiles + 2 * (needs.warm + 2) * windows
+    # The first tile sets off from the known z0.
+    run_ups = 2 * needs.warm * np.maximum(tiles - 1, 0.0)
+    return outer + run_ups + 2 * (needs.warm + 2) * windows
 
 
 def longest_lane(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:

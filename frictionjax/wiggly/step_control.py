@@ -31,9 +31,11 @@ class Control(NamedTuple):
     `tolerance`: error of a step, periods, where the tip is slower than `pace` (periods a
     second, the fastest slide's). Faster tips are in a slip, where an error is a shift in
     time that matters less in proportion: up to `loosest` there. `reach`: how far one step
-    may move the tip, periods, whatever its error: see `WellGuard`.
+    may move the tip, periods, whatever its error: see `WellGuard`. `first_step`: s. Levels
+    are counted from it, so that steps do not depend on the units.
     """
 
+    first_step: Any
     tolerance: Any
     loosest: Any
     pace: Any
@@ -48,11 +50,6 @@ class Verdict(NamedTuple):
     trend: Real
 
 
-def no_trend(level: Real) -> Real:
-    """The trend at a start, from where steps of this level are to go on."""
-    return -level / PER_OCTAVE
-
-
 def _power(x: Real, order: int) -> Real:
     found = x
     for _ in range(order - 1):
@@ -65,7 +62,8 @@ def judge(
 ) -> Verdict:
     """Judge a step of `step` s that has moved the tip by `moved` periods.
 
-    `order`: of the error in the step. `trend`: what the last accepted step has left.
+    `order`: of the error in the step. `trend`: what the last accepted step has left, 0 at
+    a start, which is of level 0.
     """
     excess = moved / control.reach
     finite = (excess < _FAR) & (error < 1e300)
@@ -77,7 +75,7 @@ def judge(
     # One logarithm of both: each costs as much as a stage's sine.
     share = log2(jnp.maximum(share, _power(excess, order))) / order
     share = once(share, control.tolerance)
-    size = log2(step)
+    size = log2(step / control.first_step)
     accepted = share <= 0
     allowed = _SAFE - _GAIN * share
     foreseen = allowed - share + trend + size

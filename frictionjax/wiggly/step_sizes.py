@@ -1,4 +1,4 @@
-"""Step sizes on the grid 2^(level/8) s, in arithmetic that XLA vectorises."""
+"""Step sizes on the grid 2^(level/8) of a first step, in arithmetic that XLA vectorises."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -35,14 +35,6 @@ def exp2(x: Real) -> Real:
     return power * _horner(_EXP2, x - whole)
 
 
-def step_of(level: Real) -> Real:
-    """The step in s at a level of the grid."""
-    return exp2(level / PER_OCTAVE)
-
-
-def level_below(step: Real) -> Real:
-    """The highest level whose step is not longer than `step`.
-
-    A hair above the grid point counts as on it: products of grid steps land there.
-    """
-    return jnp.floor(PER_OCTAVE * log2(step) + 1e-4)
+def step_of(level: Real, first: Real) -> Real:
+    """The step in s at a level of the grid that starts at the step `first`."""
+    return first * exp2(level / PER_OCTAVE)

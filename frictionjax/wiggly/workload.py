@@ -12,12 +12,16 @@ from .layout import Needs, cost_of, longest_lane, wells_of
 from .path import Path, path_of
 from .planning import LOOSEST, lane_scene, planned
 from .series_bristle import SeriesBristle
+from .tolerance import Plan as StepPlan
 
-# Steps a well: exp of a polynomial in the orders of magnitude of tolerance and drag, and
-# in the lag. 73 cells of two scenes (vertical and angular, gamma 0.5 to 2, eps 1e-1 to
-# 1e-4, accuracy 1e-3 to 1e-6) lie within a factor of 1.3 of it (rms), 89% within 1.5.
-_CONSTANT, _TOLERANCE, _SQUARE = 3.905, -0.493, 0.066
-_LAG, _DRAG, _SMALL_DRAG, _KNEE = -0.103, 0.086, 1.047, 1.0
+# Steps a well: exp of a polynomial in the orders of magnitude of tolerance, drag and reach,
+# and in the lag, with knees at drags of 0.1 and 1. 280 cells of two scenes (vertical and
+# angular, gamma 0.5 to 2, eps 1e-1 to 1e-4, accuracy 1e-3 to 1e-6) lie within a factor of
+# 1.32 of it (rms), 85% within 1.5, all within 1.9. The angular scene at gamma = 0.5 is
+# apart: brackets there stay open at first, and steps are up to 5 times as many.
+_CONSTANT, _TOLERANCE, _LAG, _NARROW = 1.278, 0.417, -0.092, 0.41
+_SMOOTH, _BELOW_TENTH, _BELOW_ONE = -0.131, 0.505, 1.466
+_WIDEST = 0.125  # reach of a sine, periods
 # Rides, in the same cells: steps over those of one run-up; and wells that lanes, one after
 # the other, wait for each other. Both for a thousand wells, and how they grow with wells.
 _RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH = 3.3, 1.9e4, 0.05
@@ -58,7 +62,7 @@ def workload(
     control, ground, needs, ridden = plan
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
     drag = eps**gamma * path.speed / (path.rho_plus - path.rho_minus)
-    steps = _steps_a_well(np.asarray(control.tolerance), lag, np.asarray(drag))
+    steps = _steps_a_well(control, lag, np.asarray(drag))
     total = steps * cost_of(path, eps, needs, times)
     chain = steps * longest_lane(path, eps, needs)
     growth = (path.travel[-1] / eps / 1e3) ** _RIDE_GROWTH
@@ -67,15 +71,16 @@ def workload(
     return Workload(total, chain, _jobs(path, eps, needs, times), _weight_of(lanes))
 
 
-def _steps_a_well(tolerance: np.ndarray, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
-    tight, smooth = -np.log10(tolerance), -np.log10(drag)
+def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
+    smooth = -np.log10(drag)
     return np.exp(
         _CONSTANT
-        + _TOLERANCE * tight
-        + _SQUARE * tight**2
+        - _TOLERANCE * np.log10(control.tolerance)
         + _LAG * np.log1p(lag)
-        + _DRAG * smooth
-        + _SMALL_DRAG * np.minimum(smooth, _KNEE)
+        + _NARROW * np.log(_WIDEST / np.asarray(control.reach))
+        + _SMOOTH * smooth
+        + _BELOW_TENTH * np.minimum(smooth, 1.0)
+        + _BELOW_ONE * np.minimum(smooth, 0.0)
     )
 
 
