@@ -121,7 +121,7 @@ def bare() -> None:
 def whole() -> None:
     one, (start, end, well) = scene("vertical"), lanes(EPS, LANES)
     parts = LaneScene(one.potential, one.support, one.load)
-    numbers = (EPS, EPS**GAMMA, TOLERANCE, REACH, 1e-2 * DRAG)
+    numbers = EPS, EPS**GAMMA, 1e-2 * DRAG, TOLERANCE, TOLERANCE, np.inf, REACH
     cells = Cells(*(np.array([v]) for v in numbers))
     index, ones = np.arange(LANES), np.ones(LANES)
     jobs = Jobs(0 * index, start, well, 0 * ones, index, index + 1)

@@ -43,30 +43,31 @@ def integrator(step, order: int):
 
     @njit
     def one(start, end, y, eps, per_drag, tolerance):
-        t, before = 0.0, 0.0
+        t, level, trend = 0.0, 0.0, 0.0
         steps, rejected, evaluations = 0, 0, 1
-        level = math.floor(8 * math.log2(1e-2 / per_drag))
+        first = 1e-2 / per_drag
         here = point(start, y, eps, per_drag)
         while t < end - start:
-            full, left = math.exp2(level / 8), end - start - t
+            full, left = first * math.exp2(level / 8), end - start - t
             cut = full >= left
             h = left if cut else full
             new, error, more = step(here, start + t, h, y, eps, per_drag, tolerance)
-            excess, error = abs(new - y) / REACH, abs(error)
-            if not (excess < 20.0 and error < 1e300):
-                excess, error = 20.0, tolerance
-            size = math.log2(max(error, 1e-5 * tolerance) / tolerance)
-            if excess > 1:
-                size = max(size, order * math.log2(1.1 * excess))
-            change = math.log2(0.9) - (0.7 * size - 0.4 * before) / order
-            accepted = size <= 0
-            most = math.log2(5.0) if accepted else -0.125
+            excess, share = abs(new - y) / REACH, abs(error) / tolerance
+            if not (excess < 20.0 and share < 1e300):
+                excess, share = 20.0, 1.0
+            share = math.log2(max(share, 1e-5, excess**order)) / order
+            size = math.log2(h / first)
+            change = math.log2(0.9) - 0.8 * share
+            accepted = share <= 0
+            if accepted:
+                change = min(change + 0.2, change - share + trend + size)
+            most = math.log2(8.0) if accepted else -0.125
             change = min(max(change, math.log2(0.1)), most)
-            after = math.floor(8 * (math.log2(h) + change) + 1e-4)
+            after = math.floor(8 * (size + change) + 1e-4)
             steps += 1
             evaluations += more
             if accepted:
-                before = before if cut else size
+                trend = trend if cut else share - size
                 level = max(after, level) if cut else after
                 y, t = new, t + h
                 here = point(start + t, y, eps, per_drag)

@@ -82,7 +82,8 @@ def run(tableau: Tableau, eps: float, gamma: float, tolerance: float):
     start = np.random.default_rng(0).uniform(0.1, 0.5, LANES)
     edge = AMPLITUDE * np.sin(TWO_PI * start / PERIOD) - SLOPE
     end = np.arcsin((edge + SLIPS * eps + SLOPE) / AMPLITUDE) * PERIOD / TWO_PI
-    numbers = (eps, eps**gamma, tolerance, 0.125, 1e-2 * eps ** (1 + gamma))
+    first = 1e-2 * eps ** (1 + gamma)
+    numbers = eps, eps**gamma, first, tolerance, tolerance, np.inf, 0.125
     cells = Cells(*(np.array([v]) for v in numbers))
     index, one_each = np.arange(LANES), np.ones(LANES)
     jobs = Jobs(0 * index, start, np.ceil(edge / eps), 0 * one_each, index, index + 1)
