@@ -13,6 +13,8 @@ from scipy.integrate import solve_ivp
 import frictionjax as fx
 from frictionjax.wiggly import engine, slip_map
 from frictionjax.wiggly.passage import Stretch, passages, pull_at, track_of
+from frictionjax.wiggly.path import path_of
+from frictionjax.wiggly.planning import lane_scene, planned
 from frictionjax.wiggly.tolerance import Landscape, landscape
 
 COS, SIN = [0.0, 0.0024, 0.0, 0.0012], [0.0096, 0.0, -0.0024, 0.0006]
@@ -255,3 +257,19 @@ def test_errors_of_a_wrong_map_are_seen(monkeypatch):
     monkeypatch.setattr(slip_map, "passages", wrong)
     found = fx.solve(scene, eps, gamma, TIMES)
     assert found.status != fx.Status.OK or np.max(found.stats["bracket"]) > 5e-4
+
+
+def test_maps_are_made_where_they_are_cheaper():
+    """Slips in thousands are integrated, in millions mapped; by name as asked for."""
+    scene, eps = SCENES["sine"], np.array([1e-3, 1e-6])
+    path, lanes = path_of(scene), lane_scene(scene, 1e-3)
+
+    def ridden(gamma, method):
+        gammas = np.full(eps.size, gamma)
+        plan = planned(scene, lanes, path, eps, gammas, TIMES.size, 1e-3, method)
+        return plan.ridden.tolist()
+
+    assert ridden(0.5, "auto") == [False, True]
+    assert ridden(0.5, "windowed") == [True, True]
+    assert ridden(0.5, "resolved") == [False, False]
+    assert ridden(1.0, "windowed") == [False, False]

@@ -46,13 +46,13 @@ _LONG_SLIDE = 300.0
 # of the longest lane. Benchmark scene, gamma = 1/2: 0.8 s with a map at eps = 1e-4 (0.55
 # at 1e-3), 0.35 s without (0.07); gamma = 1/4, eps = 2.5e-4: 0.6 s and 1.0.
 _MAP, _ALONE = 1.2e5, 11.0
-_WIDEST = 0.125  # reach of a sine, periods
+WIDEST = 0.125  # reach of a sine, periods
 # Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2, 16
 # eps to 1e-4: 0.62 s at 1, 0.52 at 1.5 and 2, 0.73 at 3.)
 _TILE = 1.5
 # Rodas4P2 takes as many steps, each a quarter cheaper, and errs by more than 1e-3 of a slip
 # period at times near slips in 26 of 208 cells (gamma 0.65 to 2, eps 1e-3 to 1e-6), by up
-# to a well; this one in 6.
+# to a well; this one in 7, and in 1 with the tolerances of now.
 TABLEAU = Rodas5P.tableau
 
 
@@ -184,7 +184,7 @@ def _worth_a_map(
         wells = cost_of(path, eps, needs, times) + _ALONE * longest_lane(path, eps, needs)
         # On narrow branches steps are shorter, and brackets stay open at first. (Angular
         # scene, 16 eps to 1e-4: power 1 3.3 s, maps for all 2.5 s, for none 11.6 s.)
-        long &= wells * (_WIDEST / np.asarray(control.reach)) ** 1.5 > _MAP
+        long &= wells * (WIDEST / np.asarray(control.reach)) ** 1.5 > _MAP
     return long
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
+from .brackets import gaps_of, shifts_of
 from .evaluation import Found
 from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
@@ -19,9 +20,7 @@ from .windows import (
     Plan,
     Starts,
     Windows,
-    gaps_of,
     plan_windows,
-    shifts_of,
     slow_share,
     starts_of,
 )

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
-from .job_queue import Arrivals, Jobs, Legs
+from .job_queue import Jobs, Legs
 from .path import Path, slopes_at, states_at, times_at
 from .rides import Ride
 from .tolerance import Folds
@@ -19,8 +19,6 @@ _FASTER = 1.5  # how much slides may have been faster, squared, where lanes set 
 # always: lanes of 300 wells in slow parts of slides at gamma = 0.4, where ten do.)
 _LONG_LAG = 5.0
 _WHOLE = 1e-4  # wells: rounding of times, in numbers of wells
-_SLOW = 0.03  # of the largest speed: what counts as a slip on a path that rests
-_CREEP = 1e-2  # of the path's speed: tips that are slower hang on a branch and forget there
 
 
 class Ground(NamedTuple):
@@ -334,36 +332,3 @@ def _legs(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Legs:
     friction = np.where(path.direction[middle] != 0, path.rho[middle], 0.0)
     none = np.zeros(start.size)
     return Legs(start, end, guide0, guide1, slope0, slope1, friction, budget=none)
-
-
-def gaps_of(
-    found: Arrivals, legs: Legs, behind: np.ndarray, ahead: np.ndarray, speed: float
-) -> np.ndarray:
-    """How closely brackets have closed at stops, in units of eps; 0 from a known start.
-
-    At a stop inside a slip (ten times faster than the path) it is the shift in time that
-    counts, not the way that it makes. `speed`: the path's largest, m/s.
-    """
-    both = ahead >= 0
-    a, b = np.where(both, ahead, 0), np.where(both, behind, 0)
-    wells = (found.well[a] - found.well[b]) + (found.tip[a] - found.tip[b])
-    pace = np.maximum(np.abs(found.speed[a]), np.abs(found.speed[b]))
-    usual = 10 * np.maximum(np.abs(legs.slope1[b]), _SLOW * max(speed, 1e-300))
-    gap = np.abs(wells) * usual / np.maximum(pace, usual)
-    return np.where(both, gap, 0.0)
-
-
-def shifts_of(
-    found: Arrivals, legs: Legs, behind: np.ndarray, ahead: np.ndarray, speed: float
-) -> np.ndarray:
-    """How far brackets are apart in time at stops, in slip periods; as `gaps_of`.
-
-    A tip that creeps past a fold takes long over a small way: lanes that are 4e-4 eps apart
-    there were 4e-2 eps apart in the slip that followed (gamma = 0.65, eps = 6e-4).
-    """
-    both = ahead >= 0
-    a, b = np.where(both, ahead, 0), np.where(both, behind, 0)
-    wells = (found.well[a] - found.well[b]) + (found.tip[a] - found.tip[b])
-    slowest = np.minimum(np.abs(found.speed[a]), np.abs(found.speed[b]))
-    usual = np.maximum(np.abs(legs.slope1[b]), _SLOW * max(speed, 1e-300))
-    return np.where(both, np.abs(wells) / np.maximum(slowest / usual, _CREEP), 0.0)

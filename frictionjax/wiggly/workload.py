@@ -10,7 +10,7 @@ from ..scene import Scene
 from .lane import LaneScene
 from .layout import Needs, cost_of, longest_lane, wells_of
 from .path import Path, path_of
-from .planning import LOOSEST, lane_scene, planned
+from .planning import LOOSEST, WIDEST, lane_scene, planned
 from .series_bristle import SeriesBristle
 from .tolerance import Plan as StepPlan
 
@@ -21,7 +21,6 @@ from .tolerance import Plan as StepPlan
 # apart: brackets there stay open at first, and steps are up to 5 times as many.
 _CONSTANT, _TOLERANCE, _LAG, _NARROW = 1.278, 0.417, -0.092, 0.41
 _SMOOTH, _BELOW_TENTH, _BELOW_ONE = -0.131, 0.505, 1.466
-_WIDEST = 0.125  # reach of a sine, periods
 # Rides, in the same cells: steps over those of one run-up; and wells that lanes, one after
 # the other, wait for each other. Both for a thousand wells, and how they grow with wells.
 _RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH = 1.5, 4e3, 0.05
@@ -77,7 +76,7 @@ def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.nd
         _CONSTANT
         - _TOLERANCE * np.log10(control.tolerance)
         + _LAG * np.log1p(lag)
-        + _NARROW * np.log(_WIDEST / np.asarray(control.reach))
+        + _NARROW * np.log(WIDEST / np.asarray(control.reach))
         + _SMOOTH * smooth
         + _BELOW_TENTH * np.minimum(smooth, 1.0)
         + _BELOW_ONE * np.minimum(smooth, 0.0)
