@@ -42,7 +42,10 @@ def keep_compiled(folder: Path | None = None) -> Path:
     import jax
     from platformdirs import user_cache_path
 
+    from .kept_programs import keep_in
+
     place = folder or user_cache_path("frictionjax") / "xla"
+    keep_in(place / "programs")
     jax.config.update("jax_compilation_cache_dir", str(place))
     jax.config.update("jax_persistent_cache_min_compile_time_secs", _WORTH_KEEPING)
     return place

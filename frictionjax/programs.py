@@ -6,6 +6,8 @@ from typing import Any
 import jax
 import numpy as np
 
+from .kept_programs import kept
+
 _MOST = 256  # programs kept of one function
 
 
@@ -47,7 +49,7 @@ class Program:
             return fn(*jax.tree_util.tree_unflatten(structure, leaves))
 
         run.__name__ = run.__qualname__ = fn.__name__
-        return jax.jit(run)
+        return kept(fn, run, structure, rest)
 
 
 _ARRAYS = (jax.Array, np.ndarray, np.generic)
