@@ -86,18 +86,18 @@ def _lsoda(scene: str):
 
 def numbalsoda(scene: str, eps: float, gamma: float, tolerance: float) -> Run:
     """LSODA with a compiled field."""
-    (solve, _), compiled = _timed(lambda: _lsoda(scene))
+    _, compiled = _timed(lambda: _lsoda(scene))
+    return Run(lambda: lsoda_states(scene, eps, gamma, tolerance, TIMES), 1, compiled)
+
+
+def lsoda_states(scene: str, eps: float, gamma: float, tolerance: float, ts: np.ndarray):
+    """z in m at any times by numbalsoda's LSODA, through every slip."""
+    solve, _ = _lsoda(scene)
     numbers = np.array([eps, eps ** (1 + gamma)])
-
-    begin = np.array([start(scene, eps)])
-
-    def states():
-        y, success = solve(begin, TIMES, numbers, tolerance)
-        if not success:
-            raise GaveUpError("success = False")
-        return state(scene, y[:, 0], eps)
-
-    return Run(states, 1, compiled)
+    y, success = solve(np.array([start(scene, eps)]), ts, numbers, tolerance)
+    if not success:
+        raise GaveUpError("success = False")
+    return state(scene, y[:, 0], eps)
 
 
 def _scipy(method: str):
