@@ -38,7 +38,8 @@ def _apart(found: Arrivals, legs: Legs, behind, ahead, speed: float) -> tuple:
     both = ahead >= 0
     a, b = np.where(both, ahead, 0), np.where(both, behind, 0)
     wells = (found.well[a] - found.well[b]) + (found.tip[a] - found.tip[b])
-    usual = np.maximum(np.abs(legs.slope1[b]), _SLOW * max(speed, 1e-300))
+    # On a path that never moves nothing counts as a slip.
+    usual = np.maximum(np.abs(legs.slope1[b]), _SLOW * speed if speed > 0 else np.inf)
     paces = np.abs(np.stack([found.speed[a], found.speed[b]])) / usual
     # One lane alone is no bracket, and may have failed.
     wells, paces = np.where(both, np.abs(wells), 0.0), np.where(both, paces, 1.0)
