@@ -28,6 +28,7 @@ import hard_scenes
 
 fx.use_fast_cpu()
 jax.config.update("jax_enable_x64", True)
+fx.keep_compiled()  # 24 kinds of scenes compile for minutes
 
 _BAD = (np.nan, np.inf, -np.inf, "one", None)
 

@@ -8,13 +8,13 @@ import numpy as np
 
 from ..scene import Scene
 from .brackets import gaps_of, shifts_of
-from .evaluation import Found
 from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
 from .lanes import WIDTH, march
 from .layout import Layout, Needs
 from .path import Path, states_at
 from .rosenbrock import Tableau
+from .stops import Found
 from .windows import (
     Ground,
     Plan,

@@ -1,0 +1,98 @@
+"""What lanes found at all stops of a layout: states, energies, integrals on the way."""
+
+from typing import NamedTuple
+
+import jax
+import numpy as np
+
+from ..arguments import Real
+from ..programs import Program, in_chunks
+from ..scene import Scene
+from .job_queue import Arrivals, Legs
+from .layout import Layout, Slide
+from .survey import SURPLUS, WORK, Survey, surveys_of
+
+_CHUNK = 2048  # stops of one compiled call
+
+
+class Found(NamedTuple):
+    """Values at all stops of a layout, shape (S,), and of the legs that lead to them.
+
+    `gap`: how closely brackets have closed, in eps; `how`: as in `Answers`.
+    `steps`, `rejected`: of each cell.
+    """
+
+    arrivals: Arrivals
+    legs: Legs
+    gap: np.ndarray
+    how: np.ndarray
+    steps: np.ndarray
+    rejected: np.ndarray
+
+
+@Program
+def _energies(scene: Scene, eps, well, tip, t, guide):
+    """z in m at stops, and E_eps of z less E of the guide, in J."""
+
+    def one(eps: Real, well: Real, tip: Real, t: Real, guide: Real):
+        z = eps * (well + tip) + scene.potential.offset(tip, eps)
+        wiggle = scene.potential.tip_energy_change(tip, eps)
+        elastic = scene.support.energy(z) - scene.support.energy(guide)
+        return z, elastic - scene.load(t) * (z - guide) + wiggle
+
+    return jax.vmap(one)(eps, well, tip, t, guide)
+
+
+def states_of(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, np.ndarray]:
+    z, energy = in_chunks(_energies, _CHUNK, (scene,), (eps, well, tip, t, guide))
+    return z, energy
+
+
+class Stops(NamedTuple):
+    """What the sums need of every stop, shape (S,); `sums` (3, S), `extremes` (4, S)."""
+
+    time: np.ndarray
+    z: np.ndarray
+    energy: np.ndarray
+    sums: np.ndarray
+    beyond: np.ndarray
+    extremes: np.ndarray
+    sliding: np.ndarray
+
+
+def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Stops:
+    windows, a, legs = layout.windows, found.arrivals, found.legs
+    size = eps[windows.cell[windows.owner]]
+    z, energy = states_of(scene, size, a.well, a.tip, windows.stop, legs.guide1)
+    rise = legs.guide1 - legs.guide0
+    moved = legs.end > legs.start
+    ways, surpluses = (a.ahead, a.behind), (a.surplus, a.deficit)
+    return Stops(
+        time=windows.stop,
+        z=z,
+        energy=energy,
+        sums=np.stack([a.work, a.viscous, a.residual]),
+        beyond=a.viscous - legs.friction * rise,
+        extremes=np.stack([*(np.where(moved, v, 0.0) for v in ways), *surpluses]),
+        sliding=np.sign(rise),
+    )
+
+
+def surveys_at(slides: list[Slide], stops: Stops) -> dict[int, Survey]:
+    """Curves through the periods measured in each slide, by the number of the slide."""
+    found: dict[int, Survey] = {}
+    counts = np.array([slide.stops.size for slide in slides])
+    for count in np.unique(counts):
+        mine = np.flatnonzero(counts == count)
+        some = [slides[i] for i in mine]
+        at = np.stack([slide.stops for slide in some])
+        sums = stops.sums[:, at].swapaxes(0, 1)
+        extremes = stops.extremes[:, at].swapaxes(0, 1)
+        start = stops.energy[at] + sums[:, WORK] + stops.beyond[at]
+        extremes[:, SURPLUS:] -= start[:, None]
+        low, high = np.array([(slide.low, slide.high) for slide in some]).T
+        starts = np.stack([slide.starts for slide in some])
+        ends = np.stack([slide.ends for slide in some])
+        fits = surveys_of(low, high, starts, ends, sums, extremes)
+        found |= zip(mine.tolist(), fits, strict=True)
+    return found
