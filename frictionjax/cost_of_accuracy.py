@@ -17,7 +17,7 @@ from .provenance import explain, origin
 from .references import Reference, reference
 from .scene import Scene, require_times
 from .sweeps import grid_of
-from .timed_runs import runner, timed
+from .timed_runs import ENDED, accounted, runner, timed
 from .wiggly.general import SCIPY, Run
 from .wiggly.methods import solver_of
 from .wiggly.status import Status
@@ -65,8 +65,6 @@ _NOTHING = dict.fromkeys(_RUN, float("nan")) | {
     "wrong": 0.0,
     "runs": 0,
 }
-# Part of a trajectory is no trajectory: the errors of other runs are NaN.
-_USABLE = (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY)
 
 
 class _Column(NamedTuple):
@@ -97,7 +95,7 @@ def _values(run: Run, times: dict[str, float], column: _Column) -> dict[str, flo
     """Everything the data set holds of one run."""
     truth = column.truth
     errors = dict.fromkeys(MEASURES, float("nan"))
-    if run.status in _USABLE:
+    if run.status in ENDED:  # part of a trajectory is no trajectory
         true = truth.z, truth.dissipation, truth.in_slip
         errors = errors_of(run.z, run.dissipation, *true, column.when, column.eps)
     counts = ("steps", "rejected", "evaluations", "jacobians")
@@ -120,8 +118,9 @@ def _measured(column: _Column, effort: _Effort, bar: tqdm) -> list[dict[str, flo
         if given_up:
             cells.append(_NOTHING)
         else:
-            run = runner(scene, eps, gamma, when.ts, accuracy, method, effort.seconds)
-            found, times = timed(run, effort.repeats, effort.seconds)
+            what = scene, eps, gamma, when.ts, accuracy, method, effort.seconds
+            found, times = timed(runner(*what), effort.repeats, effort.seconds)
+            found = accounted(found, *what)
             cells.append(_values(found, times, column))
             slow = times["seconds"] > effort.seconds
             given_up = found.status == Status.TOO_SLOW or slow
@@ -175,10 +174,14 @@ def work_precision(
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds`; errors `error` (largest
     outside slips, in eps), `slip_error`, `end_error`, `dissipation_error`, `mescd` (as the
     Test Set for IVP Solvers, with atol/rtol = eps); `residual` of the energy-dissipation
-    balance; `steps`, `rejected`, `evaluations` and `jacobians` (NaN where a solver does
-    not tell); `status`, and `wrong`: success reported half an eps or more off. Over
-    (gamma, eps) what is known of the reference: `reference_error` and so on is its
-    distance from a second one made otherwise; no error below it means anything.
+    balance, for all along cubics through the ends of steps; `steps`, `rejected`,
+    `evaluations` and `jacobians`: of all attempts, by the method itself, without what
+    energies take. What a solver does not tell of these is found after the timed runs: for
+    diffrax's by a run that counts (NaN where the timed one failed, or for other methods
+    than Runge-Kutta's), for SciPy's from the times of its calls. `status`, and `wrong`:
+    success reported half an eps or more off. Over (gamma, eps) what is known of the
+    reference: `reference_error` and so on is its distance from a second one made
+    otherwise; no error below it means anything.
 
     Failures stay in the table with their status and errors of NaN.
 

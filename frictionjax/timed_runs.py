@@ -5,49 +5,74 @@ from collections.abc import Callable
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
-from .wiggly.general import SCIPY, Run, run_scipy
+from .wiggly.counted import can_count, count_work
+from .wiggly.general import SCIPY, Run, run_scipy, told
 from .wiggly.integration import MAX_STEPS
-from .wiggly.methods import is_ours
+from .wiggly.methods import is_ours, solver_of
 from .wiggly.planning import TABLEAU
+from .wiggly.rosenbrock import Tableau
 from .wiggly.status import Status
-from .wiggly.trajectory import Solution, solve
+from .wiggly.trajectory import solve
 
 _FAST_STEP = 3e-6  # s of the fastest step through diffrax: bounds the number of steps
 _ENOUGH = 0.5  # s of warm runs: what takes longer is timed once
-
-
-def _work(found: Solution) -> tuple[float, float]:
-    """Evaluations of the field and of its Jacobian of a run of ours.
-
-    Lanes compute every stage of every attempt, with one Jacobian; so they wait for none.
-    """
-    steps = float(found.stats["steps"])
-    return len(TABLEAU.a) * steps, steps
+# How runs end that have come to their end.
+ENDED = (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY)
 
 
 def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
     """Through `solve`: our methods, which have their own bounds, and diffrax's."""
-    ours = is_ours(method)
-    budget = MAX_STEPS if ours else int(seconds / _FAST_STEP)
-    found = solve(scene, eps, gamma, ts, accuracy, method, max_steps=budget)
+    found = solve(scene, eps, gamma, ts, accuracy, method, max_steps=_most(method, seconds))
     jax.block_until_ready((found.z, found.dissipation))
-    status = found.status
-    if status == Status.MAX_STEPS and not ours:
+    status, steps = found.status, float(found.stats["steps"])
+    if status == Status.MAX_STEPS and not is_ours(method):
         status = Status.TOO_SLOW
-    evaluations, jacobians = _work(found) if ours else (float("nan"), float("nan"))
     residual = float("nan") if found.residual is None else float(found.residual[-1])
     return Run(
         np.asarray(found.z),
         np.asarray(found.dissipation),
         status,
-        float(found.stats["steps"]),
+        steps,
         float(found.stats["rejected"]),
-        evaluations,
-        jacobians,
+        *_by_stages(method, steps),
         residual,
     )
+
+
+def _most(method: Any, seconds: float) -> int:
+    """Steps after which a run is ended."""
+    return MAX_STEPS if is_ours(method) else int(seconds / _FAST_STEP)
+
+
+def _by_stages(method: Any, steps: float) -> tuple[float, float]:
+    """Evaluations and Jacobians where each attempt takes as many; NaN where not.
+
+    Rosenbrock methods take every stage, with one Jacobian; so do lanes, none waits.
+    """
+    solver = solver_of(method)
+    tableau = TABLEAU if is_ours(method) else getattr(solver, "tableau", None)
+    if not isinstance(tableau, Tableau):
+        return float("nan"), float("nan")
+    return len(tableau.a) * steps, steps
+
+
+def accounted(run: Run, scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
+    """The run with what it took and what certifies it, where it did not say; not timed."""
+    if method in SCIPY:
+        return told(run, scene, eps, gamma, method)
+    solver = solver_of(method)
+    if not np.isnan(run.evaluations) or run.status not in ENDED or not can_count(solver):
+        return run
+    cell = scene, jnp.asarray(eps), jnp.asarray(gamma), jnp.asarray(ts)
+    counts = count_work(*cell, jnp.asarray(accuracy), solver, _most(method, seconds))
+    # Other steps than those of the run would be the work of another run.
+    if (float(counts.steps), float(counts.rejected)) != (run.steps, run.rejected):
+        return run
+    evaluations, jacobians = map(float, counts.work)
+    return run._replace(evaluations=evaluations, jacobians=jacobians)
 
 
 def runner(scene, eps, gamma, ts, accuracy, method, seconds) -> Callable[[], Run]:

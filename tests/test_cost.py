@@ -11,7 +11,7 @@ from frictionjax.instants import instants, slips_of
 from frictionjax.plot.work_precision import _front
 from frictionjax.references import reference
 from frictionjax.report.cost import chosen_eps, cost_sections
-from frictionjax.wiggly.general import run_scipy
+from frictionjax.wiggly.general import run_scipy, told
 
 EPS, SLOPE = 0.045, 0.1
 TIMES = np.linspace(0, 3, 31)
@@ -117,6 +117,8 @@ def test_scipy_solves_the_same_system(scene, when, truth, method):
     assert run.steps > 100
     assert run.evaluations > run.steps
     assert run.jacobians > 0
+    known = told(run, scene, EPS, 1.0, method)
+    assert run.steps + known.rejected == known.steps
 
 
 def test_measurements(data):
@@ -132,7 +134,12 @@ def test_measurements(data):
     assert np.all(ours.seconds <= ours.seconds_high)
     assert np.all(ours.evaluations > ours.steps)
     assert np.all(cell.sel(solver="Kvaerno3").error < ours.accuracy)
-    assert np.all(cell.sel(solver="Kvaerno3").jacobians.isnull())
+    for name in ("steps", "rejected", "evaluations", "jacobians", "residual"):
+        assert np.all(np.isfinite(cell[name])), name
+    assert np.all(cell.rejected < 0.5 * cell.steps)
+    implicit = cell.sel(solver="Kvaerno3")
+    assert np.all(implicit.evaluations > 5 * implicit.steps)
+    assert np.all(implicit.jacobians == 2 * implicit.steps)
 
 
 def test_success_in_another_well_is_called_wrong(data):
@@ -140,6 +147,8 @@ def test_success_in_another_well_is_called_wrong(data):
     assert int(loose.status) == fx.Status.OK
     assert float(loose.error) > 0.5
     assert int(loose.wrong) == 1
+    assert float(loose.residual) > 1.0  # 45; 0.0062 and less of the others
+    assert np.all(data.residual.sel(solver=["auto", "Kvaerno3"]) < 1e-3)
     assert int(data.sel(solver="auto").wrong.sum()) == 0
     table = dict(cost_sections(data))[f"gamma = 1, eps = {EPS:.4g} m"]
     assert "wrong" in next(x for x in table.splitlines() if x.startswith("LSODA"))

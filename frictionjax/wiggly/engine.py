@@ -44,7 +44,10 @@ def _some(parts: Any, chosen: np.ndarray) -> Any:
     return jax.tree_util.tree_map(lambda v: np.asarray(v)[chosen], parts)
 
 
-def _put(whole: Any, part: Any, chosen: np.ndarray) -> None:
+def _put(whole: Answers, part: Answers, chosen: np.ndarray) -> None:
+    """The answers of another attempt; its steps are on top of those before."""
+    steps = whole.steps[chosen], whole.rejected[chosen]
+    part = part._replace(steps=part.steps + steps[0], rejected=part.rejected + steps[1])
     for name, here in part._asdict().items():
         if name != "tolerance":
             getattr(whole, name)[chosen] = here
@@ -65,8 +68,9 @@ class _Sweep(NamedTuple):
 
     def rounds(self, ground: Ground, cells: Cells) -> Rounds:
         """What rounds of windows of some cells need."""
-        parts = self.scene, self.lanes, self.path, ground, cells
-        return Rounds(*parts, self.tableau, self.wanted, self.accuracy, self.report)
+        parts = self.scene, self.lanes, self.path, ground, cells, self.tableau
+        nothing = np.zeros((2, ground.eps.size))
+        return Rounds(*parts, self.wanted, self.accuracy, self.report, nothing)
 
     def attempt(self, cells: _Cellwise) -> tuple[Answers, np.ndarray]:
         """Answers of some cells, and which of them have a bracket that stays open."""
@@ -131,9 +135,13 @@ def integrate_cells(
     parts = _Cellwise(eps, ground, cells, needs)
     every = method == "resolved"
     sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, wanted, every, report)
-    parts = _ridden(sweep, parts, eps**gamma, np.flatnonzero(ridden))
+    parts, (steps, rejected) = _ridden(sweep, parts, eps**gamma, np.flatnonzero(ridden))
     answers, never = sweep.attempt(parts)
-    answers = answers._replace(tolerance=np.asarray(control.tolerance))
+    answers = answers._replace(
+        steps=answers.steps + steps,
+        rejected=answers.rejected + rejected,
+        tolerance=np.asarray(control.tolerance),
+    )
     for _ in range(_SURVEYS):
         rough = np.flatnonzero(sweep.is_rough(answers, eps) & ~never)
         if not _surveyed_again(sweep, parts, answers, never, rough):
@@ -180,15 +188,15 @@ def _in_tiles(sweep: _Sweep, every: _Cellwise, answers: Answers, never: np.ndarr
 
 def _ridden(
     sweep: _Sweep, every: _Cellwise, viscosity: np.ndarray, chosen: np.ndarray
-) -> _Cellwise:
-    """The same cells, with the rides of those that are chosen."""
+) -> tuple[_Cellwise, np.ndarray]:
+    """The same cells, with the rides of those that are chosen, and what these took."""
     if chosen.size == 0:
-        return every
+        return every, np.zeros((2, every.eps.size))
     rounds = sweep.rounds(every.ground, every.cells)
     find_rides(rounds, chosen, viscosity, every.needs.warm)
     has = np.array([len(rides) > 0 for rides in every.ground.rides])
     nodes = np.where(has, NODES, every.needs.nodes)
-    return every._replace(needs=every.needs._replace(nodes=nodes))
+    return every._replace(needs=every.needs._replace(nodes=nodes)), rounds.spent
 
 
 def _prepare(lanes: LaneScene, cells: int, times: int, wanted: Sums) -> None:

@@ -2,7 +2,7 @@
 
 import itertools
 import time
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -14,6 +14,7 @@ from ..programs import Program
 from ..scene import Scene
 from .integration import field_of
 from .status import Status
+from .step_record import StepRecord
 
 SCIPY = ("LSODA", "BDF", "Radau")
 
@@ -22,7 +23,8 @@ class Run(NamedTuple):
     """What a solver gave: `z` (m) and `dissipation` (J) at the times, shapes (n,).
 
     NaN from where it gave up, and where a solver does not tell; `residual` is that of the
-    energy-dissipation balance at the last time, J.
+    energy-dissipation balance at the last time, J. `record`: from which the rest follows,
+    where it does not come with the run.
     """
 
     z: np.ndarray
@@ -33,6 +35,7 @@ class Run(NamedTuple):
     evaluations: float
     jacobians: float
     residual: float = float("nan")
+    record: StepRecord | None = None
 
 
 def _rate_pair(field, t, state):
@@ -57,17 +60,6 @@ def _states(field, tips):
     return field.state(tips)
 
 
-class _Counter:
-    """Steps, evaluations and Jacobians of the stretches of one run."""
-
-    def __init__(self) -> None:
-        self.steps = self.evaluations = self.jacobians = 0
-
-    def add(self, solver: Any) -> None:
-        self.evaluations += solver.nfev
-        self.jacobians += solver.njev
-
-
 def run_scipy(
     scene: Scene,
     eps: float,
@@ -82,48 +74,81 @@ def run_scipy(
     The tip coordinate y is the unknown, with rtol = atol = `tolerance` (periods), and the
     dissipation beside it, relative to what a slip dissipates. Exact Jacobian; compiled
     rates, called from Python. No guard against steps over wells: they are what happens.
-    Ends after `seconds` with the status TOO_SLOW.
+    Ends after `seconds` with the status TOO_SLOW. Steps are the accepted ones; see `told`.
     """
     field = field_of(scene, jnp.asarray(eps), jnp.asarray(gamma))
     solver_type = getattr(scipy_integrate, method)
     start = np.array([float(field.start(scene.z0)), 0.0])
     found = np.full((ts.size, 2), np.nan)
     found[ts <= 0.0] = start
-    counter, status, deadline = _Counter(), Status.OK, time.perf_counter() + seconds
+    record, status, deadline = StepRecord(), Status.OK, time.perf_counter() + seconds
     law = coefficients_jit(scene.potential)
     slip = eps * float(law.rho_plus - law.rho_minus)
     edges = np.union1d(np.asarray(scene.turning_points()), [0.0, float(ts[-1])])
     edges = edges[(edges >= 0) & (edges <= ts[-1])]
+
+    def rates(t, y):
+        record.looks.append(t)
+        return np.asarray(_rates(field, np.float64(t), y))
+
+    def jacobian(t, y):
+        record.jacobians += 1
+        return np.asarray(_jacobian(field, np.float64(t), y))
+
     for begin, end in itertools.pairwise(edges):
         solver = solver_type(
-            lambda t, y: np.asarray(_rates(field, np.float64(t), y)),
+            rates,
             begin,
             start,
             end,
             rtol=max(tolerance, 1e-13),
             atol=np.array([tolerance, tolerance * slip]),
-            jac=lambda t, y: np.asarray(_jacobian(field, np.float64(t), y)),
+            jac=jacobian,
         )
-        status = _stretch(solver, ts, found, counter, deadline)
-        counter.add(solver)
+        status = _stretch(solver, ts, found, record, deadline)
         if status != Status.OK:
             break
         start = solver.y
-    counts = counter.steps, np.nan, counter.evaluations, counter.jacobians
     z = np.asarray(_states(field, found[:, 0]))
     if status == Status.OK and not np.all(np.isfinite(z)):
         status = Status.NOT_FINITE
-    return Run(z, found[:, 1], status, *map(float, counts))
+    return Run(
+        z,
+        found[:, 1],
+        status,
+        steps=float(record.accepted),
+        rejected=float("nan"),
+        evaluations=float(len(record.looks)),
+        jacobians=float(record.jacobians),
+        record=record,
+    )
 
 
-def _stretch(solver, ts, found, counter, deadline) -> Status:
+def told(run: Run, scene: Scene, eps: float, gamma: float, method: str) -> Run:
+    """The run with the steps that were tried, those rejected, and its residual.
+
+    Not to be timed. Where the run has not come to its end there is no residual.
+    """
+    assert run.record is not None
+    tried, residual = run.record.tried(method), float("nan")
+    if run.status == Status.OK:
+        field = field_of(scene, jnp.asarray(eps), jnp.asarray(gamma))
+        residual = run.record.residual(field)
+    rejected = float(tried - run.record.accepted)
+    return run._replace(
+        steps=float(tried), rejected=rejected, residual=residual, record=None
+    )
+
+
+def _stretch(solver, ts, found, record, deadline) -> Status:
     """Step to the end of a stretch; values at the times on the way go into `found`."""
     while solver.status == "running":
+        before, looks = solver.y, len(record.looks)
         message = solver.step()
-        counter.steps += 1
         if solver.status == "failed":
             tiny = message == solver.TOO_SMALL_STEP
             return Status.STEP_TOO_SMALL if tiny else Status.SOLVER_FAILED
+        record.add(solver, before, looks)
         passed = (ts > solver.t_old) & (ts <= solver.t)
         if passed.any():
             found[passed] = solver.dense_output()(ts[passed]).T

@@ -64,7 +64,10 @@ class Round(NamedTuple):
 
 
 class Rounds(NamedTuple):
-    """What all rounds of one sweep share."""
+    """What all rounds of one sweep share.
+
+    `spent` (2, cells): steps and rejected steps of all lanes so far, added in place.
+    """
 
     scene: Scene
     lanes: LaneScene
@@ -75,6 +78,7 @@ class Rounds(NamedTuple):
     wanted: Sums
     accuracy: float
     report: Report
+    spent: np.ndarray
 
     def run(self, windows: Windows, wells: np.ndarray, back: np.ndarray) -> Round:
         """March all windows, from `wells` of the path or `back` of a ride before them."""
@@ -85,7 +89,11 @@ class Rounds(NamedTuple):
     def march_from(self, windows: Windows, starts: Starts) -> Round:
         """March all windows from their starts."""
         plan = plan_windows(self.scene, self.path, self.ground, windows, starts)
-        return Round(plan, self._march(plan))
+        found = self._march(plan)
+        owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
+        for total, steps in zip(self.spent, (found.steps, found.rejected), strict=True):
+            total += np.bincount(owner, np.nan_to_num(steps), total.size)
+        return Round(plan, found)
 
     def _march(self, plan: Plan) -> Arrivals:
         """Deal the jobs to the cores, the longest first."""
@@ -134,8 +142,6 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
     values = np.full((len(Arrivals._fields), size), np.nan)
     legs = np.full((len(Legs._fields), size), np.nan)
     gap, how = np.full(size, np.inf), np.zeros(size, dtype=int)
-    cells = rounds.ground.eps.size
-    steps, rejected = np.zeros(cells), np.zeros(cells)
     open_ = np.arange(windows.cell.size)
     wells = run_ups(rounds, windows, needs.warm)
     back = np.ones(wells.size)
@@ -155,9 +161,6 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
         legs[:, place] = np.stack([v[plan.behind] for v in plan.legs])
         gap[place] = gaps
         how[place] = np.where(plan.known, 0, 1 + plan.ridden)[some.owner]
-        owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
-        steps += np.bincount(owner, np.nan_to_num(found.steps), cells)
-        rejected += np.bincount(owner, np.nan_to_num(found.rejected), cells)
         worst = np.zeros(some.cell.size)
         np.maximum.at(worst, some.owner, np.nan_to_num(gaps, nan=np.inf))
         # Lanes that met before a stop part again for a moment where it is at a slip: the
@@ -172,7 +175,7 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
             break
         wells[open_] = np.maximum(EARLIER * wells[open_], MARGIN + 1)
         back[open_] *= EARLIER
-    result = Found(Arrivals(*values), Legs(*legs), gap, how, steps, rejected)
+    result = Found(Arrivals(*values), Legs(*legs), gap, how, *rounds.spent)
     return result, open_
 
 
