@@ -19,9 +19,9 @@ from .wiggly.workload import Workload, workload
 # running; 83% while other programs came and went).
 _WITHIN = 2.0
 _LEAST_EPS = 4  # that an order needs
-# Bytes of one lane's rows in all tables and of one value, with the copies made on the way:
-# counted by hand, not measured. They matter from a million values on.
-_JOB_BYTES, _VALUE_BYTES = 4e3, 100.0
+# Bytes of a leg and of a job in all tables, and of one value, with the copies made on the
+# way: sweeps that added 0.1 GB to 1 GB to a process (`benchmarks/memory.py`).
+_LEG_BYTES, _JOB_BYTES, _VALUE_BYTES = 900.0, 2500.0, 100.0
 ACCURACIES = (1e-6, 1e-5, 1e-4, 1e-3)
 
 
@@ -74,7 +74,8 @@ def _predicted(
         nothing = np.full((gamma.size, eps.size), np.nan)
         return CostPrediction(np.nan, nothing, np.nan, machine.memory, machine.measured)
     each = [machine.seconds(_one(work, i)) for i in range(cells[0].size)]
-    memory = machine.memory + _JOB_BYTES * work.jobs.sum() + _VALUE_BYTES * values
+    rows = _LEG_BYTES * work.legs.sum() + _JOB_BYTES * work.jobs.sum()
+    memory = machine.memory + rows + _VALUE_BYTES * values
     return CostPrediction(
         machine.seconds(work),
         np.reshape(each, (gamma.size, eps.size)),
@@ -86,7 +87,8 @@ def _predicted(
 
 def _one(work: Workload, cell: int) -> Workload:
     some = slice(cell, cell + 1)
-    return Workload(work.steps[some], work.chain[some], work.jobs[some], work.weight)
+    steps, chain, jobs, legs = (column[some] for column in work[:4])
+    return Workload(steps, chain, jobs, legs, work.weight)
 
 
 def predict_cost(

@@ -1,6 +1,7 @@
 """Predicted cost: work from the plan, seconds from a measured machine, budgets."""
 
 import json
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -11,6 +12,10 @@ from frictionjax.machine_cost import ELSEWHERE, MachineCost, keep_machine, known
 from frictionjax.report.job import read_job
 from frictionjax.report.study import expected_cost, within_budget
 from frictionjax.sweeps import cells_of
+from frictionjax.wiggly import rounds
+from frictionjax.wiggly.layout import lay_out
+from frictionjax.wiggly.path import path_of
+from frictionjax.wiggly.planning import lane_scene, planned
 from frictionjax.wiggly.workload import _weight_of, workload
 
 TIMES = np.linspace(0.0, 3.0, 61)
@@ -51,6 +56,48 @@ def test_the_work_is_foreseen(eps, gamma, accuracy, method):
     data = fx.sweep(scene_of(), *cell, TIMES, accuracy, method)
     ratio = float(data.steps.squeeze()) / float(work.steps[0])
     assert 0.5 < ratio < 2, ratio  # 0.57 to 1.4
+
+
+@pytest.mark.parametrize(
+    ("eps", "gamma", "times", "method"),
+    [
+        ([5e-2, 1e-2, 1e-3], [1.0, 2.0], 401, "auto"),
+        ([1e-5], [1.0], 401, "auto"),
+        ([1e-3], [1.0], 2001, "resolved"),
+    ],
+)
+def test_the_rows_of_tables_are_foreseen(monkeypatch, eps, gamma, times, method):
+    rows, plans = np.zeros(2), rounds.plan_windows
+
+    def plan(*parts):
+        found = plans(*parts)
+        rows[:] += found.jobs.cell.size, found.legs.start.size
+        return found
+
+    monkeypatch.setattr(rounds, "plan_windows", plan)
+    cells = cells_of(np.array(eps), np.array(gamma))
+    work = workload(scene_of(), *cells, times, 1e-3, method)
+    fx.sweep(scene_of(), eps, gamma, np.linspace(0.0, 3.0, times), 1e-3, method)
+    ratios = rows / (work.jobs.sum(), work.legs.sum())
+    assert np.all((ratios > 0.7) & (ratios < 1.3)), ratios
+
+
+def test_tables_grow_with_the_times_and_not_their_square():
+    """The layout of 20 001 times took 0.4 GB, of 200 001 it failed."""
+    cell = np.array([1e-3]), np.array([1.0])
+    path = path_of(scene_of())
+    lanes = lane_scene(scene_of(), 1e-3)
+    ts = np.sort(np.concatenate([np.linspace(0.0, 3.0, 20_000), [1.5, 1.5]]))
+    plan = planned(scene_of(), lanes, path, *cell, ts.size, 1e-3, "resolved")
+    tracemalloc.start()
+    parts = scene_of(), path, cell[0], ts, plan.needs, plan.ground.rides
+    found = lay_out(*parts)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 1000 * ts.size, most / ts.size
+    at = found.output[0]
+    assert np.all(found.windows.stop[at[1:]] == ts[1:])
+    assert at[0] == -1  # the start is known
 
 
 def test_work_follows_from_the_numbers():

@@ -2,6 +2,7 @@
 
 import inspect
 import sys
+from types import SimpleNamespace
 
 import diffrax
 import jax
@@ -20,6 +21,7 @@ from frictionjax.wiggly.integration import integrate
 from frictionjax.wiggly.lane import Sums
 from frictionjax.wiggly.methods import solver_of
 from frictionjax.wiggly.planning import TABLEAU
+from frictionjax.wiggly.step_record import StepRecord
 from frictionjax.wiggly.tolerance import plan_steps
 
 EPS, TIMES = 0.2, np.linspace(0.0, 3.0, 5)
@@ -142,7 +144,7 @@ def test_lanes_look_at_the_field_once_a_stage(monkeypatch):
 
 @pytest.mark.parametrize(
     ("eps", "gamma", "accuracy"),
-    [(1e-3, 1.0, 1e-5), pytest.param(2e-4, 0.5, 1e-4, marks=pytest.mark.slow)],
+    [(1e-3, 1.0, 1e-5), pytest.param(2.5e-4, 0.25, 1e-3, marks=pytest.mark.slow)],
 )
 def test_steps_of_lanes_are_all_steps(monkeypatch, eps, gamma, accuracy):
     """Also those of surveys that were made again, and of lanes that look for slip maps."""
@@ -189,6 +191,14 @@ def test_attempts_of_scipy_are_counted(monkeypatch, method):
     assert known.rejected == count - run.steps > 0
 
 
+def test_looks_at_the_start_are_no_attempts():
+    """LSODA's first one, and those after three failures."""
+    record, solver = StepRecord(), SimpleNamespace(t_old=1.0, t=1.25, y=np.zeros(2))
+    record.looks += [1.0, 2.0, 2.0, 1.5, 1.0, 1.25, 1.25]
+    record.add(solver, np.zeros(2), 0)
+    assert (record.tried("LSODA"), record.accepted) == (3, 1)
+
+
 def test_evaluations_of_scipy_are_its_own():
     """Looks that are recorded are what SciPy's solvers say they have made."""
     told_by, plain = [], scipy_integrate.LSODA.__init__
@@ -199,7 +209,8 @@ def test_evaluations_of_scipy_are_its_own():
 
     with pytest.MonkeyPatch.context() as change:
         change.setattr(scipy_integrate.LSODA, "__init__", keep)
-        run = run_scipy(SCENE, EPS, 1.0, TIMES, 1e-4, "LSODA", 60.0)
+        run = run_scipy(SCENE, EPS, 1.0, TIMES, 1e-2, "LSODA", 60.0)
+    assert run.jacobians > 0
     assert run.evaluations == sum(solver.nfev for solver in told_by)
     assert run.jacobians == sum(solver.njev for solver in told_by)
     own = [solver._lsoda_solver._integrator.iwork[10] for solver in told_by]

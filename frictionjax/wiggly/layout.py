@@ -91,6 +91,12 @@ def longest_lane(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:
     return np.minimum(path.travel[-1] / eps, needs.tile + needs.warm)
 
 
+def wells_a_leg(path: Path, eps: np.ndarray) -> np.ndarray:
+    """Wells between two stops of each cell's lanes, where nothing else stops them."""
+    span = max(float(path.travel[-1]), 1e-300)
+    return np.clip(np.floor(_LEG * span / eps), 1, _WELLS_A_LEG)
+
+
 def _inner_wells(ways: np.ndarray, needs: Needs) -> np.ndarray:
     """Wells of each slide of which only some are measured, (cells, pieces)."""
     inner = np.floor(ways) - np.ceil(needs.settle)[:, None] - _TAIL - 1
@@ -227,11 +233,11 @@ def _sample(scene: Scene, path: Path, eps, needs: Needs, parts: _Inner, rides: n
 
 def _lattice(scene: Scene, path: Path, eps: np.ndarray, needs: Needs, parts: _Inner):
     """Cell and time of every leg's end on slides, outside their inner parts."""
-    span = max(float(path.travel[-1]), 1e-300)
+    legs = wells_a_leg(path, eps)
     lows, highs = (states_at(scene, path, t) for t in (parts.low, parts.high))
     cells, pieces, wells = [], [], []
     for cell in range(eps.size):
-        leg = float(np.clip(np.floor(_LEG * span / eps[cell]), 1, _WELLS_A_LEG))
+        leg = float(legs[cell])
         own = parts.cell == cell
         for slide in np.flatnonzero(path.direction).tolist():
             way = abs(path.states[slide + 1] - path.states[slide]) / eps[cell]
@@ -338,8 +344,9 @@ def lay_out(
             rows.append((cell, begin, False, own[group]))
         own = own[np.concatenate([*tiles, np.zeros(0, dtype=int)])]
         chain.append(count + np.arange(own.size))
-        hit, which = np.nonzero(ts[:, None] == own)
-        output[cell, hit] = count + which
+        which = np.searchsorted(own, ts)
+        hit = np.append(own, np.nan)[which] == ts
+        output[cell, hit] = count + which[hit]
         count += own.size
     slides: list[Slide] = []
     lows, highs = (states_at(scene, path, t) for t in (parts.low, parts.high))

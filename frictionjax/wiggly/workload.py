@@ -8,7 +8,7 @@ from ..potentials import BristlePotential
 from ..profiles import Fourier
 from ..scene import Scene
 from .lane import LaneScene
-from .layout import Needs, cost_of, longest_lane, wells_of
+from .layout import Needs, cost_of, longest_lane, wells_a_leg, wells_of
 from .path import Path, path_of
 from .planning import LOOSEST, WIDEST, lane_scene, planned
 from .series_bristle import SeriesBristle
@@ -34,12 +34,14 @@ class Workload(NamedTuple):
     """Work of lanes in each cell, shape (cells,).
 
     `steps`: of all lanes. `chain`: those that one lane takes after the other. `jobs`:
-    lanes that set off. `weight`: of a step, relative to a linear spring on a sine.
+    lanes that set off; `legs`: of their ways. `weight`: of a step, relative to a linear
+    spring on a sine.
     """
 
     steps: np.ndarray
     chain: np.ndarray
     jobs: np.ndarray
+    legs: np.ndarray
     weight: float
 
 
@@ -67,7 +69,8 @@ def workload(
     growth = (path.travel[-1] / eps / 1e3) ** _RIDE_GROWTH
     total = np.where(ridden, _RIDE_STEPS * needs.warm * steps * growth, total)
     chain = np.where(ridden, _RIDE_CHAIN * steps * growth, chain)
-    return Workload(total, chain, _jobs(path, eps, needs, times), _weight_of(lanes))
+    jobs, legs = _rows(path, eps, needs, times)
+    return Workload(total, chain, jobs, legs, _weight_of(lanes))
 
 
 def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
@@ -83,12 +86,16 @@ def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.nd
     )
 
 
-def _jobs(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray:
-    """Two lanes for each window."""
+def _rows(
+    path: Path, eps: np.ndarray, needs: Needs, times: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Jobs and legs: two lanes for each window, legs of the first one between its stops."""
     outer, inner = wells_of(path, eps, needs)
     shown = times * inner / np.maximum(inner + outer, 1e-9)
     slides = np.count_nonzero(path.direction)
-    return 2 * (1 + outer / needs.tile + needs.nodes * slides * (inner > 0) + shown)
+    tiles, sampled = 1 + outer / needs.tile, needs.nodes * slides * (inner > 0) + shown
+    stops = outer / wells_a_leg(path, eps) + times - shown + 2 * path.edges.size
+    return 2 * (tiles + sampled), stops + 2 * tiles + 4 * sampled
 
 
 def _weight_of(lanes: LaneScene) -> float:
