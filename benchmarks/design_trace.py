@@ -1,16 +1,14 @@
-"""Fits to traces: errors against noise, eps and gamma, seconds, and gradients.
+"""Fits to traces: errors against noise, eps and gamma, and seconds.
 
-`python benchmarks/design_trace.py [gradients]` prints Markdown.
+`python benchmarks/design_trace.py` prints Markdown. Gradients: gradients.py.
 """
 
-import sys
 import time
 
 import jax
 import numpy as np
 
 import frictionjax as fx
-from frictionjax.design.trace_flow import flow, plan_of
 
 jax.config.update("jax_enable_x64", True)
 
@@ -72,39 +70,5 @@ def recovery(seeds=(1, 2, 3)):
             )
 
 
-def gradients():
-    """Forward mode against central differences of order 4, through more and more slips."""
-    print("| wells passed | samples | largest relative error | s, all 16 derivatives |")
-    print("|---|---|---|---|")
-    profile = surface(1)
-    numbers = np.concatenate([profile.cos, profile.sin])
-    for eps, turns in ((0.1, 1), (0.03, 1), (0.03, 8)):
-        scene = scene_of(profile, turns)
-        end = float(scene.duration)
-        ts = np.linspace(0, end, SAMPLES + 2)[1:-1]
-        known = scene, np.asarray(eps), np.asarray(1.0)
-        plan = plan_of(numbers, *known, np.asarray(1e-9 if turns == 1 else 1e-7))
-        found = flow(numbers, *known, ts, plan)
-        before = time.perf_counter()
-        jax.block_until_ready(flow(numbers, *known, ts, plan))
-        seconds = time.perf_counter() - before
-        worst, step = 0.0, 1e-7 / turns
-        rest = np.abs(np.asarray(found.speed)) < 10 * 4 / PERIOD
-        for index in (0, 5, 9) if turns == 1 else (5,):
-            ends = []
-            for share in (1, -1, 2, -2):
-                moved = numbers.copy()
-                moved[index] += share * step
-                ends.append(np.asarray(flow(moved, *known, ts, plan).z))
-            slope = (8 * (ends[0] - ends[1]) - (ends[2] - ends[3])) / (12 * step)
-            gap = np.abs(np.asarray(found.by)[index] - slope)[rest]
-            worst = max(worst, float(np.max(gap) / np.max(np.abs(slope[rest]))))
-        wells = float(np.sum(np.abs(np.diff(np.asarray(found.z))))) / eps
-        print(f"| {wells:.0f} | {ts.size} | {worst:.1e} | {seconds:.2f} |", flush=True)
-
-
 if __name__ == "__main__":
-    if "gradients" not in sys.argv:
-        recovery()
-        print()
-    gradients()
+    recovery()

@@ -1,0 +1,132 @@
+"""Derivatives of trajectories through more and more slips.
+
+`python benchmarks/gradients.py [trace|solve]` prints Markdown. `trace`: derivatives of z at
+the samples of `fit_trace`, forward mode, against a variational equation of its own
+(variation.py) and against central differences. `solve`: `jax.jacrev` through `fx.solve` on
+1000 slips of a ramp against central differences.
+"""
+
+import sys
+import time
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from design_trace import PERIOD, SAMPLES, scene_of, surface
+from variation import slanted_variation
+
+import frictionjax as fx
+from frictionjax.design.trace_flow import flow, plan_of
+
+jax.config.update("jax_enable_x64", True)
+
+SLANTED = (1.0, 2.2, 1.0, 0.5)  # the bristle of design_trace
+CASES = ((0.1, 1, 1e-9), (0.03, 1, 1e-9), (0.03, 8, 1e-7))
+CHECKED = (0, 5, 9)
+TIGHT = 1e-13
+
+EPS, SLIPS = 1e-3, 1000
+NAMES = ("slope", "stiffness", "angle", "support", "rate", "z0", "eps", "gamma")
+POINT = jnp.array([0.1, 1.0, 0.4, 1.0, 1.0, 0.0, EPS, 1.0])
+# Steps of the differences. A slip is 1e-3 of load: steps that shift slips by more than a
+# hundredth of that have errors of their own.
+STEPS = (1e-6, 1e-5, 1e-5, 1e-6, 2e-5, 1e-6, 1e-9, 1e-5)
+
+
+def central(run, numbers, index, step):
+    """Of order 4."""
+    ends = []
+    for share in (1, -1, 2, -2):
+        moved = np.array(numbers)
+        moved[index] += share * step
+        ends.append(np.asarray(run(moved)))
+    return (8 * (ends[0] - ends[1]) - (ends[2] - ends[3])) / (12 * step)
+
+
+def traces():
+    print("| wells passed | accuracy | against LSODA | LSODA's own | differences | s |")
+    print("|---|---|---|---|---|---|")
+    numbers = np.concatenate([surface(1).cos, surface(1).sin])
+    for eps, turns, accuracy in CASES:
+        scene = scene_of(surface(1), turns)
+        ts = np.linspace(0, float(scene.duration), SAMPLES + 2)[1:-1]
+        known = scene, np.asarray(eps), np.asarray(1.0)
+        plan = plan_of(numbers, *known, np.asarray(accuracy))
+        found = jax.block_until_ready(flow(numbers, *known, ts, plan))
+        before = time.perf_counter()
+        jax.block_until_ready(flow(numbers, *known, ts, plan))
+        seconds = time.perf_counter() - before
+        assert np.all(np.isfinite(found.by))
+        rest = np.abs(np.asarray(found.speed)) < 10 * 4 / PERIOD
+        kinks, loads = np.asarray(scene.load.times), np.asarray(scene.load.values)
+        ours, own, theirs = [], [], []
+        for index in CHECKED:
+            parts = numbers, SLANTED, eps, kinks, loads, ts, index
+            _, exact = slanted_variation(*parts, TIGHT)
+            _, rough = slanted_variation(*parts, 100 * TIGHT)
+            size = np.max(np.abs(exact[rest]))
+
+            def gap(by, exact=exact, size=size):
+                return np.max(np.abs(by - exact)[rest]) / size
+
+            ours.append(gap(np.asarray(found.by)[index]))
+            own.append(gap(rough))
+        steps = 1e-7 / turns
+        slope = central(lambda x: flow(x, *known, ts, plan).z, numbers, CHECKED[1], steps)
+        _, exact = slanted_variation(*parts[:-1], CHECKED[1], TIGHT)
+        theirs = np.max(np.abs(slope - exact)[rest]) / np.max(np.abs(exact[rest]))
+        wells = float(np.sum(np.abs(np.diff(np.asarray(found.z))))) / eps
+        print(
+            f"| {wells:.0f} | {accuracy:g} | {max(ours):.1e} | {max(own):.1e} | "
+            f"{theirs:.1e} | {seconds:.1f} |",
+            flush=True,
+        )
+
+
+def ramp_of(p, duration):
+    return fx.Scene(
+        fx.profiles.Sine(p[0]),
+        fx.bristles.SlantedSpring(p[1], 2.2, 1.0, p[2]),
+        fx.supports.Spring(p[3]),
+        fx.loads.Ramp(p[4]),
+        duration,
+        p[5],
+    )
+
+
+def solves():
+    rho = float(fx.friction(ramp_of(POINT, 1.0)).rho_plus)
+    duration = rho + (SLIPS + 0.4) * EPS
+    ts = np.array([duration - 10 * EPS, duration])
+
+    @jax.jit
+    def run(p):
+        found = fx.solve(ramp_of(p, duration), p[6], p[7], ts, accuracy=1e-9)
+        return jnp.concatenate([found.z, found.dissipation])
+
+    reverse = jax.jit(jax.jacrev(run))
+    values = np.asarray(run(POINT))
+    jax.block_until_ready(reverse(POINT))
+    before = time.perf_counter()
+    jacobian = np.asarray(reverse(POINT))
+    seconds = time.perf_counter() - before
+    print(f"\n{SLIPS} slips, all derivatives of four numbers in {seconds:.1f} s:\n")
+    print("| by | z at the end | gap | dissipation at the end | gap |")
+    print("|---|---|---|---|---|")
+    for index, name in enumerate(NAMES):
+        size = max(abs(float(POINT[index])), EPS)
+        near = central(run, POINT, index, STEPS[index])
+        cells = []
+        for row in (1, 3):
+            # Derivatives far below value over number are rounding of the differences.
+            scale = max(abs(near[row]), 1e-3 * abs(values[row]) / size)
+            gap = abs(jacobian[row, index] - near[row]) / scale
+            cells.append(f"{jacobian[row, index]:.9g} | {gap:.1e}")
+        print(f"| {name} | {' | '.join(cells)} |", flush=True)
+
+
+if __name__ == "__main__":
+    if "solve" not in sys.argv:
+        traces()
+    if "trace" not in sys.argv:
+        solves()
