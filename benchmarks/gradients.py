@@ -46,41 +46,40 @@ def central(run, numbers, index, step):
 def traces():
     print("| wells passed | accuracy | against LSODA | LSODA's own | differences | s |")
     print("|---|---|---|---|---|---|")
+    for case in CASES:
+        print(trace_row(*case), flush=True)
+
+
+def trace_row(eps, turns, accuracy):
     numbers = np.concatenate([surface(1).cos, surface(1).sin])
-    for eps, turns, accuracy in CASES:
-        scene = scene_of(surface(1), turns)
-        ts = np.linspace(0, float(scene.duration), SAMPLES + 2)[1:-1]
-        known = scene, np.asarray(eps), np.asarray(1.0)
-        plan = plan_of(numbers, *known, np.asarray(accuracy))
-        found = jax.block_until_ready(flow(numbers, *known, ts, plan))
-        before = time.perf_counter()
-        jax.block_until_ready(flow(numbers, *known, ts, plan))
-        seconds = time.perf_counter() - before
-        assert np.all(np.isfinite(found.by))
-        rest = np.abs(np.asarray(found.speed)) < 10 * 4 / PERIOD
-        kinks, loads = np.asarray(scene.load.times), np.asarray(scene.load.values)
-        ours, own, theirs = [], [], []
-        for index in CHECKED:
-            parts = numbers, SLANTED, eps, kinks, loads, ts, index
-            _, exact = slanted_variation(*parts, TIGHT)
-            _, rough = slanted_variation(*parts, 100 * TIGHT)
-            size = np.max(np.abs(exact[rest]))
+    scene = scene_of(surface(1), turns)
+    ts = np.linspace(0, float(scene.duration), SAMPLES + 2)[1:-1]
+    known = scene, np.asarray(eps), np.asarray(1.0)
+    plan = plan_of(numbers, *known, np.asarray(accuracy))
+    found = jax.block_until_ready(flow(numbers, *known, ts, plan))
+    before = time.perf_counter()
+    jax.block_until_ready(flow(numbers, *known, ts, plan))
+    seconds = time.perf_counter() - before
+    assert np.all(np.isfinite(found.by))
+    rest = np.abs(np.asarray(found.speed)) < 10 * 4 / PERIOD
+    kinks, loads = np.asarray(scene.load.times), np.asarray(scene.load.values)
 
-            def gap(by, exact=exact, size=size):
-                return np.max(np.abs(by - exact)[rest]) / size
+    def judged(index, tolerance):
+        parts = numbers, SLANTED, eps, kinks, loads, ts, index
+        return slanted_variation(*parts, tolerance)[1]
 
-            ours.append(gap(np.asarray(found.by)[index]))
-            own.append(gap(rough))
-        steps = 1e-7 / turns
-        slope = central(lambda x: flow(x, *known, ts, plan).z, numbers, CHECKED[1], steps)
-        _, exact = slanted_variation(*parts[:-1], CHECKED[1], TIGHT)
-        theirs = np.max(np.abs(slope - exact)[rest]) / np.max(np.abs(exact[rest]))
-        wells = float(np.sum(np.abs(np.diff(np.asarray(found.z))))) / eps
-        print(
-            f"| {wells:.0f} | {accuracy:g} | {max(ours):.1e} | {max(own):.1e} | "
-            f"{theirs:.1e} | {seconds:.1f} |",
-            flush=True,
-        )
+    def gap(by, exact):
+        return np.max(np.abs(by - exact)[rest]) / np.max(np.abs(exact[rest]))
+
+    exact = {index: judged(index, TIGHT) for index in CHECKED}
+    ours = max(gap(np.asarray(found.by)[i], exact[i]) for i in CHECKED)
+    own = max(gap(judged(i, 100 * TIGHT), exact[i]) for i in CHECKED)
+    middle = CHECKED[1]
+    slope = central(lambda x: flow(x, *known, ts, plan).z, numbers, middle, 1e-7 / turns)
+    theirs = gap(slope, exact[middle])
+    wells = float(np.sum(np.abs(np.diff(np.asarray(found.z))))) / eps
+    gaps = f"{ours:.1e} | {own:.1e} | {theirs:.1e}"
+    return f"| {wells:.0f} | {accuracy:g} | {gaps} | {seconds:.1f} |"
 
 
 def ramp_of(p, duration):

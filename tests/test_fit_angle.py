@@ -301,6 +301,33 @@ def test_sensitivities_are_central_differences(free):
     np.testing.assert_allclose(batch.sensitivities.target, slopes[0], rtol=1e-7)
 
 
+def test_sensitivities_of_a_batch_are_those_of_its_targets():
+    batch = fx.fit_angle(WAVES, SLANTED, ratio=np.array([1.1, 1.3, 1.2]))
+    many = batch.sensitivities
+    one = batch[1].sensitivities
+    lane = jax.tree_util.tree_map(lambda leaf: leaf[1], many)
+    for found, expected in zip(*map(jax.tree_util.tree_leaves, (lane, one)), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
+    assert many.profile.cos.shape == (3, 3)
+    assert many.target[0] != many.target[2]
+
+
+def test_a_batch_of_bristles():
+    """`vmap` over bristles, and derivatives inside of it, as one after the other."""
+
+    def angle(rest):
+        part = fx.bristles.SlantedSpring(1.0, rest, 1.0, 0.9)
+        return fx.fit_angle(WAVES, part, rho_plus=0.15).value
+
+    rests = jnp.array([2.2, 2.4, 2.7])
+    values, slopes = jax.vmap(jax.value_and_grad(angle))(rests)
+    np.testing.assert_allclose(values, [angle(float(rest)) for rest in rests], rtol=1e-13)
+    part = fx.bristles.SlantedSpring(1.0, rests[1], 1.0, float(values[1]))
+    assert fx.friction(WAVES, part).rho_plus == pytest.approx(0.15, rel=1e-12)
+    for slope, rest in zip(slopes, rests, strict=True):
+        assert float(slope) == pytest.approx(float(central(angle, rest, 1e-4)), rel=1e-7)
+
+
 def test_a_bristle_of_ones_own():
     class Leaning(fx.bristles.AbstractBristle):
         lean: float

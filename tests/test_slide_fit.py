@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.design import slide_fit
 from frictionjax.design.fit_status import FitStatus
+from frictionjax.design.steady_slide import SteadySlide
 
 WAVES = fx.profiles.Fourier(cos=[0.004, 0.002], sin=[0.015, -0.003])
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
@@ -44,3 +46,42 @@ def test_wrong_arguments_are_named():
         fx.fit_slide(WAVES, SLANTED, EPS)
     with pytest.raises(ValueError, match=r"ratio = \[1.  1.2\]: needs one number"):
         fx.fit_slide(WAVES, SLANTED, EPS, ratio=[1.0, 1.2])
+
+
+def test_slides_that_were_not_computed_are_not_unreachable(monkeypatch):
+    """The scan made by hand: what it could not evaluate leaves the answer open."""
+    ends = (0.2, 1.1)
+
+    def scan(lost, follows=True):
+        def quantities(free, bristle, profile, which, values, numbers):
+            shown = np.where(np.abs(values - 0.7) < 0.2 * lost, np.nan, 1.0 + 0.3 * values)
+            return shown, np.full(values.size, follows)
+
+        return quantities
+
+    one = np.ones(())
+    known = SteadySlide(np.asarray(EPS), one, -one, one, -one, 0 * one, 0 * one)
+    monkeypatch.setattr(slide_fit, "steady_slide", lambda *_: known)
+    monkeypatch.setattr(slide_fit, "_slope", lambda *_: one)
+
+    def fit(lost, ratio, follows=True):
+        monkeypatch.setattr(slide_fit, "_quantities", scan(lost, follows))
+        return fx.fit_slide(WAVES, SLANTED, EPS, ratio=ratio, bounds=ends)
+
+    found = fit(1, 1.6)
+    assert found.status == FitStatus.UNKNOWN
+    assert not found.success
+    assert np.all(np.abs(found.failed - 0.7) < 0.2)
+    assert (
+        f"{found.failed.size} slides were not computed, the first at angle" in found.message
+    )
+    assert "others show (1.06" in found.message
+    assert fit(0, 1.6).status == FitStatus.UNREACHABLE
+    assert fit(0, 1.6).failed.size == 0
+    assert fit(1, 1.1).status == FitStatus.OK  # found on what is known
+    nothing = fit(9, 1.6)
+    assert nothing.status == FitStatus.UNKNOWN
+    assert nothing.reachable.shape == (0, 2)
+    assert "no other is known" in nothing.message
+    with pytest.raises(ValueError, match=r"eps = 0.01: needs an eps at which some bristle"):
+        fit(9, 1.6, follows=False)

@@ -13,6 +13,7 @@ class FitStatus(Outcome):
     MORE = 4, "found, but there are more solutions, or turns, than there is room for"
     UNREACHABLE = 5, "no admissible value gives it"
     INADMISSIBLE = 6, "no value in the bounds is admissible on this surface"
+    UNKNOWN = 7, "not found, but not every value could be evaluated"
 
 
 GOOD = (FitStatus.OK, FitStatus.TANGENT, FitStatus.INDIFFERENT, FitStatus.MORE)

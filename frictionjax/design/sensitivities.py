@@ -9,9 +9,11 @@ import jax.numpy as jnp
 from ..arguments import Real, is_concrete
 from ..bristles import AbstractBristle
 from ..profiles import AbstractProfile
-from ..programs import Program
+from ..programs import Program, room
 from .free_parameter import FreeParameter, free_parameter
 from .quantities import QUANTITIES, on_slopes, quantity_of, slopes_of
+
+_ROOM = 8, 8  # batches come in few sizes, so that few programs are compiled
 
 
 class Sensitivities(eqx.Module):
@@ -29,8 +31,7 @@ class Sensitivities(eqx.Module):
     profile: AbstractProfile
 
 
-@Program
-def _derivatives(free: FreeParameter, bristle, profile, value, which):
+def _one(free: FreeParameter, bristle, profile, value, which):
     """Implicit function theorem: dv = (dtarget - dq(v; p) . dp) / (dq/dv)."""
 
     numbers, rest = eqx.partition(bristle, eqx.is_inexact_array)
@@ -45,6 +46,19 @@ def _derivatives(free: FreeParameter, bristle, profile, value, which):
     return 1 / by[0], *by_slopes, by_bristle, pull(by_slopes)[0]
 
 
+@Program
+def _derivatives(free: FreeParameter, bristle, profile, value, which):
+    return _one(free, bristle, profile, value, which)
+
+
+@Program
+def _batch(free: FreeParameter, bristles, profile, values, which):
+    def one(bristle, value):
+        return _one(free, bristle, profile, value, which)
+
+    return eqx.filter_vmap(one, in_axes=(eqx.if_array(0), 0))(bristles, values)
+
+
 def sensitivities_of(fit: Any) -> Sensitivities:
     """Sensitivities of a fit, one target's or a batch's."""
     which = jnp.asarray(QUANTITIES.index(fit.quantity))
@@ -52,5 +66,15 @@ def sensitivities_of(fit: Any) -> Sensitivities:
         free = free_parameter(fit.bristle, fit.free)
         found = _derivatives(free, fit.bristle, fit.profile, fit.value, which)
         return Sensitivities(*found)
-    lanes = [sensitivities_of(fit[i]) for i in range(fit.value.shape[0])]
-    return jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *lanes)
+    free = free_parameter(fit[0].bristle, fit.free)
+    count = fit.value.shape[0]
+    more = room(count, *_ROOM) - count
+
+    def padded(leaf):
+        if not eqx.is_array(leaf):
+            return leaf
+        return jnp.pad(leaf, [(0, more)] + [(0, 0)] * (leaf.ndim - 1), mode="edge")
+
+    both = jax.tree_util.tree_map(padded, (fit.bristle, fit.value))
+    found = _batch(free, both[0], fit.profile, both[1], which)
+    return Sensitivities(*jax.tree_util.tree_map(lambda leaf: leaf[:count], found))

@@ -39,8 +39,10 @@ class SlideFit(eqx.Module):
 
     As `AngleFit`, with the quantity made of mean forces: `value`, `achieved`, `target`,
     `solutions` (all that a scan of 33 values an interval tells apart), `reachable`
-    (intervals, 2): least and largest quantity of that scan. `slide`: of the bristle
-    returned. `by_target`: d value/d target. `limit`: the fit for eps -> 0.
+    (intervals, 2): least and largest quantity of that scan. `failed` (n,): values of it at
+    which there is a bristle but its slide was not found; without a solution the status is
+    then UNKNOWN, not UNREACHABLE. `slide`: of the bristle returned. `by_target`: d value/d
+    target. `limit`: the fit for eps -> 0.
     """
 
     bristle: AbstractBristle
@@ -49,6 +51,7 @@ class SlideFit(eqx.Module):
     target: Real
     solutions: Real
     reachable: Real
+    failed: Real
     by_target: Real
     slide: SteadySlide
     limit: AngleFit
@@ -73,6 +76,14 @@ class SlideFit(eqx.Module):
                 f"{intervals_text(self.reachable)}; nearest: {as_text(self.achieved)} "
                 f"at {value}"
             )
+        if self.status == FitStatus.UNKNOWN:
+            count, first = self.failed.shape[0], as_text(self.failed[0])
+            known = intervals_text(self.reachable)
+            shown = f"others show {known}" if known else "no other is known"
+            return (
+                f"{asked}: {self.status.message}: {count} slides were not computed, the "
+                f"first at {limit.free} = {first}; {shown}"
+            )
         return f"{asked}: {self.status.message}, {value}"
 
     def __repr__(self) -> str:
@@ -86,11 +97,18 @@ def _forces_at(free, bristle, profile, value, numbers) -> MeanForces:
 
 @Program
 def _quantities(free, bristle, profile, which, values, numbers):
-    """The quantity at values (n,) of the number, NaN where there is no slide."""
+    """The quantity at values (n,) of the number, NaN where there is no slide.
+
+    And whether the bristle follows the surface at this eps: G > 0.
+    """
 
     def one(value):
         forces = _forces_at(free, bristle, profile, value, numbers)
-        return jnp.where(forces.good, quantity_of(forces, which), jnp.nan)
+        wiggle = BristlePotential(profile, free.put(bristle, value))
+        grid = jnp.arange(wiggle.points) / wiggle.points
+        stretch = jax.vmap(lambda y: wiggle.tip_force(y, numbers[0])[1])(grid)
+        known = jnp.where(forces.good, quantity_of(forces, which), jnp.nan)
+        return known, jnp.all(stretch > 0)
 
     return jax.vmap(one)(values)
 
@@ -118,7 +136,8 @@ def fit_slide(
     (`rho_plus`, `rho_minus`, `ratio` or `difference`, of mean forces), `free` and
     `bounds`, as in `fit_angle`. The admissible intervals of the limit are scanned, and
     each change of sign is polished by `scipy.optimize.brentq`: a slide takes 10 ms, so
-    this takes about a second, not a millisecond.
+    this takes about a second, not a millisecond. `.status` tells what no bristle reaches
+    from what could not be evaluated (`UNKNOWN`).
 
     Raises `ValueError` as `fit_angle` and `steady_slide` do, and for several targets.
     """
@@ -135,20 +154,23 @@ def fit_slide(
 
     def quantities(values):
         found = _quantities(free, limit.bristle, profile, which, values, numbers)
-        return np.asarray(found)
+        return np.asarray(found[0]), np.asarray(found[1])
 
     ends = np.asarray(limit.admissible)
     ends = ends[~np.isnan(ends[:, 0])]
     shares = _MARGIN + (1 - 2 * _MARGIN) * np.linspace(0, 1, _SCAN)
     grid = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * shares
-    values = np.stack([quantities(row) for row in grid])
+    scan = [quantities(row) for row in grid]
+    values, follows = (np.stack(parts) for parts in zip(*scan, strict=True))
+    require(follows.any(), "eps", eps, "an eps at which some bristle slides (G > 0)")
     roots = _roots(quantities, grid, values, target)
     known = ~np.isnan(values).all(axis=1)
-    require(known.any(), "eps", eps, "an eps at which some bristle slides (G > 0)")
-    status = FitStatus.OK if roots.size else FitStatus.UNREACHABLE
+    failed = grid[np.isnan(values) & follows]
+    status = FitStatus.UNKNOWN if failed.size else FitStatus.UNREACHABLE
     now = float(free_parameter(bristle, limit.free).now(bristle))
-    at = _nearest(grid, values, target)
+    at = _nearest(grid, values, target) if known.any() else float(failed[0])
     if roots.size:
+        status = FitStatus.OK
         at = float(roots[np.argmin(np.abs(roots - now))])
     part = free.put(limit.bristle, jnp.asarray(at))
     require_reach(BristlePotential(profile, part), numbers[0])
@@ -162,7 +184,8 @@ def fit_slide(
         achieved,
         limit.target,
         jnp.asarray(roots),
-        jnp.asarray(reach),
+        jnp.asarray(reach).reshape(-1, 2),
+        jnp.asarray(failed),
         by,
         slide,
         limit,
@@ -179,7 +202,7 @@ def _roots(
         for i in np.flatnonzero(line[:-1] * line[1:] < 0):
 
             def gap(value):
-                return float(quantities(np.full(1, value))[0]) - target
+                return float(quantities(np.full(1, value))[0][0]) - target
 
             size = _WIDTH * max(1.0, abs(row[i]))
             found.append(brentq(gap, row[i], row[i + 1], xtol=size, rtol=1e-14))
