@@ -38,18 +38,23 @@ def _carry(fn: Callable[[Real], Real], side: Real, frozen: Real) -> Real:
     return frozen - (step - jax.lax.stop_gradient(step))
 
 
-def periodic_extrema(fn: Callable[[Real], Real], points: int) -> Extrema:
+def periodic_extrema(
+    fn: Callable[[Real], Real], points: int, differentiable: bool = True
+) -> Extrema:
     """Extrema of the 1-periodic `fn`: dense scan, then Newton on `fn'`.
 
     `points` a period must resolve `fn`; the scan only has to pick the right bump. Both
-    sides go through the same loop: half the time to trace it.
+    sides go through the same loop: half the time to trace it. Places that need not be
+    `differentiable` are the same numbers, without two more derivatives to trace.
     """
     fn = jax.jit(fn)  # each of its derivatives is traced once
     grid = jnp.arange(points) / points
     sides = jnp.array([1.0, -1.0])
     values = jax.lax.stop_gradient(jax.vmap(fn)(grid))
     frozen = jax.lax.stop_gradient(_summits(fn, grid, sides[:, None] * values))
-    places = jax.vmap(lambda side, place: _carry(fn, side, place))(sides, frozen)
+    places = frozen
+    if differentiable:
+        places = jax.vmap(lambda side, place: _carry(fn, side, place))(sides, frozen)
     (top, bottom), (high, low) = places, jax.vmap(fn)(places)
     return Extrema(top, high, bottom, low)
 
