@@ -209,8 +209,8 @@ def test_evaluations_of_scipy_are_its_own():
 
     with pytest.MonkeyPatch.context() as change:
         change.setattr(scipy_integrate.LSODA, "__init__", keep)
-        run = run_scipy(SCENE, EPS, 1.0, TIMES, 1e-2, "LSODA", 60.0)
-    assert run.jacobians > 0
+        run = run_scipy(SCENE, 0.045, 1.0, TIMES, 1e-3, "LSODA", 60.0)
+    assert run.jacobians > 0  # at eps = 0.2 it stays with Adams methods
     assert run.evaluations == sum(solver.nfev for solver in told_by)
     assert run.jacobians == sum(solver.njev for solver in told_by)
     own = [solver._lsoda_solver._integrator.iwork[10] for solver in told_by]
