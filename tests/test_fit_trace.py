@@ -9,6 +9,8 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.design.trace_flow import _states, bumped_flow, flow, plan_of
+from frictionjax.design.trace_problem import problem_of
+from frictionjax.design.trace_report import _patterned
 from frictionjax.design.trace_seen import bumps_of, intervals_of
 from frictionjax.design.trace_status import TraceStatus
 from frictionjax.design.waves import Waves
@@ -105,6 +107,46 @@ def _longer_run(gamma):
     plan = plan_of(NUMBERS, scene, EPS, gamma, np.asarray(1e-6))
     parts = scene, EPS, gamma, jnp.asarray(TIMES), plan
     return jax.jit(lambda numbers: _states(Waves(*jnp.split(numbers, 2)), *parts)[0])
+
+
+def test_passages_bound_the_surface_from_the_other_side():
+    """No speed enters: the truth keeps within what it passed, a steeper one does not."""
+    problem = problem_of(trace_of(scene_of()), scene_of(), 0.05, 1.0, 4, 1e-3)
+    sides = problem.passages.side
+    assert np.sum(sides > 0) > 100
+    assert np.sum(sides < 0) > 100
+    assert np.max(problem.held(NUMBERS)[0]) == 0
+    over, by = problem.held(1.3 * NUMBERS)
+    assert np.any(over[sides > 0] > 0)
+    assert np.any(over[sides < 0] > 0)
+    way = np.linspace(1.0, 2.0, NUMBERS.size) * 1e-8
+    ends = [problem.held(1.3 * NUMBERS + share * way)[0] for share in (1, -1)]
+    np.testing.assert_allclose(by @ way, (ends[0] - ends[1]) / 2, atol=1e-6 * np.max(over))
+    still = fx.Trace(TIMES, z=np.zeros(TIMES.size))
+    known = problem_of(still, scene_of(), 0.05, 1.0, 4, 1e-3)
+    assert known.held(NUMBERS)[0].size == 0
+
+
+def test_residuals_that_hang_together_are_no_noise():
+    """Where uncertainties are not known nothing else tells a wrong surface."""
+    rng = np.random.default_rng(0)
+    tips = rng.uniform(size=200)
+    noise = rng.normal(size=200)
+    assert not _patterned(noise, tips)
+    assert _patterned(0.5 * noise + np.sin(2 * np.pi * tips), tips)
+
+
+@pytest.mark.slow
+def test_steep_surfaces_with_small_slopes_unseen():
+    """Slopes of 0.24: without bounds from passages every start ended in wrong wells."""
+    rng, n = np.random.default_rng(5), np.arange(1, 7)
+    truth = fx.profiles.Fourier(*(0.02 * rng.normal(size=(2, 6)) / n**2.5))
+    times = 0.0137 + np.linspace(0, 9.98, 201)
+    trace = fx.simulate_trace(scene_of(truth), 0.05, 1.0, times, noise=NOISE, seed=5)
+    fit = fx.fit_trace(trace, scene_of(truth), 0.05, harmonics=6)
+    assert fit.status == TraceStatus.FITTED
+    assert np.max(pulls(fit, truth)) < 4
+    assert fit.disputed == 0
 
 
 @pytest.mark.slow
@@ -349,6 +391,7 @@ def test_bad_traces_are_named(arguments, message):
         ({"within": 0.0}, "within = 0"),
         ({"harmonics": 0}, "harmonics = 0: needs a whole number"),
         ({"max_steps": 1.5}, "max_steps = 1.5"),
+        ({"starts": 6}, "starts = 6: needs a whole number, 1 to 5"),
         ({"accuracy": 1.0}, "accuracy = 1: needs"),
         ({"trace": fx.Trace([0, 1, 2, 11], z=FOUR)}, r"times in \[0, duration\]"),
     ],

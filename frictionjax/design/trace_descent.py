@@ -15,6 +15,7 @@ _CUT = 3.0  # robust standard deviations from which on residuals count linearly
 # good as they are, sharp bends fit some slips, and 2 of the first 3 trials ended there.
 _BLURS = (0.1, 0.03, 0.01, 0.003, 0.0)
 _ENOUGH = (1.0, 1.0, 1.0, 1.0, 1e-2)  # decreases of the objective that end each of them
+_HELD = 0.01  # of the range of forces
 _PATIENCE = 6  # steps without a better objective: weights change back and forth
 _DAMPING, _MOST, _LEAST = 1e-3, 1e4, 1e-9
 
@@ -39,6 +40,7 @@ class Programs(NamedTuple):
     run: Callable[[np.ndarray], Flow]
     read: Callable[[np.ndarray], Read]
     admissible: Callable[[np.ndarray], bool]
+    held: Callable[[np.ndarray, float], tuple[np.ndarray, np.ndarray]]
 
 
 class Step(NamedTuple):
@@ -109,7 +111,7 @@ def _weights(r: np.ndarray) -> np.ndarray:
 
 
 def _objective(
-    seen: Observed, now: View, flow: Flow, read: Read, force_sd: np.ndarray, numbers
+    seen: Observed, now: View, flow: Flow, read: Read, force_sd: np.ndarray, numbers, over
 ) -> float:
     """Of another iterate, with the weights of this one.
 
@@ -123,10 +125,10 @@ def _objective(
     edge = _WELL * seen.eps
     costs = _huber(np.minimum(away, edge) / now.sd / now.scale)
     costs = costs + np.where(away > edge, _huber(read.r / force_sd / now.scale), 0.0)
-    return float(np.sum(costs) + np.sum(seen.penalty * numbers**2))
+    return float(np.sum(costs) + np.sum(seen.penalty * numbers**2) + np.sum(_huber(over)))
 
 
-def _equations(seen: Observed, now: View, flow: Flow, read: Read, numbers):
+def _equations(seen: Observed, now: View, flow: Flow, read: Read, numbers, over):
     """Gauss-Newton's matrix and slope: trajectory in the right well, equation elsewhere."""
     inside = np.abs(now.away) <= _WELL * seen.eps
     force_sd = read.deviation(now.blurred)
@@ -134,8 +136,10 @@ def _equations(seen: Observed, now: View, flow: Flow, read: Read, numbers):
     by = np.where(inside, np.asarray(flow.by) / now.sd, read.by.T / force_sd)
     rows = by / now.scale
     weighted = rows * _weights(r)
-    normal = weighted @ rows.T + np.diag(seen.penalty)
-    return normal, weighted @ r + seen.penalty * numbers
+    excess, by_excess = over
+    steep = by_excess.T * _weights(excess)
+    normal = weighted @ rows.T + np.diag(seen.penalty) + steep @ by_excess
+    return normal, weighted @ r + seen.penalty * numbers + steep @ excess
 
 
 def descend(
@@ -159,18 +163,21 @@ def descend(
         while not converged and len(steps) < most:
             now = view(seen, flow, blur)
             force_sd = read.deviation(now.blurred)
-            before = _objective(seen, now, flow, read, force_sd, numbers)
+            rough = max(blur, _HELD)
+            over = programs.held(numbers, rough)
+            before = _objective(seen, now, flow, read, force_sd, numbers, over[0])
             steps.append(_step(seen, now, before, damping, blur))
             progress(steps[-1])
             since = 0 if before < best - enough else since + 1
             best = min(best, before)
-            normal, slope = _equations(seen, now, flow, read, numbers)
+            normal, slope = _equations(seen, now, flow, read, numbers, over)
             change = -np.linalg.solve(normal + damping * np.diag(np.diag(normal)), slope)
             promised = -float(change @ slope + 0.5 * change @ normal @ change) * 2
             trial, after = numbers + change, np.inf
             if programs.admissible(trial):
                 tried, tried_read = programs.run(trial), programs.read(trial)
-                after = _objective(seen, now, tried, tried_read, force_sd, trial)
+                far = programs.held(trial, rough)[0]
+                after = _objective(seen, now, tried, tried_read, force_sd, trial, far)
             gain = (before - after) / max(promised, 1e-300)
             if after < before:
                 numbers, flow, read = trial, tried, tried_read
@@ -182,7 +189,8 @@ def descend(
                 damping, growth = min(damping * growth, _MOST), 2 * growth
             converged = converged or since >= _PATIENCE
     now = view(seen, flow)
-    last = _objective(seen, now, flow, read, read.deviation(seen.sd), numbers)
+    over = programs.held(numbers, _HELD)
+    last = _objective(seen, now, flow, read, read.deviation(seen.sd), numbers, over[0])
     steps.append(_step(seen, now, last, damping, 0.0))
     return Descent(numbers, flow, steps, converged)
 

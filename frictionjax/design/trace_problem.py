@@ -13,6 +13,7 @@ from ..scene import Scene, require_times
 from .trace import Trace, forces_at
 from .trace_descent import Observed
 from .trace_flow import Flow, bumped_flow, flow, plan_of, waves_of, with_profile
+from .trace_passage import Passages, held, passages_of
 from .trace_seen import bumps_of
 from .trace_start import Read, Reading, read, residuals
 
@@ -37,6 +38,13 @@ class Problem(NamedTuple):
     rough: Reading
     sliding: float
     penalty: np.ndarray
+    passages: Passages
+    half: float
+
+    def held(self, numbers: np.ndarray, rough: float = _ROUGH):
+        """Excess over what passages allow, and its derivative, in `rough` of the forces."""
+        found = held(self.passages, self.scene, self.eps, numbers)
+        return found.r / (rough * self.half), found.by / (rough * self.half)
 
     def run(self, numbers: np.ndarray) -> Flow:
         """Trajectory at the trace's times and its derivatives, as arrays of NumPy."""
@@ -153,4 +161,6 @@ def problem_of(
     numbers = np.asarray(eps), np.asarray(gamma), np.asarray(as_real(accuracy))
     rough = reading._replace(drag_sd=drag_sd)
     penalty = 0.5 * turns / (_BENT * bending)
-    return Problem(scene, *numbers, padded, reading, rough, sliding, penalty)
+    passages = passages_of(scene, ts, z, sd, eps)
+    more: Any = padded, reading, rough, sliding, penalty, passages, half
+    return Problem(scene, *numbers, *more)

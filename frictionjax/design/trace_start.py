@@ -45,7 +45,7 @@ def read(ts: np.ndarray, z: np.ndarray, sd: np.ndarray, rest: np.ndarray, drag, 
 
 
 @Program
-def _wiggle(numbers, scene, eps, states):
+def wiggle(numbers, scene, eps, states):
     """`V_eps'` in N, `V_eps''` in N/m at states (n,), and the first by the numbers."""
 
     def one(numbers, z):
@@ -78,26 +78,29 @@ class Read(NamedTuple):
 
 def residuals(reading: Reading, scene: Any, eps: Any, numbers: np.ndarray) -> Read:
     """The wiggle force of the surface at the measured states, less what was read."""
-    force, stiffness, by = map(np.asarray, _wiggle(numbers, scene, eps, reading.z))
+    force, stiffness, by = map(np.asarray, wiggle(numbers, scene, eps, reading.z))
     steep = np.abs(stiffness) + reading.support
     return Read(force - reading.force, by, steep, reading.drag_sd)
 
 
-def start(reading: Reading, scene: Any, eps: Any, numbers, penalty, admissible):
+def start(reading: Reading, scene: Any, eps: Any, numbers, penalty, admissible, held):
     """Coefficients that fit the wiggle force at the samples, by Gauss-Newton.
 
     `penalty`: of each squared coefficient. `admissible(numbers)`: whether the bristle can
-    follow. Samples off the curve (in slips) count little: weights `1/(1 + (r/3s)^2)`, s
-    the median.
+    follow. `held(numbers)`: excess over bounds and its derivative, in deviations. Samples
+    off the curve (in slips) count little: weights `1/(1 + (r/3s)^2)`, s the median.
     """
     for _ in range(_ROUNDS):
         found = residuals(reading, scene, eps, numbers)
+        over, over_by = held(numbers)
         sd = found.deviation(reading.sd)
         r, rows = found.r / sd, found.by / sd[:, None]
         scale = max(1.0, 1.5 * float(np.median(np.abs(r))))
         weight = 1 / (1 + (r / (_CUT * scale)) ** 2)
-        normal = (rows.T * weight) @ rows / scale**2 + np.diag(penalty)
-        slope = rows.T @ (weight * r) / scale**2 + penalty * numbers
+        normal = (
+            (rows.T * weight) @ rows / scale**2 + np.diag(penalty) + over_by.T @ over_by
+        )
+        slope = rows.T @ (weight * r) / scale**2 + penalty * numbers + over_by.T @ over
         step = -np.linalg.solve(normal, slope)
         while not admissible(numbers + step):
             step = 0.5 * step
