@@ -25,7 +25,7 @@ from ..potentials import AbstractPotential
 from ..wiggly.rodas5p import Rodas5P
 from ..wiggly.rosenbrock import combine, dense_output
 
-STEPS = 1024  # of one period; 50 to 600 are needed
+STEPS = 2048  # of one period; 50 to 600 are needed, plateaus of nearly equal folds: 1200
 _TABLEAU = Rodas5P.tableau
 _TIMES = np.array(_TABLEAU.times)
 # Of D in a step, in units of the highest wiggle: errors of D never grow, as c G/D^2 > 0,
