@@ -80,8 +80,7 @@ def in_chunks(
 def _lengthened(column: np.ndarray, by: int) -> np.ndarray:
     if by == 0:
         return column
-    # `np.pad` takes 20 us.
-    return np.concatenate([column, np.repeat(column[-1:], by, axis=0)])
+    return np.pad(column, [(0, by)] + [(0, 0)] * (column.ndim - 1), mode="edge")
 
 
 def room(count: int, least: int, factor: int = 4) -> int:
