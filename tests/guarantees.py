@@ -65,7 +65,7 @@ def balance_closes(case: Case, found) -> float:
 
     The status is not good above 0.05 of the energies. Typical scenes leave 1e-6; slips at
     gamma > 2 and eps < 1e-6 up to 0.04, which is in the cubics between the ends of steps:
-    the dissipation itself was right to 1e-6 there.
+    the dissipation was right to 1e-6 in the one looked at.
     """
     residual = float(found.residual[-1])
     scale = energy(case) + float(found.dissipation[-1])
