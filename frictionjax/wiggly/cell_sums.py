@@ -27,6 +27,7 @@ class CellWay(NamedTuple):
 def way_of(
     chain: np.ndarray, slides: list[Slide], surveys: list[Survey], stops: Stops
 ) -> CellWay:
+    """The cell's running sums, slides of which only some slips were measured included."""
     own, time = stops.sums[:, chain], stops.time[chain]
     totals, before = np.cumsum(own, axis=1), np.zeros((len(slides), 3))
     running = np.concatenate([np.zeros((3, 1)), totals], axis=1)
@@ -108,6 +109,7 @@ def _second_opinion(cell: CellWay, stops: Stops, final: float) -> float:
 
 
 def no_energetics(size: int) -> tuple:
+    """What `energetics` would give, all NaN."""
     nothing = np.full(size, np.nan)
     return nothing, nothing, np.nan, np.nan, np.nan
 

@@ -7,7 +7,7 @@ size controller, which hears of every attempt, adds them up. (A callback in the 
 us an evaluation, ten times what a step takes.)
 """
 
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import diffrax
 import equinox as eqx
@@ -24,7 +24,7 @@ from .fronts import advancing, controller_of, front_at_start, stops_of
 from .integration import field_of
 from .methods import with_tolerance
 from .tolerance import plan_steps
-from .wrapped import AbstractWrappedController
+from .wrapped import AbstractWrappedController, AbstractWrappedSolver
 
 
 class Work(NamedTuple):
@@ -88,25 +88,14 @@ def _first_of_two(fn, y):
     return first, y[0]
 
 
-class _Counted(diffrax.AbstractAdaptiveSolver):
+class _Counted(AbstractWrappedSolver):
     """Wraps a solver of y' to one of (y, work of the attempt, step), as `Observed` does."""
 
     solver: Any
     field: TipField
-    term_structure: ClassVar = diffrax.ODETerm
-    interpolation_cls: ClassVar = diffrax.LocalLinearInterpolation
-
-    def order(self, terms):
-        return self.solver.order(terms)
-
-    def error_order(self, terms):
-        return self.solver.error_order(terms)
 
     def init(self, terms, t0, t1, y0, args):
         return self.solver.init(self._terms(), t0, t1, _pair(y0[0]), args)
-
-    def func(self, terms, t0, y0, args):
-        return terms.vf(t0, y0, args)
 
     def step(self, terms, t0, t1, y0, args, solver_state, made_jump):
         tip, _, step = y0

@@ -1,7 +1,7 @@
 """A diffrax solver that carries running integrals beside the state."""
 
 import abc
-from typing import Any, ClassVar
+from typing import Any
 
 import diffrax
 import equinox as eqx
@@ -12,6 +12,7 @@ from jaxtyping import PyTree
 from ..arguments import Real
 from .balance import advance, arrival, at_rest, dissipated
 from .field import TipField
+from .wrapped import AbstractWrappedSolver
 
 
 class AbstractWatch(eqx.Module):
@@ -60,7 +61,7 @@ class Recorder(eqx.Module):
         return tuple(after)
 
 
-class Observed(diffrax.AbstractAdaptiveSolver):
+class Observed(AbstractWrappedSolver):
     """Wraps a solver of y' to one of (y, *memory, step): the rest only follows.
 
     `memory` is the recorder's; `step` the length in s of the longest recent step, at which
@@ -72,20 +73,9 @@ class Observed(diffrax.AbstractAdaptiveSolver):
 
     solver: diffrax.AbstractSolver
     recorder: Recorder
-    term_structure: ClassVar = diffrax.ODETerm
-    interpolation_cls: ClassVar = diffrax.LocalLinearInterpolation
-
-    def order(self, terms):
-        return self.solver.order(terms)
-
-    def error_order(self, terms):
-        return self.solver.error_order(terms)
 
     def init(self, terms, t0, t1, y0, args):
         return self.solver.init(self._tip_terms(), t0, t1, y0[0], args)
-
-    def func(self, terms, t0, y0, args):
-        return terms.vf(t0, y0, args)
 
     def step(self, terms, t0, t1, y0, args, solver_state, made_jump):
         tip0, *memory0, step0 = y0

@@ -44,6 +44,7 @@ def _energies(scene: Scene, eps, well, tip, t, guide):
 
 
 def states_of(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, np.ndarray]:
+    """z in m at stops, and E_eps of z less E of the guide, in J."""
     z, energy = in_chunks(_energies, _CHUNK, (scene,), (eps, well, tip, t, guide))
     return z, energy
 
@@ -61,6 +62,7 @@ class Stops(NamedTuple):
 
 
 def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Stops:
+    """What was found at every stop of a layout."""
     windows, a, legs = layout.windows, found.arrivals, found.legs
     size = eps[windows.cell[windows.owner]]
     z, energy = states_of(scene, size, a.well, a.tip, windows.stop, legs.guide1)

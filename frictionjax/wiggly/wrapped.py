@@ -1,4 +1,6 @@
-"""Base of step size controllers that wrap another one."""
+"""Bases of step size controllers and solvers that wrap another one."""
+
+from typing import ClassVar
 
 import diffrax
 from equinox import AbstractVar
@@ -20,3 +22,20 @@ class AbstractWrappedController(diffrax.AbstractAdaptiveStepSizeController):
     @property
     def norm(self):
         return self.controller.norm
+
+
+class AbstractWrappedSolver(diffrax.AbstractAdaptiveSolver):
+    """A solver of y' inside one whose state carries more, which does not steer it."""
+
+    solver: AbstractVar[diffrax.AbstractSolver]
+    term_structure: ClassVar = diffrax.ODETerm
+    interpolation_cls: ClassVar = diffrax.LocalLinearInterpolation
+
+    def order(self, terms):
+        return self.solver.order(terms)
+
+    def error_order(self, terms):
+        return self.solver.error_order(terms)
+
+    def func(self, terms, t0, y0, args):
+        return terms.vf(t0, y0, args)
