@@ -73,7 +73,7 @@ def _described(fn: Callable, structure: Any, rest: tuple) -> bytes:
         leaves[index] = leaf
     names = "enable_x64", "default_matmul_precision", "numpy_dtype_promotion"
     settings = [str(getattr(jax.config, f"jax_{name}")) for name in names]
-    name = fn.__module__, fn.__qualname__, jax.default_backend(), settings
+    name = fn.__module__, fn.__qualname__, settings
     file = io.BytesIO()
     tree = jax.tree_util.tree_unflatten(structure, leaves)
     _Describer(file, protocol=5).dump((name, [i for i, _ in rest], tree))
@@ -88,7 +88,8 @@ def kept(fn: Callable, run: Callable, structure: Any, rest: tuple) -> Callable:
     """
     compiled = jax.jit(run)
     checked = [getattr(jax.config, f"jax_{name}") for name in ("disable_jit", "debug_nans")]
-    if _place is None or any(checked):
+    # What was traced for one platform does not run on another, to which arrays may belong.
+    if _place is None or any(checked) or jax.default_backend() != "cpu":
         return compiled
     try:
         what = _described(fn, structure, rest)
