@@ -16,8 +16,8 @@ import numpy as np
 from numba import njit
 from scalar import SLIPS, integrator, lanes, load, rate
 
-from frictionjax.wiggly.rodas4p2 import Rodas4P2
-from frictionjax.wiggly.rodas5p import Rodas5P
+from frictionjax.wiggly.rodas4p2 import RODAS4P2
+from frictionjax.wiggly.rodas5p import RODAS5P
 from frictionjax.wiggly.rosenbrock import Tableau
 
 LANES = 256
@@ -169,8 +169,8 @@ def radau(start, t, h, y, eps, per_drag, tolerance):
 
 
 METHODS = {
-    "Rodas4P2": integrator(rosenbrock(Rodas4P2.tableau), 4),
-    "Rodas5P": integrator(rosenbrock(Rodas5P.tableau), 5),
+    "Rodas4P2": integrator(rosenbrock(RODAS4P2), 4),
+    "Rodas5P": integrator(rosenbrock(RODAS5P), 5),
     "exprb32": integrator(exprb32, 3),
     "exprb43": integrator(exprb43, 4),
     "Radau IIA 5": integrator(radau, 4),

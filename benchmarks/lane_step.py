@@ -26,7 +26,7 @@ from frictionjax.wiggly.field import TipField
 from frictionjax.wiggly.job_queue import Jobs, Legs
 from frictionjax.wiggly.lane import Cells, LaneScene, Sums
 from frictionjax.wiggly.lanes import WIDTH, march
-from frictionjax.wiggly.rodas4p2 import Rodas4P2
+from frictionjax.wiggly.rodas4p2 import RODAS4P2
 from frictionjax.wiggly.rosenbrock import Linearised, rosenbrock_step
 
 # Before JAX starts its threads, which it does with the first computation.
@@ -39,7 +39,7 @@ TOLERANCE, LANES = 1e-4, 2048
 DRAG = EPS ** (1 + GAMMA)
 REPEATS = 15
 
-SCHEME = Rodas4P2.tableau
+SCHEME = RODAS4P2
 (A1,), (A2, B2), (A3, B3, C3), (A4, B4, C4, D4) = SCHEME.a[1:5]
 (P1,), (P2, Q2), (P3, Q3, R3), (P4, Q4, R4, S4), (P5, Q5, R5, S5, T5) = SCHEME.c[1:]
 TIME1, TIME2, TIME3 = SCHEME.times[1:4]

@@ -17,8 +17,8 @@ import frictionjax as fx
 from frictionjax.wiggly.job_queue import Jobs, Legs
 from frictionjax.wiggly.lane import Cells, LaneScene, Sums
 from frictionjax.wiggly.lanes import march
-from frictionjax.wiggly.rodas4p2 import Rodas4P2
-from frictionjax.wiggly.rodas5p import Rodas5P
+from frictionjax.wiggly.rodas4p2 import RODAS4P2
+from frictionjax.wiggly.rodas5p import RODAS5P
 from frictionjax.wiggly.rosenbrock import Tableau
 
 fx.use_fast_cpu()  # before JAX computes anything
@@ -69,8 +69,8 @@ RODAS4 = Tableau(
 SCHEMES = {
     "Rodas3": RODAS3,
     "Rodas4": RODAS4,
-    "Rodas4P2": Rodas4P2.tableau,
-    "Rodas5P": Rodas5P.tableau,
+    "Rodas4P2": RODAS4P2,
+    "Rodas5P": RODAS5P,
 }
 LANES, SLIPS = 1024, 4
 
@@ -105,7 +105,7 @@ def main() -> None:
         "  median err   99% err  us/slip"
     )
     for gamma, eps in ((0.5, 1e-3), (1.0, 1e-2), (1.0, 1e-4), (2.0, 1e-3)):
-        exact, *_ = run(Rodas5P.tableau, eps, gamma, 1e-11)
+        exact, *_ = run(RODAS5P, eps, gamma, 1e-11)
         for name, tableau in SCHEMES.items():
             for tolerance in (1e-3, 1e-4, 1e-5):
                 y, steps, rejected, seconds = run(tableau, eps, gamma, tolerance)

@@ -12,16 +12,16 @@ from .admissibility import require_reach
 from .arguments import require, require_real, require_x64
 from .coefficients import coefficients_jit
 from .error_measures import MEASURES, errors_of
+from .grids import grid_of
 from .instants import Instants, instants
 from .provenance import explain, origin
 from .references import Reference, reference
 from .scene import Scene, require_times
-from .sweeps import grid_of
 from .timed_runs import ENDED, accounted, runner, timed
 from .wiggly.general import SCIPY, Run
 from .wiggly.methods import solver_of
 from .wiggly.status import Status
-from .wiggly.trajectory import require_accuracy
+from .wiggly.tolerance import require_accuracy
 
 METHODS = ("auto", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau")
 ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)

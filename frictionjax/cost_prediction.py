@@ -7,12 +7,12 @@ import numpy as np
 
 from .admissibility import require_reach
 from .arguments import as_real, require, require_real, require_x64
+from .grids import cells_of, grid_of
 from .limit_system import require_start_in_strip
 from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
 from .scene import Scene, require_times
-from .sweeps import cells_of, grid_of
-from .wiggly.methods import OURS, is_ours
-from .wiggly.trajectory import require_accuracy
+from .wiggly.own_methods import OURS, is_ours
+from .wiggly.tolerance import require_accuracy
 from .wiggly.workload import Workload, workload
 
 # Factor that 96% of 96 cells stayed within (`benchmarks/cost_model.py`, nothing else

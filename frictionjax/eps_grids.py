@@ -7,9 +7,10 @@ import numpy as np
 
 from .arguments import require, require_real
 from .cost_prediction import predict_cost
+from .grids import grid_of
 from .orders import fit_order
 from .scene import Scene
-from .sweeps import grid_of, sweep
+from .sweeps import sweep
 from .wiggly.status import Status
 
 _PILOT = 48  # eps of the pilot: two seconds a gamma

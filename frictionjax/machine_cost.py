@@ -14,11 +14,12 @@ from platformdirs import user_cache_path
 
 from .arguments import as_real
 from .bristles import VerticalSpring
+from .grids import cells_of
 from .loads import Sine as SineLoad
 from .profiles import Sine
 from .scene import Scene
 from .supports import Spring
-from .sweeps import cells_of, sweep
+from .sweeps import sweep
 from .wiggly.workload import Workload, workload
 
 _TIMES = 61

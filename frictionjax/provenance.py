@@ -3,15 +3,17 @@
 import platform
 from functools import lru_cache
 from importlib.metadata import version
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
 import jax
 import numpy as np
-import xarray as xr
 
 from .scene import Scene
 from .wiggly.status import FLAGS
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _PACKAGES = ("jax", "diffrax", "equinox", "numpy", "xarray")
 
@@ -57,7 +59,7 @@ def scene_text(scene: Scene) -> str:
     return eqx.tree_pformat(numbers, short_arrays=False, width=88)
 
 
-def explain(data: xr.Dataset, meanings: dict[str, tuple[str | None, str]]) -> None:
+def explain(data: "xr.Dataset", meanings: dict[str, tuple[str | None, str]]) -> None:
     """Attach units and long names, and CF flags to `status`."""
     for name, variable in data.variables.items():
         units, meaning = meanings[str(name)]
@@ -83,7 +85,9 @@ def origin(title: str, scene: Scene, **facts: Any) -> dict[str, Any]:
     }
 
 
-def describe(data: xr.Dataset, scene: Scene, accuracy: float, solver: str) -> xr.Dataset:
+def describe(
+    data: "xr.Dataset", scene: Scene, accuracy: float, solver: str
+) -> "xr.Dataset":
     """Attach units, long names, CF flags and provenance to the data set of a sweep."""
     explain(data, _MEANING)
     title = "Convergence of a wiggly viscous system to directional dry friction"

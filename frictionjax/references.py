@@ -8,7 +8,7 @@ import numpy as np
 from .error_measures import MEASURES, errors_of
 from .instants import Instants, slips_of
 from .scene import Scene
-from .wiggly.rodas5p import Rodas5P
+from .wiggly.rosenbrock_solvers import Rodas5P
 from .wiggly.status import Status
 from .wiggly.trajectory import solve
 

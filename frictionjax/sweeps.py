@@ -1,92 +1,29 @@
 """All cells eps x gamma of a scene, integrated in vmapped blocks, as a data set."""
 
-from concurrent.futures import ThreadPoolExecutor
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-import jax
-import jax.numpy as jnp
 import numpy as np
-import xarray as xr
-from tqdm import tqdm
 
 from .admissibility import require_reach
-from .arguments import as_real, require_numbers, require_x64
-from .cells import Cell, run_block
+from .arguments import as_real, require_x64
 from .coefficients import coefficients_jit
+from .grids import cells_of, grid_of
 from .limit_system import (
     LimitSolution,
     require_start_in_strip,
     solve_limit,
 )
+from .progress import progress_bar
 from .provenance import describe
 from .scene import Scene, require_times
 from .strip import strips_at
 from .wiggly.engine import integrate_cells
-from .wiggly.methods import is_ours, solver_of
+from .wiggly.own_methods import is_ours
 from .wiggly.status import Status
-from .wiggly.trajectory import require_accuracy
+from .wiggly.tolerance import require_accuracy
 
-# Lanes of one compiled block. 8 cost 1.0 us a lane and step, 32 cost 0.8, but wide blocks
-# mix cells of unequal length and each waits for its longest.
-_LANES = 8
-_WORKERS = 2  # blocks under way at once; XLA runs each on one core
-
-
-class Block(NamedTuple):
-    """Cells that run together: their numbers, and the values of all lanes."""
-
-    cells: np.ndarray
-    eps: np.ndarray
-    gamma: np.ndarray
-
-    @property
-    def cost(self) -> float:
-        """Relative: the longest lane has about 1/eps slips."""
-        return float(1 / self.eps.min())
-
-
-def _blocks(eps: np.ndarray, gamma: np.ndarray) -> list[Block]:
-    """Cut the grid into blocks of equal width and similar eps, the longest first.
-
-    Cells are numbered with gamma outside and eps inside; the last block is filled up with
-    copies of its last cell.
-    """
-    lane_eps, lane_gamma = cells_of(eps, gamma)
-    order = np.lexsort((lane_gamma, lane_eps))
-    groups = [order[i : i + _LANES] for i in range(0, order.size, _LANES)]
-    full = [np.pad(g, (0, _LANES - g.size), mode="edge") for g in groups]
-    return [Block(g, lane_eps[f], lane_gamma[f]) for g, f in zip(groups, full, strict=True)]
-
-
-def _run(scene, blocks, ts, accuracy, solver, balanced, progress: bool) -> Cell:
-    """Run the blocks on all cores and put the cells back in order."""
-
-    def one(block: Block) -> Cell:
-        found = run_block(
-            scene,
-            jnp.asarray(block.eps),
-            jnp.asarray(block.gamma),
-            ts,
-            accuracy,
-            solver,
-            balanced,
-        )
-        return jax.tree_util.tree_map(lambda a: np.asarray(a)[: block.cells.size], found)
-
-    total = sum(block.cost for block in blocks) * (1 + 1e-9)  # never above 100% by rounding
-    bar = tqdm(total=1.0, disable=not progress, bar_format=_BAR, desc="cells")
-    with bar, ThreadPoolExecutor(_WORKERS) as pool:
-        done = [one(blocks[-1])]  # the shortest compiles the program for all
-        bar.update(blocks[-1].cost / total)
-        for found, block in zip(pool.map(one, blocks[:-1]), blocks[:-1], strict=True):
-            done.append(found)
-            bar.update(block.cost / total)
-        bar.update(bar.total - bar.n)
-    order = np.argsort(np.concatenate([b.cells for b in [blocks[-1], *blocks[:-1]]]))
-    return jax.tree_util.tree_map(lambda *parts: np.concatenate(parts)[order], *done)
-
-
-_BAR = "{desc}: {percentage:3.0f}% |{bar}| {elapsed} so far, {remaining} to go"
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def _run_lanes(
@@ -94,7 +31,7 @@ def _run_lanes(
 ) -> dict | None:
     """Values of all cells through lanes, by name; None where they cannot say."""
     lane_eps, lane_gamma = cells_of(eps, gamma)
-    with tqdm(total=1.0, disable=not progress, bar_format=_BAR, desc="cells") as bar:
+    with progress_bar("cells", progress) as bar:
 
         def report(share: float) -> None:
             bar.update(min(share, bar.total - bar.n))
@@ -120,21 +57,6 @@ _DIMS = ("gamma", "eps", "time")
 _SUPREMA = ("sup_error", "strip_excess", "survey_error")
 
 
-def grid_of(name: str, values: Any) -> np.ndarray:
-    """Values of eps, falling, or of gamma, rising, each once.
-
-    Raises `ValueError` where one is not a number > 0.
-    """
-    require_numbers(name, values, f"{name} > 0, a number or a list", lambda v: v > 0)
-    array = np.unique(np.atleast_1d(np.asarray(values, dtype=float)).ravel())
-    return array[::-1] if name == "eps" else array
-
-
-def cells_of(eps: np.ndarray, gamma: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """eps and gamma of every cell of a grid, gamma outside, shape (cells,) each."""
-    return np.tile(eps, np.size(gamma)), np.repeat(gamma, np.size(eps))
-
-
 def sweep(
     scene: Scene,
     eps: Any,
@@ -146,7 +68,7 @@ def sweep(
     *,
     dissipation: bool = True,
     suprema: bool = True,
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Solve all cells `eps` x `gamma` and compare each with the limit.
 
     `eps` in m and `gamma`: numbers or lists, in any order; `ts`, `accuracy` and `method`
@@ -176,16 +98,19 @@ def sweep(
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
     require_reach(scene.potential, eps)
-    solver = solver_of(method)
+    solver = None if is_ours(method) else _general(method)
     limit = solve_limit(scene, ts)
     balanced, wanted = bool(dissipation), float(as_real(accuracy))
-    values, name = None, type(solver).__name__
-    if is_ours(method):
-        options = wanted, str(method), balanced, progress, bool(suprema)
-        values, name = _run_lanes(scene, eps, gamma, ts, *options), str(method)
+    values, name = None, str(method)
+    if solver is None:
+        options = wanted, name, balanced, progress, bool(suprema)
+        values = _run_lanes(scene, eps, gamma, ts, *options)
     if values is None:
-        blocks, tight = _blocks(eps, gamma), jnp.asarray(wanted)
-        values = _cell_values(_run(scene, blocks, ts, tight, solver, balanced, progress))
+        from .blocks import run_blocks
+
+        solver = _general(method) if solver is None else solver
+        name = type(solver).__name__
+        values = run_blocks(scene, eps, gamma, ts, wanted, solver, balanced, progress)
     if not suprema:
         values = {key: v for key, v in values.items() if key not in _SUPREMA}
     shape = (gamma.size, eps.size)
@@ -195,29 +120,18 @@ def sweep(
     }
     columns["viscosity"] = (_DIMS[:2], eps ** gamma[:, None])
     columns |= {key: (_DIMS[2:], v) for key, v in _limit_values(scene, limit).items()}
+    import xarray as xr  # 0.4 s, which another thread may spend while cells run
+
     # All variables at once: one by one they are aligned anew, 1 ms each.
     data = xr.Dataset(columns, coords={"gamma": gamma, "eps": eps, "time": np.asarray(ts)})
     return describe(data, scene, accuracy=wanted, solver=name)
 
 
-def _cell_values(cells: Cell) -> dict[str, np.ndarray]:
-    values = {
-        "z": cells.z,
-        "sup_error": cells.deviation.sup_error,
-        "strip_excess": cells.deviation.strip_excess,
-        "status": np.asarray(cells.status, dtype=np.int8),
-        "steps": cells.steps,
-        "rejected": cells.rejected,
-        "tolerance": cells.tolerance,
-    }
-    if cells.dissipation is not None:
-        values |= {
-            "dissipation": cells.dissipation,
-            "dissipation_error": cells.deviation.dissipation_error,
-            "residual": cells.residual,
-            "dissipation_gap": cells.dissipation_gap,
-        }
-    return {name: np.asarray(value) for name, value in values.items()}
+def _general(method: Any) -> Any:
+    """A solver of diffrax."""
+    from .wiggly.methods import solver_of  # and diffrax, 0.5 s
+
+    return solver_of(method)
 
 
 def _limit_values(scene: Scene, limit: LimitSolution) -> dict[str, np.ndarray]:

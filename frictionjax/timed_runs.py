@@ -11,7 +11,8 @@ import numpy as np
 from .wiggly.counted import can_count, count_work
 from .wiggly.general import SCIPY, Run, run_scipy, told
 from .wiggly.integration import MAX_STEPS
-from .wiggly.methods import is_ours, solver_of
+from .wiggly.methods import solver_of
+from .wiggly.own_methods import is_ours
 from .wiggly.planning import TABLEAU
 from .wiggly.rosenbrock import Tableau
 from .wiggly.status import Status

@@ -8,10 +8,10 @@ import pytest
 
 import frictionjax as fx
 from frictionjax import cost_prediction, machine_cost
+from frictionjax.grids import cells_of
 from frictionjax.machine_cost import ELSEWHERE, MachineCost, keep_machine, known_machine
 from frictionjax.report.job import read_job
 from frictionjax.report.study import expected_cost, within_budget
-from frictionjax.sweeps import cells_of
 from frictionjax.wiggly import rounds
 from frictionjax.wiggly.layout import lay_out
 from frictionjax.wiggly.path import path_of

@@ -11,7 +11,8 @@ ROOT = Path(frictionjax.__file__).parent
 
 # Units on one floor know nothing of each other; a folder is one unit.
 FLOORS = [
-    {"arguments"},
+    {"arguments", "progress"},
+    {"grids"},
     {"kept_programs"},
     {"outcomes", "compilation", "programs"},
     {"roots", "taylor", "extrema", "trigonometry"},
@@ -27,6 +28,7 @@ FLOORS = [
     {"limit_system", "wiggly", "certificate"},
     {"provenance"},
     {"cells"},
+    {"blocks"},
     {"sweeps"},
     {"orders"},
     {"instants", "timed_runs", "machine_cost"},

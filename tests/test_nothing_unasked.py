@@ -11,7 +11,7 @@ import pytest
 import frictionjax as fx
 from frictionjax.wiggly import integration, observed, tolerance
 from frictionjax.wiggly.field import TipField
-from frictionjax.wiggly.rodas5p import Rodas5P
+from frictionjax.wiggly.rosenbrock_solvers import Rodas5P
 
 SCENE = fx.Scene(
     fx.profiles.Sine(0.1),
@@ -107,5 +107,14 @@ def test_coefficients_import_no_solver():
         "assert not loaded, loaded\n"
         "assert 'diffrax' not in sys.modules\n"
         "assert 'matplotlib' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_planning_a_sweep_imports_no_general_solvers():
+    code = (
+        "import frictionjax.cost_prediction, frictionjax.sweeps, sys\n"
+        "heavy = {'diffrax', 'matplotlib', 'scipy', 'xarray'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

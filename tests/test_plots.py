@@ -72,6 +72,16 @@ def test_points_outside_the_window_are_hollow():
     assert data(hollow[1])[0].size == 0
 
 
+def test_minor_ticks_where_decades_are_few():
+    found = sweep_like(failed=False)
+    few = drawn(fx.plot.draw_convergence(found, fx.study(found).orders))[0]
+    assert few.xaxis.get_minorticklocs().size > 0
+    wide = found.assign_coords(eps=np.geomspace(0.1, 1e-6, 6))
+    many = drawn(fx.plot.draw_convergence(wide, fx.study(wide).orders))[0]
+    assert many.xaxis.get_minorticklocs().size == 0
+    assert many.xaxis.get_majorticklocs().size > 4
+
+
 def test_convergence_without_dissipation_or_orders():
     found = sweep_like(dissipation=False).isel(eps=[0, 1])
     axes = drawn(fx.plot.draw_convergence(found, fx.study(found).orders))

@@ -6,8 +6,8 @@ from sweep_like import EPS, sweep_like
 
 import frictionjax as fx
 from frictionjax.measured import RowCoefficients
-from frictionjax.report.folder import filled, require_folder
 from frictionjax.report.job import number_list, read_job
+from frictionjax.report.place import filled, require_folder
 from frictionjax.report.tables import (
     coefficient_table,
     coefficients_of,

@@ -5,8 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from frictionjax.wiggly.rodas4p2 import Rodas4P2
-from frictionjax.wiggly.rodas5p import Rodas5P
+from frictionjax.wiggly.rosenbrock_solvers import Rodas4P2, Rodas5P
 
 TIMES = jnp.linspace(0.0, 2.0, 41)
 

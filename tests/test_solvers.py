@@ -8,7 +8,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.wiggly.methods import known_solvers
-from frictionjax.wiggly.rodas5p import Rodas5P
+from frictionjax.wiggly.rosenbrock_solvers import Rodas5P
 
 EPS = 0.06
 TIMES = np.linspace(0.0, 1.5, 16)

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 import frictionjax as fx
-from frictionjax.wiggly.rodas5p import Rodas5P
+from frictionjax.wiggly.rosenbrock_solvers import Rodas5P
 
 EPS = [0.09, 0.05, 0.03]
 GAMMA = [0.5, 1.0, 2.0]

@@ -7,7 +7,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.wiggly.integration import integrate
-from frictionjax.wiggly.rodas5p import Rodas5P
+from frictionjax.wiggly.rosenbrock_solvers import Rodas5P
 from frictionjax.wiggly.tolerance import Plan, landscape, plan_steps
 
 EPS = 0.02

@@ -22,11 +22,11 @@ from jaxtyping import Array, Float, Int
 
 from ..arguments import Real
 from ..potentials import AbstractPotential
-from ..wiggly.rodas5p import Rodas5P
+from ..wiggly.rodas5p import RODAS5P
 from ..wiggly.rosenbrock import combine, dense_output
 
 STEPS = 2048  # of one period; 50 to 600 are needed, plateaus of nearly equal folds: 1200
-_TABLEAU = Rodas5P.tableau
+_TABLEAU = RODAS5P
 _TIMES = np.array(_TABLEAU.times)
 # Of D in a step, in units of the highest wiggle: errors of D never grow, as c G/D^2 > 0,
 # so log D needs few digits where D is small; in log D throughout: 3 times the steps.

@@ -14,12 +14,12 @@ from ..programs import Program
 from ..scene import Scene
 from ..wiggly.field import TipField
 from ..wiggly.integration import field_of
-from ..wiggly.rodas5p import Rodas5P
+from ..wiggly.rodas5p import RODAS5P
 from ..wiggly.tolerance import Plan, plan_steps
 from .waves import Bumped, Waves
 
 _STEPS = 2**19  # at most: some 20 s
-_TABLEAU = Rodas5P.tableau
+_TABLEAU = RODAS5P
 _STAGES = len(_TABLEAU.times)
 
 

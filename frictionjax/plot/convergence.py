@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 from .style import GUIDE, colour, marker, new_figure, styled
 
@@ -18,6 +19,7 @@ _PANELS = (
     ),
 )
 
+_MANY_DECADES = 3
 _KEY = "filled: in the window of the fit; hollow: left out; dotted: slope of the lemmas"
 
 
@@ -43,9 +45,18 @@ def draw(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
         axes.set_xlabel("$\\epsilon$ (m)")
         if not prefix:
             _guides(axes, dataset)
+        _fewer_ticks(axes)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
     figure.supxlabel(_KEY, fontsize=9, color="#666666")
     return figure
+
+
+def _fewer_ticks(axes: Any) -> None:
+    """Minor ticks only where decades are few: they took 0.5 s of the 0.8 s of a picture."""
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = axis.get_view_interval()
+        if high > 10**_MANY_DECADES * low:
+            axis.set_minor_locator(NullLocator())
 
 
 def _fit(orders: xr.Dataset, prefix: str) -> dict[str, float]:

@@ -1,18 +1,19 @@
-"""A whole study: sweep, orders, tables, pictures, files."""
+"""A whole study: what it will cost, and how it is run."""
 
+import contextlib
+import threading
 from pathlib import Path
 
+import jax.numpy as jnp
 import numpy as np
 
+from ..admissibility import require_reach
 from ..cost_prediction import ACCURACIES, CostPrediction, fit_budget, predict_cost
-from ..friction_law import friction
-from ..scene_files import scene_document
-from ..studies import study
+from ..grids import cells_of, grid_of
 from ..sweeps import sweep
-from ..wiggly.methods import is_ours
-from .folder import write_study
-from .job import Job, joined
-from .tables import coefficient_table, failed_table, order_table, row_table, sweep_table
+from ..wiggly.engine import prepare_cells
+from ..wiggly.own_methods import is_ours
+from .job import Job
 
 _TIMES = 401  # pictures follow the slips of the larger eps
 
@@ -26,7 +27,15 @@ def expected_cost(job: Job, method: str) -> CostPrediction | None:
     if not is_ours(method):
         return None
     ts = study_times(job)
+    _prepare(job)
     return predict_cost(job.scene, ts=ts, method=method, measure=False, **job.study)
+
+
+def _prepare(job: Job) -> None:
+    """Have the longest program compiled, 0.4 s where it is kept, while costs are found."""
+    eps, gamma = grid_of("eps", job.study["eps"]), grid_of("gamma", job.study["gamma"])
+    require_reach(job.scene.potential, jnp.asarray(eps))
+    prepare_cells(job.scene, cells_of(eps, gamma)[0], _TIMES)
 
 
 def within_budget(job: Job, seconds: float, method: str, asked: float | None) -> Job:
@@ -53,20 +62,19 @@ def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
 
     Raises `ValueError` as `sweep` does.
     """
-    scene = job.scene
-    law = friction(scene)
-    data = sweep(scene, ts=study_times(job), method=method, progress=progress, **job.study)
-    found = study(data)
-    sections = [("", line) for line in job.notes]
-    sections.append(("Friction coefficients", coefficient_table(law, job.error)))
-    if job.rows is not None:
-        sections.append(("Friction over the rows of the map", row_table(job.rows)))
-    sections += [
-        ("Cells", sweep_table(data)),
-        ("Orders of convergence", order_table(found.orders)),
-        ("Failed cells", failed_table(found.failed)),
-    ]
-    text = joined(sections)
-    toml = scene_document(scene, job.study)
-    write_study(folder, found, scene, law, toml, text)
-    return text
+    threading.Thread(target=_import_results, daemon=True).start()
+    ts = study_times(job)
+    data = sweep(job.scene, ts=ts, method=method, progress=progress, **job.study)
+    from .study_results import write_results
+
+    return write_results(job, data, folder)
+
+
+def _import_results() -> None:
+    """Import what is needed once cells have run: pictures and data sets, 1 s.
+
+    To draw a first picture here too saved 0.1 s: not done. What fails here fails again,
+    and is heard of, in `run_study`.
+    """
+    with contextlib.suppress(Exception):
+        from . import study_results as study_results

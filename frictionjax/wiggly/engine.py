@@ -126,7 +126,7 @@ def integrate_cells(
         return None
     accuracy = min(accuracy, LOOSEST)
     lanes = lane_scene(scene, float(eps.max()))
-    wanted = Sums(energies=balanced, extremes=balanced or suprema)
+    wanted = _sums(balanced, suprema)
     _prepare(lanes, eps.size, ts.size, wanted)
     plan = planned(scene, lanes, path, eps, gamma, ts.size, accuracy, method)
     control, ground, needs, ridden = plan
@@ -197,6 +197,18 @@ def _ridden(
     has = np.array([len(rides) > 0 for rides in every.ground.rides])
     nodes = np.where(has, NODES, every.needs.nodes)
     return every._replace(needs=every.needs._replace(nodes=nodes)), rounds.spent
+
+
+def prepare_cells(
+    scene: Scene, eps: np.ndarray, times: int, balanced: bool = True, suprema: bool = True
+) -> None:
+    """Have the loop for cells of these eps compiled, before `integrate_cells` asks."""
+    lanes = lane_scene(scene, float(eps.max()))
+    _prepare(lanes, eps.size, times, _sums(balanced, suprema))
+
+
+def _sums(balanced: bool, suprema: bool) -> Sums:
+    return Sums(energies=balanced, extremes=balanced or suprema)
 
 
 def _prepare(lanes: LaneScene, cells: int, times: int, wanted: Sums) -> None:

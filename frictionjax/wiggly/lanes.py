@@ -19,6 +19,9 @@ from .rosenbrock import Tableau
 # steps take less time.
 WIDTH, NARROW = 64, 8
 _FEW_JOBS = 20  # a step of the wide loop takes 2.6 times as long as one of the narrow
+# Wells that few jobs go through in a wide loop that is there before the narrow one is
+# compiled for them: 0.1 ms lost with each, where that takes 0.4 s to load, 2 s to compile.
+_PATIENCE = 4000
 
 
 class Room(NamedTuple):
@@ -60,6 +63,7 @@ class _Loops:
         self._known: dict[Any, dict[Room, threading.Lock]] = {}
         self._lock = threading.Lock()
         self._done: set = set()
+        self._waited: dict[Any, float] = {}
 
     def run(self, program: tuple, needed: Room, fill: Callable[[Room], Tables]) -> Array:
         """Run the loop on tables of a room that `fill` makes."""
@@ -75,6 +79,20 @@ class _Loops:
             found = run_queue(*program, fill(room))
             self._done.add((kind, room))
             return found
+
+    def width_for(self, program: tuple, needed: Room, wells: float) -> int:
+        """Which of the two loops takes few jobs; `program` without its width."""
+        narrow, wide = _kind((*program, NARROW)), _kind((*program, WIDTH))
+        with self._lock:
+            there = any(room.holds(needed) for room in self._known.get(narrow, {}))
+            ready = any(k == wide and room.holds(needed) for k, room in self._done)
+            if there or not ready:
+                return NARROW
+            waited = self._waited.get(narrow, 0.0) + wells
+            if waited > _PATIENCE:
+                return NARROW
+            self._waited[narrow] = waited
+            return WIDTH
 
 
 def _kind(program: tuple) -> tuple:
@@ -122,6 +140,16 @@ def march(
         rows = (_padded(t, size) for t, size in zip(tables, room, strict=True))
         return Tables(*rows, waiting=np.asarray(needed.jobs))
 
-    width = NARROW if needed.jobs <= _FEW_JOBS else WIDTH
-    found = _LOOPS.run((scene, tableau, wanted, width), needed, fill)
+    program = scene, tableau, wanted
+    width = WIDTH
+    if needed.jobs <= _FEW_JOBS:
+        width = _LOOPS.width_for(program, needed, _wells(cells, jobs, legs))
+    found = _LOOPS.run((*program, width), needed, fill)
     return Arrivals(*np.asarray(found)[: needed.legs].T)
+
+
+def _wells(cells: Cells, jobs: Jobs, legs: Legs) -> float:
+    """Wells on the way of all jobs together."""
+    eps = np.asarray(cells.eps)[np.asarray(jobs.cell, dtype=int)]
+    periods = np.repeat(eps, np.asarray(jobs.past_leg - jobs.first_leg, dtype=int))
+    return float(np.sum(np.abs(legs.guide1 - legs.guide0) / periods))

@@ -1,4 +1,4 @@
-"""Solvers by name."""
+"""Solvers by name, those of diffrax included."""
 
 import inspect
 from typing import Any
@@ -8,9 +8,9 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from ..arguments import require
-from .rodas5p import Rodas5P
+from .own_methods import OURS, is_ours
+from .rosenbrock_solvers import Rodas5P
 
-OURS = ("auto", "resolved", "windowed")
 _NEWTON_SHARE = 0.03  # of the step's tolerance
 
 
@@ -40,7 +40,7 @@ def solver_of(method: object) -> diffrax.AbstractSolver:
     """
     if isinstance(method, diffrax.AbstractSolver):
         return method
-    if isinstance(method, str) and method in OURS:
+    if is_ours(method):
         return Rodas5P()
     named = isinstance(method, str)
     candidate: Any = getattr(diffrax, str(method), None) if named else method
@@ -48,11 +48,6 @@ def solver_of(method: object) -> diffrax.AbstractSolver:
     usable = _is_usable(candidate)
     require(usable, "method", method if named else repr(method), allowed)
     return candidate()
-
-
-def is_ours(method: object) -> bool:
-    """Whether `method` names one of the library's own ways."""
-    return isinstance(method, str) and method in OURS
 
 
 def with_tolerance(solver: diffrax.AbstractSolver, tolerance) -> diffrax.AbstractSolver:

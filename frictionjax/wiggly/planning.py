@@ -17,7 +17,7 @@ from .forgetting import lag_forces
 from .lane import LaneScene
 from .layout import Needs, cost_of, longest_lane, wells_of
 from .path import Path
-from .rodas5p import Rodas5P
+from .rodas5p import RODAS5P
 from .rounds import LONG_MEMORY, MARGIN
 from .series_bristle import series_of
 from .tolerance import Folds, plan_steps, pull_of
@@ -53,7 +53,7 @@ _TILE = 1.5
 # Rodas4P2 takes as many steps, each a quarter cheaper, and errs by more than 1e-3 of a slip
 # period at times near slips in 26 of 208 cells (gamma 0.65 to 2, eps 1e-3 to 1e-6), by up
 # to a well; this one in 7, and in 1 with the tolerances of now.
-TABLEAU = Rodas5P.tableau
+TABLEAU = RODAS5P
 
 
 @Program

@@ -1,8 +1,6 @@
 """Rodas5P, the scheme for tight accuracies."""
 
-from typing import ClassVar
-
-from .rosenbrock import AbstractRosenbrock, Tableau
+from .rosenbrock import Tableau
 
 # Eight stages, order 5, stiffly accurate, L-stable; dense output of order 4.
 # G. Steinebach, Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks
@@ -108,20 +106,12 @@ _DENSE = (
     ),
 )
 
-
-class Rodas5P(AbstractRosenbrock):
-    """Rodas5P for a scalar state.
-
-    On the paper's vertical spring at gamma = 1 and tolerance 1e-4 it takes 37 steps a slip
-    at eps = 1e-2, where Kvaerno5 takes 1405 and Kvaerno3 962.
-    """
-
-    tableau: ClassVar[Tableau] = Tableau(
-        order=5,
-        gamma=0.21193756319429014,
-        a=_A,
-        c=_C,
-        times=_TIMES,
-        time_derivative=_TIME_DERIVATIVE,
-        dense=_DENSE,
-    )
+RODAS5P = Tableau(
+    order=5,
+    gamma=0.21193756319429014,
+    a=_A,
+    c=_C,
+    times=_TIMES,
+    time_derivative=_TIME_DERIVATIVE,
+    dense=_DENSE,
+)

@@ -1,13 +1,13 @@
 """From the accuracy asked for to the tolerance and the reach of a step."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from ..arguments import Real
+from ..arguments import Real, require_real
 from ..coefficients import Coefficients, coefficients
 from ..extrema import periodic_extrema, slope_of
 from ..potentials import AbstractPotential
@@ -30,6 +30,12 @@ _TIGHTEST = 1e-13
 _IN_SLIPS = 0.05
 _SAMPLES = 64  # of the load's slope between two turning points
 _DOUBLE_SPACING = 2.0**-50  # shortest step over the duration: four spacings of floats
+
+
+def require_accuracy(accuracy: Any) -> None:
+    """Check the accuracy asked for."""
+    allowed = "1e-10 <= accuracy <= 1 (error of z in units of eps)"
+    require_real("accuracy", accuracy, allowed, lambda a: 1e-10 <= a <= 1)
 
 
 class Folds(NamedTuple):

@@ -9,13 +9,14 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..admissibility import require_reach
-from ..arguments import as_real, is_concrete, require_numbers, require_real, require_x64
+from ..arguments import as_real, is_concrete, require_numbers, require_x64
 from ..scene import Scene, require_times
 from .engine import integrate_cells
 from .integration import MAX_STEPS, integrate
-from .methods import is_ours, solver_of
+from .methods import solver_of
+from .own_methods import is_ours
 from .status import Status, status_of
-from .tolerance import plan_steps
+from .tolerance import plan_steps, require_accuracy
 
 
 class Solution(eqx.Module):
@@ -134,12 +135,6 @@ def _in_words(how: np.ndarray, sampled: float) -> str:
     if sampled:
         return f"windowed, {share}; {sampled:.0%} of the way known from some of its slips"
     return f"resolved, every slip, in tiles; {share}"
-
-
-def require_accuracy(accuracy: Any) -> None:
-    """Check the accuracy asked for."""
-    allowed = "1e-10 <= accuracy <= 1 (error of z in units of eps)"
-    require_real("accuracy", accuracy, allowed, lambda a: 1e-10 <= a <= 1)
 
 
 def solve(

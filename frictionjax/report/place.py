@@ -1,0 +1,45 @@
+"""A folder that is filled whole or not at all."""
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from ..arguments import require
+
+
+def require_folder(path: Any) -> Path:
+    """Check that a folder is there or can be made; nothing is made yet.
+
+    Raises `ValueError` where a file is in the way or its parent cannot be written to.
+    """
+    folder = Path(path)
+    parent = _standing(folder)
+    require(parent.is_dir(), "out", str(folder), f"a folder, but {parent} is a file")
+    require(os.access(parent, os.W_OK), "out", str(folder), f"leave to write in {parent}")
+    return folder
+
+
+def _standing(folder: Path) -> Path:
+    while not folder.exists() and folder != folder.parent:
+        folder = folder.parent
+    return folder
+
+
+@contextmanager
+def filled(folder: Path) -> Iterator[Path]:
+    """A place for files that move into `folder` once all of them are written.
+
+    Work that is interrupted or fails leaves nothing behind.
+    """
+    place = Path(tempfile.mkdtemp(prefix=".frictionjax-", dir=_standing(folder)))
+    try:
+        yield place
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in place.iterdir():
+            shutil.move(path, folder / path.name)
+    finally:
+        shutil.rmtree(place, ignore_errors=True)

@@ -1,0 +1,32 @@
+"""What a study has found: orders, tables, pictures, files."""
+
+from pathlib import Path
+
+import xarray as xr
+
+from ..friction_law import friction
+from ..scene_files import scene_document
+from ..studies import study
+from .folder import write_study
+from .job import Job, joined
+from .tables import coefficient_table, failed_table, order_table, row_table, sweep_table
+
+
+def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
+    """Write the results of a job's sweep into `folder`, return its tables."""
+    scene = job.scene
+    law = friction(scene)
+    found = study(data)
+    sections = [("", line) for line in job.notes]
+    sections.append(("Friction coefficients", coefficient_table(law, job.error)))
+    if job.rows is not None:
+        sections.append(("Friction over the rows of the map", row_table(job.rows)))
+    sections += [
+        ("Cells", sweep_table(data)),
+        ("Orders of convergence", order_table(found.orders)),
+        ("Failed cells", failed_table(found.failed)),
+    ]
+    text = joined(sections)
+    toml = scene_document(scene, job.study)
+    write_study(folder, found, scene, law, toml, text)
+    return text
