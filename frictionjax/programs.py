@@ -80,7 +80,8 @@ def in_chunks(
 def _lengthened(column: np.ndarray, by: int) -> np.ndarray:
     if by == 0:
         return column
-    return np.pad(column, [(0, by)] + [(0, 0)] * (column.ndim - 1), mode="edge")
+    # `np.pad` takes 20 us.
+    return np.concatenate([column, np.repeat(column[-1:], by, axis=0)])
 
 
 def room(count: int, least: int, factor: int = 4) -> int:

@@ -15,6 +15,8 @@ from .tolerance import Folds
 _GRADED = np.expm1(30.0 * np.linspace(0.0, 1.0, 1024)) / np.expm1(30.0)
 _GRID = 0.5 * np.concatenate([-_GRADED[:0:-1], _GRADED])
 _STEPS = np.diff(_GRID)
+_THIN = 11  # 1023 is a multiple, so that the fold stays on the grid
+_THIN_STEPS = np.diff(_GRID[::_THIN])
 FORCES = np.logspace(-24, 4, 85)
 _ROWS = 8  # wells in a compiled call
 
@@ -36,6 +38,11 @@ class Wells(NamedTuple):
     stretch: np.ndarray
     folds: np.ndarray
 
+    def thinned(self) -> "Wells":
+        """Every eleventh point: integrals to about a percent."""
+        every = slice(None, None, _THIN)
+        return Wells(self.gaps[:, every], self.stretch[:, every], self.folds)
+
     def passages(self, forces: np.ndarray) -> np.ndarray:
         """`int_0^1 dY/(f + rho - V')` for forces f beyond the fold, an upper bound.
 
@@ -44,7 +51,8 @@ class Wells(NamedTuple):
         integral is multiplied by their number.
         """
         rate = self.stretch[:, None] / (forces[..., None] + self.gaps[:, None])
-        whole = 0.5 * (rate[..., 1:] + rate[..., :-1]) @ _STEPS
+        steps = _STEPS if rate.shape[-1] == _GRID.size else _THIN_STEPS
+        whole = 0.5 * (rate[..., 1:] + rate[..., :-1]) @ steps
         return self.folds[:, None] * whole
 
 

@@ -5,7 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
+from .curve import Curves
 from .path import Path, states_at, times_at
+from .rides import last_begun
 from .survey import nodes_of
 from .windows import Windows, way_at
 
@@ -165,23 +167,25 @@ def _ridden_parts(needs: Needs, rides: np.ndarray) -> list[tuple]:
 
 def _rests_of_slides(scene: Scene, path: Path, eps, needs: Needs, rides) -> list[tuple]:
     """Where rides end because slides turn slow: the path's wells from there on."""
+    cells = [c for c in range(eps.size) if needs.nodes[c] > 0]
+    last = [(c, ride) for c in cells for ride in _last_of_pieces(path, rides[c])]
+    ends = np.array([ride.end for _, ride in last])
     rows = []
-    for c in range(eps.size):
-        if needs.nodes[c] <= 0:
-            continue
-        for k, ride in enumerate(rides[c]):
-            piece = ride.piece
-            follows = k + 1 < len(rides[c]) and rides[c][k + 1].piece == piece
-            if follows or path.direction[piece] != ride.sign:
-                continue
-            way = abs(path.states[piece + 1] - path.states[piece]) / eps[c]
-            at = states_at(scene, path, np.array([ride.end]))[0]
-            first = np.ceil(abs(at - path.states[piece]) / eps[c]) + _TAIL
-            last = np.floor(way - needs.offset[c, piece]) - _TAIL
-            if ride.end > path.touch[piece] and last - first > _FEW * needs.nodes[c]:
-                # Slides turn from fast to slow there: 17 nodes leave 6e-4 eps.
-                rows.append((c, piece, first, last, 2 * needs.nodes[c]))
+    for (c, ride), at in zip(last, states_at(scene, path, ends), strict=True):
+        piece = ride.piece
+        way = abs(path.states[piece + 1] - path.states[piece]) / eps[c]
+        first = np.ceil(abs(at - path.states[piece]) / eps[c]) + _TAIL
+        past = np.floor(way - needs.offset[c, piece]) - _TAIL
+        if ride.end > path.touch[piece] and past - first > _FEW * needs.nodes[c]:
+            # Slides turn from fast to slow there: 17 nodes leave 6e-4 eps.
+            rows.append((c, piece, first, past, 2 * needs.nodes[c]))
     return rows
+
+
+def _last_of_pieces(path: Path, rides: tuple) -> list:
+    """The last ride of each piece, where it goes the piece's way."""
+    last = {ride.piece: ride for ride in rides}
+    return [r for r in last.values() if path.direction[r.piece] == r.sign]
 
 
 def _inner_parts(scene: Scene, path: Path, eps, needs: Needs, rides: np.ndarray) -> _Inner:
@@ -231,12 +235,12 @@ def _sample(scene: Scene, path: Path, eps, needs: Needs, parts: _Inner, rides: n
     return who, start, end
 
 
-def _lattice(scene: Scene, path: Path, eps: np.ndarray, needs: Needs, parts: _Inner):
-    """Cell and time of every leg's end on slides, outside their inner parts."""
+def _lattice(scene: Scene, path: Path, eps, needs: Needs, parts: _Inner, chosen):
+    """Cell and time of every leg's end on slides of chosen cells, outside inner parts."""
     legs = wells_a_leg(path, eps)
     lows, highs = (states_at(scene, path, t) for t in (parts.low, parts.high))
     cells, pieces, wells = [], [], []
-    for cell in range(eps.size):
+    for cell in chosen:
         leg = float(legs[cell])
         own = parts.cell == cell
         for slide in np.flatnonzero(path.direction).tolist():
@@ -313,23 +317,24 @@ def lay_out(
     parts = _inner_parts(scene, path, eps, needs, rides)
     measured = parts if summed else _Inner(*(column[:0] for column in parts))
     who, node_start, node_end = _sample(scene, path, eps, needs, measured, rides)
-    lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts)
+    # Beside rides windows of a few wells each lead to the times.
+    chained = [c for c in range(eps.size) if summed or not rides[c]]
+    lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts, chained)
     edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
     fixed = np.unique(np.concatenate([edges, ts]))
     rows: list[tuple] = []  # cell, begin, paired, stops
-    chain: list[np.ndarray] = []
     output = np.full((eps.size, ts.size), -1)
     count = 0
     cuts = [
-        _cuts(parts, cell, fixed, lattice_time[lattice_cell == cell])
-        for cell in range(eps.size)
+        _cuts(parts, cell, fixed, lattice_time[lattice_cell == cell]) for cell in chained
     ]
     # Of all cells at once: a call each took 0.1 ms.
     times = [t for opening, own, _ in cuts for t in (opening, own)]
-    every = way_at(scene, path, np.concatenate(times))
+    every = way_at(scene, path, np.concatenate([*times, np.zeros(0)]))
     ways = np.split(every, np.cumsum([t.size for t in times]))
-    for cell, (opening, own, segment) in enumerate(cuts):
-        since = (ways[2 * cell + 1] - ways[2 * cell][segment]) / eps[cell]
+    chain = [np.zeros(0, dtype=int)] * eps.size
+    for k, (cell, (opening, own, segment)) in enumerate(zip(chained, cuts, strict=True)):
+        since = (ways[2 * k + 1] - ways[2 * k][segment]) / eps[cell]
         tile = np.floor(since / needs.tile[cell] - 1e-9)
         begins = own > opening[segment]
         own, segment, tile = own[begins], segment[begins], tile[begins]
@@ -343,7 +348,7 @@ def lay_out(
             begin = opening[segment[first]] if fresh else own[first - 1]
             rows.append((cell, begin, False, own[group]))
         own = own[np.concatenate([*tiles, np.zeros(0, dtype=int)])]
-        chain.append(count + np.arange(own.size))
+        chain[cell] = count + np.arange(own.size)
         which = np.searchsorted(own, ts)
         hit = np.append(own, np.nan)[which] == ts
         output[cell, hit] = count + which[hit]
@@ -359,15 +364,25 @@ def lay_out(
         where = parts.cell[i], parts.piece[i], parts.low[i], parts.high[i]
         slides.append(Slide(*where, highs[i] - lows[i], starts, ends, stops))
         count += starts.size
-    shown_cell, shown = np.nonzero(output < 0)
+    shown_cell, shown = np.nonzero((output < 0) & (ts > 0))
     begin = _period_before(scene, path, eps, needs, shown_cell, ts[shown])
     begin = _ridden_before(rides, shown_cell, ts[shown], begin)
-    for one, index, start in zip(shown_cell, shown, begin, strict=True):
-        if ts[index] > 0:
-            rows.append((one, start, True, ts[index : index + 1]))
-            output[one, index] = count
-            count += 1
+    for group in _rests_together(path, shown_cell, ts[shown]):
+        one, index = shown_cell[group[0]], shown[group]
+        rows.append((one, begin[group[0]], True, ts[index]))
+        output[one, index] = count + np.arange(index.size)
+        count += index.size
     return Layout(_windows(rows), chain, slides, output, summed)
+
+
+def _rests_together(path: Path, cell: np.ndarray, times: np.ndarray) -> list[np.ndarray]:
+    """Groups of times, by their indices: those of one rest of the path share a window."""
+    piece = path.piece_of(times)
+    slides = times > path.touch[piece]
+    order = np.lexsort((times, piece, cell))
+    same = (np.diff(cell[order]) == 0) & (np.diff(piece[order]) == 0)
+    cut = ~same | slides[order[1:]] | slides[order[:-1]]
+    return np.split(order, np.flatnonzero(cut) + 1) if order.size else []
 
 
 def _period_before(scene, path, eps, needs, cell, times) -> np.ndarray:
@@ -385,14 +400,16 @@ def _period_before(scene, path, eps, needs, cell, times) -> np.ndarray:
 
 def _ridden_before(rides: np.ndarray, cell, times, begin) -> np.ndarray:
     """Start of the ride's slip period that holds each time; as it was where none does."""
+    every, which = last_begun(rides, cell, times)
+    mine = np.flatnonzero(which >= 0)
+    if mine.size == 0:
+        return begin
+    ends = np.array([ride.end for ride in every])
+    mine = mine[times[mine] < ends[which[mine]]]
+    curves = Curves([ride.curve for ride in every])
+    number = np.floor(curves.number_at(which[mine], times[mine]))
     begin = begin.copy()
-    for c in np.unique(cell):
-        for ride in rides[c]:
-            inside = (cell == c) & (times >= ride.begin) & (times < ride.end)
-            mine = np.flatnonzero(inside)
-            if mine.size:
-                number = np.floor(ride.curve.number_at(times[mine]))
-                begin[mine] = np.minimum(ride.curve.time_of(number), times[mine])
+    begin[mine] = np.minimum(curves.time_of(which[mine], number), times[mine])
     return begin
 
 

@@ -14,7 +14,7 @@ from jaxtyping import Array, Float
 
 from ..arguments import Real
 from ..potentials import AbstractPotential
-from ..programs import Program, in_chunks, room
+from ..programs import Program, in_chunks
 from ..scene import Scene
 from ..strip import CHUNK
 
@@ -23,10 +23,14 @@ _X, _W = np.polynomial.legendre.leggauss(_POINTS)
 _LEGENDRE = np.polynomial.legendre.legvander(_X, _POINTS - 1)
 _TO_SERIES = np.linalg.inv(_LEGENDRE)
 _DEPTH = 26  # halvings of the period: folds narrower than 1e-8 of it are not resolved
-_ROUGH = 1e-6  # of the whole integral: last coefficients of a panel that is split
+_FINE = 1e-8  # of the whole integral: last coefficients of a panel that is halved
+_ROUGH = 1e-4  # of it: last coefficients of panels in s; passages err by its square
+_PANELS = 4, 6, 8, 12, 16, 32, 64  # in s
+_INVERSE = 4  # sweeps of Newton's method for the place at an s
 # Sweeps of Newton's method from a guess that keeps the force constant, and from the
 # times of a passage nearby.
 _SWEEPS, _AGAIN = 5, 1
+_TRACKS = 16  # in a compiled call
 _NEAR = 256  # Taylor series of one compiled call
 TOGETHER = 12  # passages of a track side by side
 
@@ -43,6 +47,16 @@ def _integrals() -> np.ndarray:
 _TO_NODES = _integrals()
 
 
+def _primitive() -> np.ndarray:
+    """Matrix from Legendre polynomials to their integrals from -1, one degree higher."""
+    one = np.eye(_POINTS)
+    columns = [np.polynomial.legendre.legint(row, lbnd=-1) for row in one]
+    return np.stack([np.pad(c, (0, _POINTS + 1 - c.size)) for c in columns], axis=1)
+
+
+_PRIMITIVE = _primitive()
+
+
 class Track(NamedTuple):
     """The wiggly force along one period, as a fast tip meets it; C cells, M nodes.
 
@@ -56,6 +70,11 @@ class Track(NamedTuple):
     against: np.ndarray
     weight: np.ndarray
     sign: np.ndarray
+
+    @property
+    def fold(self) -> np.ndarray:
+        """The largest force against the motion, N, shape (C,)."""
+        return self.against.max(axis=1)
 
 
 class Pull(NamedTuple):
@@ -117,70 +136,111 @@ class Stretch(NamedTuple):
         return self.start[cell][:, None] + way[:, None] * inside
 
 
-def _roughness(potential, some: Stretch, cell, left, width) -> tuple[np.ndarray, ...]:
-    """What each panel adds to the integral of 1/force, and its last coefficients."""
-    places = some.places(cell, left, width)
-    force, stretch, _ = wiggles_at(potential, some.eps[cell][:, None], places)
+def _density(potential, some: Stretch, cell, places) -> np.ndarray:
+    """`1/sqrt(force)` at tip coordinates (n, _POINTS), under the smallest pull."""
+    force, _, _ = wiggles_at(potential, some.eps[cell][:, None], places)
     gaps = (some.sign * some.fold)[cell][:, None] - some.sign[cell][:, None] * force
-    values = stretch / (some.excess[cell][:, None] + np.maximum(gaps, 0.0))
-    series = np.abs(values @ _TO_SERIES.T)
-    rough = 0.5 * width * (series[:, -1] + series[:, -2])
-    return 0.5 * width * (values @ _W), rough
+    return 1 / np.sqrt(some.excess[cell][:, None] + np.maximum(gaps, 0.0))
 
 
-def _graded(potential, some: Stretch) -> tuple[np.ndarray, ...]:
-    """Panels of every cell, graded towards its folds: cell, left end, width, sorted."""
+class _Clock(NamedTuple):
+    """`int 1/sqrt(force)` along stretches, on panels graded towards folds; P of them.
+
+    `cell`, `left`, `width` (shares of the way) sorted. `series` (P, _POINTS): Legendre
+    series of the integrand. `before` (P,): integral up to the panel, of its own cell.
+    `whole` (C,): to the end.
+    """
+
+    cell: np.ndarray
+    left: np.ndarray
+    width: np.ndarray
+    series: np.ndarray
+    before: np.ndarray
+    whole: np.ndarray
+
+    def shares(self, part: np.ndarray) -> np.ndarray:
+        """Shares of the way at which the integral is `part` (n,) of the whole, (C, n)."""
+        whole, cell = self.whole[:, None], np.arange(self.whole.size)[:, None]
+        ends = self.cell + self.before / self.whole[self.cell]
+        panel = np.searchsorted(ends, cell + part) - 1
+        panel = np.maximum(panel, np.searchsorted(self.cell, cell))
+        series, width = self.series[panel], self.width[panel]
+        left = whole * part - self.before[panel]
+        x = 2 * left / (width * series[..., 0]) - 1
+        for _ in range(_INVERSE):
+            values = np.polynomial.legendre.legvander(x, _POINTS)
+            rate = 0.5 * width * np.sum(values[..., :-1] * series, axis=-1)
+            grown = 0.5 * width * np.sum(values @ _PRIMITIVE * series, axis=-1)
+            x = np.clip(x - (grown - left) / rate, -1.0, 1.0)
+        return self.left[panel] + width * 0.5 * (x + 1)
+
+
+def _clock(potential, some: Stretch) -> _Clock:
+    """Panels are halved until the last Legendre coefficients are small."""
     count = some.eps.size
     cell = np.repeat(np.arange(count), 4)
     left, width = np.tile(np.arange(4) / 4, count), np.full(4 * count, 0.25)
-    whole = np.zeros(count)
     done: list[tuple[np.ndarray, ...]] = []
     for level in range(_DEPTH):
-        part, rough = _roughness(potential, some, cell, left, width)
+        values = _density(potential, some, cell, some.places(cell, left, width))
+        series = values @ _TO_SERIES.T
+        part = width * series[:, 0]
         if level == 0:
-            np.add.at(whole, cell, part)
-        split = (rough > _ROUGH * whole[cell]) & (level < _DEPTH - 1)
-        done.append((cell[~split], left[~split], width[~split]))
+            whole = np.bincount(cell, part, count)
+        rough = width * (np.abs(series[:, -1]) + np.abs(series[:, -2]))
+        split = (rough > _FINE * whole[cell]) & (level < _DEPTH - 1)
+        done.append(tuple(c[~split] for c in (cell, left, width, series)))
         if not split.any():
             break
         half = 0.5 * width[split]
         cell = np.repeat(cell[split], 2)
         left = np.stack([left[split], left[split] + half], axis=1).ravel()
         width = np.repeat(half, 2)
-    cell, left, width = (np.concatenate(c) for c in zip(*done, strict=True))
+    cell, left, width, series = (np.concatenate(c) for c in zip(*done, strict=True))
     order = np.lexsort((left, cell))
-    return cell[order], left[order], width[order]
+    cell, left, width, series = cell[order], left[order], width[order], series[order]
+    part = width * series[:, 0]
+    past = np.cumsum(part)
+    before = past - part
+    whole = np.bincount(cell, part, count)
+    before -= (np.cumsum(whole) - whole)[cell]
+    return _Clock(cell, left, width, series, before, whole)
 
 
 def track_of(potential: AbstractPotential, some: Stretch) -> Track:
     """The force along stretches of a period, resolved for the excess.
 
-    Panels are halved until the last Legendre coefficients of 1/force are below 1e-6 of
-    the whole integral; cells with fewer panels get empty ones.
+    Gauss panels of equal length in `s`, `dy/ds = sqrt(force)`: around a fold the force is
+    `X cosh(c s)^2`, and 1/force as smooth however narrow the fold. (Panels halved in y
+    until as accurate: 80 to 160 nodes where these have 40.) As many for all as the cell
+    that needs most.
     """
-    cell, left, width = _graded(potential, some)
-    count = np.bincount(cell, minlength=some.eps.size)
-    most = room(int(count.max()), 32, 2)
-    place = np.arange(cell.size) - np.repeat(np.cumsum(count) - count, count)
-    lefts, widths = np.ones((some.eps.size, most)), np.zeros((some.eps.size, most))
-    lefts[cell, place], widths[cell, place] = left, width
-    whose = np.repeat(np.arange(some.eps.size), most)
-    places = some.places(whose, lefts.ravel(), widths.ravel())
-    places = places.reshape(some.eps.size, -1)
+    clock, count = _clock(potential, some), some.eps.size
+    cells = np.arange(count)
+    for panels in _PANELS:
+        knots = (np.arange(panels)[:, None] + 0.5 * (_X + 1)).ravel() / panels
+        inside = clock.shares(knots)
+        way = some.sign * some.length
+        places = some.start[:, None] + way[:, None] * inside
+        density = _density(potential, some, cells, places)
+        series = np.abs(density.reshape(count, panels, _POINTS) @ _TO_SERIES.T)
+        rough = np.sum(series[..., -1] + series[..., -2], axis=1)
+        if np.all(rough <= _ROUGH * np.sum(series[..., 0], axis=1)):
+            break
     eps = some.eps[:, None]
     force, stretch, offset = wiggles_at(potential, eps, places)
     origin = wiggles_at(potential, some.eps, some.start)[2]
-    half = np.repeat(0.5 * widths * some.length[:, None], _POINTS, axis=1)
+    pace = 0.5 * clock.whole / panels * some.length
     return Track(
         way=eps * (places - some.start[:, None]) + offset - origin[:, None],
         against=some.sign[:, None] * force,
-        weight=eps * stretch * half,
+        weight=eps * stretch * pace[:, None] / density,
         sign=some.sign,
     )
 
 
 @jax.jit
-def _passages(way, against, weight, sign, load, support, viscosity, times, sweeps):
+def _passages(sweeps, way, against, weight, sign, load, support, viscosity, times):
     """Newton's method for `t(y)`, linearised exactly: quadratic, and fit for stiff ends."""
     shape = (*times.shape[:-1], -1, _POINTS)
     to_nodes, weights = jnp.asarray(_TO_NODES.T), jnp.asarray(_W)
@@ -233,8 +293,15 @@ def passages(track: Track, pull: Pull, viscosity: np.ndarray, times=None) -> Pas
         rate = pull.load[..., 1]  # where it is 0, nothing passes
         steady = pull.support[..., 1] / np.where(rate == 0, np.nan, rate)
         times = track.way[:, None, :] * steady[..., None]
-    found = _passages(*track, pull.load, pull.support, viscosity, times, sweeps)
-    return Passage(*(np.asarray(v) for v in found))
+    columns = *track, pull.load, pull.support, viscosity, times
+    return Passage(*in_chunks(_passages, _TRACKS, (sweeps,), columns))
+
+
+def steady_passages(track: Track, viscosity: np.ndarray, beyond: np.ndarray) -> np.ndarray:
+    """Seconds of a passage under steady forces `beyond` (C, n) the fold's, in N."""
+    gaps = track.fold[:, None] - track.against
+    pace = viscosity[:, None] * track.weight * np.tile(_W, track.way.shape[1] // _POINTS)
+    return np.einsum("cm,cnm->cn", pace, 1 / (beyond[..., None] + gaps[:, None]))
 
 
 def one_passage(track: Track, pull: Pull, viscosity: np.ndarray) -> np.ndarray:

@@ -41,11 +41,12 @@ _AFTER_SLIP, _SHORT_REST = 0.05, 0.2
 # brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the first.)
 _SLIPS_FORGET = 1.5
 # Wells of a slide that are worth a slip map, where windows set off far back.
-_LONG_SLIDE = 300.0
+_LONG_SLIDE = 60.0
 # Wells of lanes that take as long as a slip map, and those of them that take as long as one
-# of the longest lane. Benchmark scene, gamma = 1/2: 0.8 s with a map at eps = 1e-4 (0.55
-# at 1e-3), 0.35 s without (0.07); gamma = 1/4, eps = 2.5e-4: 0.6 s and 1.0.
-_MAP, _ALONE = 1.2e5, 11.0
+# of the longest lane. Most of a map's time is waiting, which the cells of a sweep share:
+# gamma = 1/2, eps = 1e-2 alone is faster without, 16 eps to 1e-4 slower by 14,000 steps in
+# a row.
+_MAP, _ALONE = 2e3, 11.0
 WIDEST = 0.125  # reach of a sine, periods
 # Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2, 16
 # eps to 1e-4: 0.62 s at 1, 0.52 at 1.5 and 2, 0.73 at 3.)

@@ -12,19 +12,21 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
+from .curve import Curve
 from .passage import Stretch, one_passage, pull_at, track_of, wiggles_at
 from .path import Path, arrivals_at, slopes_at, states_at
 from .set_off import first_wells
-from .slip_map import Curve, Slides, follow
+from .slip_map import Slides, follow
 
 # Wells behind the tip where the slip map takes over: passages change slowly enough for
 # panels of 16 wells (8 wells: tails 100 times larger).
-_FIRST = 32.0
+_FIRST = 16.0
 _NARROW = 0.2  # of the force beyond the fold at the start: the smallest one on the way
 _OVERSHOT = 12.0  # wells after a turn, at the pace before it
 _STILL = 4.0  # of them that must have been passed for the slide to go on
 _CLOSED = 0.1  # wells of time: gaps of brackets at the start of a ride, at most
 _LONG = 100.0  # wells of lag that are worth a slip map after the turn
+_FAST = 0.9  # share that a well leaves of a shift, where lags are many wells
 
 
 class Ride(NamedTuple):
@@ -42,16 +44,6 @@ class Ride(NamedTuple):
     piece: int
     error: np.ndarray
 
-    def wells_at(self, number: np.ndarray) -> np.ndarray:
-        """The well in which the tip is at each lattice point."""
-        return self.well + self.sign * number
-
-    def error_at(self, number: np.ndarray) -> np.ndarray:
-        """Error of the tip in periods at each lattice point, as measured."""
-        edges = self.curve.edges
-        panel = np.searchsorted(edges, number, side="right") - 1
-        return self.error[np.clip(panel, 0, self.error.size - 1)]
-
     @property
     def begin(self) -> float:
         """Time in s from which passages are known."""
@@ -61,6 +53,18 @@ class Ride(NamedTuple):
     def end(self) -> float:
         """Time in s up to which passages are known."""
         return float(self.curve.starts[-1])
+
+
+def last_begun(rides: np.ndarray, cell: np.ndarray, time: np.ndarray):
+    """Rides of the cells, and which of them each cell began last before a time; else -1."""
+    every: list[Ride] = []
+    which = np.full(cell.size, -1)
+    for c in np.unique(cell):
+        mine = cell == c
+        for ride in rides[c]:
+            which[mine & (time >= ride.begin)] = len(every)
+            every.append(ride)
+    return every, which
 
 
 class Seen(NamedTuple):
@@ -191,11 +195,9 @@ def _set_off(rider: Rider, cells: np.ndarray, piece: int) -> np.ndarray:
     times = np.full(cells.size, np.inf)
     if speed > 0:
         sign = float(path.direction[piece])
-        for i, c in enumerate(cells):
-            fold = float(rider.folds[sign][0][c])
-            way = fold, sign, float(rider.viscosity[c]), speed * stiffness, stiffness
-            eps = float(rider.eps[c])
-            times[i] = first_wells(scene.potential, eps, *way, _FIRST)
+        folds = rider.folds[sign][0][cells]
+        way = folds, sign, rider.viscosity[cells], speed * stiffness, stiffness
+        times = first_wells(scene.potential, rider.eps[cells], *way, _FIRST)
     return times
 
 
@@ -246,7 +248,7 @@ def _overshooting(
     rows = []
     for c in cells:
         ride = last[c]
-        if ride is None or ride.piece != piece - 1:
+        if ride is None or ride.piece != piece - 1 or ride.curve.kept[-1] < _FAST:
             continue
         pace = _pace(ride)
         well = ride.well + ride.sign * ride.curve.edges[-1]

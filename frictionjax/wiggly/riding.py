@@ -4,14 +4,17 @@ import functools
 
 import numpy as np
 
+from .curve import Curves
 from .job_queue import Arrivals
 from .rides import Ride, Rider, Seen, ride_through
 from .rounds import EARLIER, ROUNDS, Rounds, run_ups
 from .windows import Plan, Starts, Windows
 
 # Tolerance of the lanes that measure a slip map; errors of the map at its start, as lanes
-# leave it, and at least, of the accuracy.
-_TIGHT_RIDE, _SET_OFF, _LEAST_ERROR = 1e-10, 0.1, 0.01
+# leave it, and at least, of the accuracy. (At 0.1 brackets of times in the first wells of a
+# ride stayed open where the tip was nearly in a slip.)
+_TIGHT_RIDE, _SET_OFF, _LEAST_ERROR = 1e-10, 0.02, 0.01
+_TIGHT_LOOK = 0.2  # of the tolerance: lanes that lead to the start of a slip map
 # Share of the accuracy that rounding of times may take in a measurement of a slip map, and
 # wells that lanes go through for it at most.
 _NOISE, _MOST_CHECKED = 0.03, 400.0
@@ -26,6 +29,9 @@ def find_rides(
         1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
         -1.0: (np.asarray(folds.place_minus), np.asarray(folds.force_minus)),
     }
+    cells_ = rounds.cells
+    fixed = {name: _TIGHT_LOOK * getattr(cells_, name) for name in ("tolerance", "loosest")}
+    closer = rounds._replace(cells=cells_._replace(**fixed))
     rider = Rider(rounds.scene, rounds.path, ground.eps, viscosity, sides, rounds.accuracy)
 
     def look(cell: np.ndarray, begin: np.ndarray, stop: np.ndarray) -> Seen:
@@ -33,7 +39,7 @@ def find_rides(
         windows = Windows(cell, np.minimum(begin, stop), paired, one, stop)
         wells, back = run_ups(rounds, windows, warm), np.ones(cell.size)
         for _ in range(ROUNDS):
-            plan, found = rounds.run(windows, wells, back)
+            plan, found = closer.run(windows, wells, back)
             seen = Seen(*_at_stops(rounds, plan, found, cell))
             if np.all(seen.gap <= _SET_OFF * rounds.accuracy):
                 break
@@ -74,28 +80,26 @@ def _errors(
     Counted in wells of time, which are as many periods of the tip as it is slow there.
     `gaps`: of each ride's start, in wells of time.
     """
-    pairs = list(zip(cells, rides, strict=True))
-    number = [ride.curve.edges[:-1] for ride in rides]
-    wells = [_wells_checked(rounds, cell, ride) for cell, ride in pairs]
-    begin = [r.curve.time_of(n) for r, n in zip(rides, number, strict=True)]
-    past = [n + w for n, w in zip(number, wells, strict=True)]
-    stop = [r.curve.time_of(n) for r, n in zip(rides, past, strict=True)]
-    tips = [np.full(n.size, r.tip) for r, n in zip(rides, number, strict=True)]
-    well = np.concatenate([r.wells_at(n) for r, n in zip(rides, number, strict=True)])
-    aim = np.concatenate([r.wells_at(n) for r, n in zip(rides, past, strict=True)])
-    sizes = [n.size for n in number]
-    begin_, stop_, tip, count = (np.concatenate(c) for c in (begin, stop, tips, wells))
-    whose, known = np.repeat(cells, sizes), np.ones(tip.size, dtype=bool)
-    starts = Starts(begin_, known, ~known, well, tip, well, tip)
+    wells = [_wells_checked(rounds, c, r) for c, r in zip(cells, rides, strict=True)]
+    sizes = [own.size for own in wells]
+    count, who = np.concatenate(wells), np.repeat(np.arange(len(rides)), sizes)
+    number = np.concatenate([ride.curve.edges[:-1] for ride in rides])
+    curves = Curves([ride.curve for ride in rides])
+    both = curves.time_of(np.tile(who, 2), np.append(number, number + count))
+    begin, stop = np.split(both, 2)
+    sign, first, tip = np.array([(r.sign, r.well, r.tip) for r in rides])[who].T
+    well, aim = first + sign * number, first + sign * (number + count)
+    whose, known = np.array(cells)[who], np.ones(tip.size, dtype=bool)
+    starts = Starts(begin, known, ~known, well, tip, well, tip)
     tight = np.where(np.isin(np.arange(rounds.ground.eps.size), cells), _TIGHT_RIDE, 1.0)
     tight = np.minimum(tight, rounds.cells.tolerance)
     exact = rounds._replace(cells=rounds.cells._replace(tolerance=tight, loosest=tight))
-    windows = Windows(whose, begin_, known, np.arange(tip.size), stop_)
+    windows = Windows(whose, begin, known, np.arange(tip.size), stop)
     plan, found = exact.march_from(windows, starts)
     at = plan.behind
     place = found.well[at] + (found.tip[at] - tip) - aim
     # In wells of time: at its fold the tip is far slower than on the average.
-    pace = np.abs(found.speed[at]) * (stop_ - begin_) / (count * rounds.ground.eps[whose])
+    pace = np.abs(found.speed[at]) * (stop - begin) / (count * rounds.ground.eps[whose])
     drift = np.abs(place) / np.maximum(pace, 1e-300) / count
     ends = np.cumsum(sizes)[:-1]
     parts = zip(rides, np.split(drift, ends), np.split(pace, ends), gaps, strict=True)

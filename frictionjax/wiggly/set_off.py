@@ -10,32 +10,35 @@ _GRID = np.concatenate([np.logspace(-9, 0, 400), np.linspace(1.05, 25.0, 480)])
 
 def first_wells(
     potential: AbstractPotential,
-    eps: float,
-    fold: float,
+    eps: np.ndarray,
+    fold: np.ndarray,
     side: float,
-    viscosity: float,
+    viscosity: np.ndarray,
     rate: float,
     stiffness: float,
     wells: float,
-) -> float:
+) -> np.ndarray:
     """Seconds from the touch of the strip's edge until about `wells` are behind the tip.
 
     The slow equation averaged over a well, `X' = l' - Phi'' v(X)` for the force X beyond
-    the fold, on a grid that nears the steady X like 1 - exp(-u). `fold`: tip coordinate of
-    the extreme fold; `viscosity`: eps^gamma; `rate`: l' in N/s; `stiffness`: Phi'', N/m.
+    the fold, on a grid that nears the steady X like 1 - exp(-u). Of cells, shape (C,):
+    `eps`, `fold`, tip coordinates of the extreme fold, and `viscosity`, eps^gamma. Of all:
+    `rate`, l' in N/s; `stiffness`, Phi'' in N/m.
     """
-    well = from_fold_to_fold(potential, *(np.array([v]) for v in (eps, fold, side)))
-    speeds = -np.log(viscosity * well.passages(FORCES[None])[0])
+    well = from_fold_to_fold(potential, eps, fold, np.full(eps.size, side)).thinned()
+    passages = well.passages(np.tile(FORCES, (eps.size, 1)))
+    speeds = -np.log(viscosity[:, None] * passages)
+    columns = zip(eps, speeds, strict=True)
+    return np.array([_wait(e, own, rate, stiffness, wells) for e, own in columns])
 
-    def speed(force: np.ndarray) -> np.ndarray:
-        return np.exp(np.interp(np.log(force), np.log(FORCES), speeds))
 
-    steady = float(np.exp(np.interp(np.log(rate / stiffness), speeds, np.log(FORCES))))
+def _wait(eps: float, speeds: np.ndarray, rate: float, stiffness: float, wells: float):
+    """The same of one cell, whose logarithms of speeds belong to `FORCES`."""
+    logs = np.log(FORCES)
+    steady = np.interp(np.log(rate / stiffness), speeds, logs)
     share = -np.expm1(-_GRID)
-    pace = speed(steady * share)
+    pace = np.exp(np.interp(steady + np.log(share), logs, speeds))
     gain = np.maximum(rate - stiffness * pace, 1e-12 * rate)
-    seconds = steady * np.exp(-_GRID) / gain
-    step = np.diff(_GRID, prepend=0.0)
-    times = np.cumsum(step * seconds)
-    passed = np.cumsum(step * seconds * pace / eps)
-    return float(np.interp(wells, passed, times))
+    step = np.diff(_GRID, prepend=0.0) * np.exp(steady - _GRID) / gain
+    passed = np.cumsum(step * pace / eps)
+    return np.interp(wells, passed, np.cumsum(step))

@@ -15,9 +15,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ..programs import room
 from ..scene import Scene
-from .passage import TOGETHER, Pull, Track, one_passage, passages, pull_at
+from .averaged import Lags, lags_of
+from .curve import Curve
+from .panels import SMALLEST, edges_of
+from .passage import TOGETHER, Pull, Track, passages, pull_at, steady_passages
 from .path import arrivals_at, state_under
 
 DEGREE = TOGETHER
@@ -25,19 +27,15 @@ _X = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_X, DEGREE))
 _NEWTON = 6
 _CONVERGED = 1e-4  # wells: the last correction of Newton's method, which is quadratic
-_INVERSE = 6  # sweeps of Newton's method for the number at a time
 # A slide is slow where a passage forgets more than this of a shift: tips nearly rest at
 # folds, and windows started a few slips earlier do as well.
 _SLOW = 0.3
-_SMALLEST = 8.0  # wells of a panel
-_GROWTH, _LITTLE, _SHRINK = 3.0, 1.5, 0.4
+_AGAIN = 0.6  # of a panel that does not hold, and of those behind it
 _TAIL = 1e-3  # of the accuracy: last coefficients of a panel
 _SPACING = 1e-14  # of T: rounding of times, in the last coefficients
-_ROOMY = 0.03  # of the tail allowed: below it panels grow fast
 _WORTH = 0.2  # of the panel before: the smallest one worth trying where slides turn slow
-_END = 3.0  # wells left before the end of a slide
 _SLOWING = 0.7  # of the wells that the pace at a panel's start would pass before the end
-_PANELS = 200
+_ROUNDS = 40
 
 
 def _shifts() -> np.ndarray:
@@ -69,64 +67,34 @@ class Slides(NamedTuple):
     late: np.ndarray
 
 
-class Curve(NamedTuple):
-    """Times of passage of one slide, as Chebyshev series on panels of wells.
+class _Panels(NamedTuple):
+    """Panels of slides, P of them in order: those of a slide follow each other.
 
-    `edges` (K+1,): numbers of lattice points. `starts` (K+1,): times there, s. `series`
-    (K, DEGREE+1): of T less the panel's start. `tail` (K,): its last coefficients,
-    in wells. `kept` (K,): share of a shift that a well leaves of it.
+    `slide`: index. `number` (P, DEGREE+1): of lattice points at the nodes.
     """
 
-    edges: np.ndarray
-    starts: np.ndarray
-    series: np.ndarray
-    tail: np.ndarray
-    kept: np.ndarray
+    slide: np.ndarray
+    number: np.ndarray
 
-    def time_of(self, number: np.ndarray) -> np.ndarray:
-        """Time in s at which each lattice point is passed, numbers need not be whole."""
-        panel = np.clip(
-            np.searchsorted(self.edges, number, side="right") - 1, 0, self.tail.size - 1
-        )
-        low, high = self.edges[panel], self.edges[panel + 1]
-        x = np.clip(2 * (number - low) / (high - low) - 1, -1.0, 1.0)
-        angles = np.arccos(x)[:, None] * np.arange(DEGREE + 1)
-        return self.starts[panel] + np.sum(self.series[panel] * np.cos(angles), axis=1)
+    @property
+    def span(self) -> np.ndarray:
+        """Wells of each."""
+        return self.number[:, -1] - self.number[:, 0]
 
-    def number_at(self, time: np.ndarray) -> np.ndarray:
-        """Lattice point that is passed at each time between the ends."""
-        panel = np.searchsorted(self.starts, time, side="right") - 1
-        panel = np.clip(panel, 0, self.tail.size - 1)
-        since, whole = time - self.starts[panel], np.diff(self.starts)[panel]
-        x = np.clip(2 * since / whole - 1, -1.0, 1.0)
-        series, order = self.series[panel], np.arange(DEGREE + 1)
-        slopes = _derivatives(series)
-        for _ in range(_INVERSE):
-            angle = np.arccos(x)[:, None]
-            value = np.sum(series * np.cos(angle * order), axis=1)
-            slope = np.sum(slopes * np.cos(angle * order), axis=1)
-            x = np.clip(x - (value - since) / slope, -1.0, 1.0)
-        low, high = self.edges[panel], self.edges[panel + 1]
-        return low + 0.5 * (x + 1) * (high - low)
+    @property
+    def opens(self) -> np.ndarray:
+        """Which are the first of their slides."""
+        return np.append(True, self.slide[1:] != self.slide[:-1])
 
 
-def _derivatives(series: np.ndarray) -> np.ndarray:
-    """Chebyshev series of the derivatives of the rows of `series`."""
-    slopes = np.zeros_like(series)
-    slopes[:, :-1] = chebyshev.chebder(series.T).T
-    return slopes
+class _Solved(NamedTuple):
+    """Times at the nodes (P, DEGREE+1), s, and whether the recursion holds there.
 
-
-class _Panel(NamedTuple):
-    """A panel's times at the nodes (C, DEGREE+1), and whether it holds.
-
-    `kept`: at the nodes from the second on. `length`: of the last passage, s. `tail`: last
-    coefficients in wells.
+    `kept`: at the nodes from the second on. `tail`: last coefficients in wells.
     """
 
     times: np.ndarray
     kept: np.ndarray
-    length: np.ndarray
     fine: np.ndarray
     tail: np.ndarray
 
@@ -136,118 +104,160 @@ def _pull(scene: Scene, slides: Slides, number: np.ndarray, times: np.ndarray) -
     return pull_at(scene, times, states)
 
 
-def _excess(scene: Scene, slides: Slides, number: np.ndarray, times: np.ndarray):
-    """`l - Phi'` in N in the direction of motion, at lattice points (C,)."""
+def _beyond(scene: Scene, slides: Slides, number: np.ndarray, times: np.ndarray):
+    """Force in N beyond the fold at lattice points (C,)."""
     pull = _pull(scene, slides, number[:, None], times[:, None])
-    return slides.track.sign * (pull.load[:, 0, 0] - pull.support[:, 0, 0])
+    force = slides.track.sign * (pull.load[:, 0, 0] - pull.support[:, 0, 0])
+    return force - slides.track.fold
 
 
-def _newton(scene: Scene, slides: Slides, number, times, span):
-    """Times at the nodes 1 to DEGREE so that the recursion holds there."""
+def _linear(matrix: np.ndarray, left: np.ndarray, coupling: np.ndarray):
+    """`matrix^-1` of what is left and of the coupling to the panel before; else NaN."""
+    sides = np.stack([left, coupling], axis=-1)
+    good = np.all(np.isfinite(matrix), axis=(1, 2)) & np.all(np.isfinite(left), axis=1)
+    matrix = np.where(good[:, None, None], matrix, np.eye(DEGREE))
+    found = np.linalg.solve(matrix, np.where(good[:, None, None], sides, np.nan))
+    return found[..., 0], found[..., 1]
+
+
+def _chained(opens: np.ndarray, own: np.ndarray, coupled: np.ndarray) -> np.ndarray:
+    """Corrections of the starts of panels, each where the panel before now ends."""
+    start, last = np.zeros(opens.size), 0.0
+    for p, first in enumerate(opens.tolist()):
+        start[p] = 0.0 if first else last
+        last = own[p] + coupled[p] * start[p]
+    return start
+
+
+def _newton(scene: Scene, slides: Slides, panels: _Panels, times: np.ndarray):
+    """Times at the nodes of all panels together, so that the recursion holds there."""
+    span = panels.span
     powers = (2 / span)[:, None] ** np.arange(1, DEGREE + 1)
     shift = np.einsum("ck,kij->cij", powers, _SHIFTS)[:, 1:]
+    some, number = _chosen(slides, panels.slide), panels.number
     guess = None
     for _ in range(_NEWTON):
-        pull = _pull(scene, slides, number[:, 1:], times[:, 1:])
-        found = passages(slides.track, pull, slides.viscosity, guess)
+        pull = _pull(scene, some, number[:, 1:], times[:, 1:])
+        found = passages(some.track, pull, some.viscosity, guess)
         since = times - times[:, :1]
         left = np.einsum("cij,cj->ci", shift, since) - found.length
         matrix = shift[:, :, 1:] + np.eye(DEGREE) * (1 - found.kept)[:, :, None]
-        good = np.all(np.isfinite(matrix), axis=(1, 2)) & np.all(np.isfinite(left), axis=1)
-        matrix = np.where(good[:, None, None], matrix, np.eye(DEGREE))
-        change = np.linalg.solve(matrix, np.where(good[:, None], left, 0.0)[..., None])
-        change = np.where(good[:, None], change[..., 0], np.nan)
-        times = np.concatenate([times[:, :1], times[:, 1:] - change], axis=1)
+        own, coupled = _linear(matrix, -left, -shift[:, :, 0])
+        start = _chained(panels.opens, own[:, -1], coupled[:, -1])
+        change = np.concatenate([start[:, None], own + coupled * start[:, None]], axis=1)
+        times = times + change
         length = np.abs(times[:, -1] - times[:, 0]) / span
         size = np.max(np.abs(change), axis=1) / length
         guess = found.times
         if not np.any(size > _CONVERGED):
             break
-    return times, found, size
+    return times, found.kept, size
 
 
-def _panel(scene: Scene, slides: Slides, now, first, time, span, accuracy) -> _Panel:
-    """The next panel of the slides `now`."""
-    whose = _repeated(now)
-    some = _chosen(slides, whose)
-    first, time, span = first[whose], time[whose], span[whose]
-    number = first[:, None] + 0.5 * span[:, None] * (_X + 1)
-    pull = _excess(scene, some, first, time)
-    states = some.origin[:, None] + (some.track.sign * some.eps)[:, None] * number
-    wide = np.ones_like(number)
-    force = (some.track.sign * pull)[:, None] * wide
-    early, late = time[:, None] * wide, some.late[:, None] * wide
-    flat = states.ravel(), force.ravel(), early.ravel(), late.ravel()
-    guess = arrivals_at(scene, *flat).reshape(number.shape).copy()
-    guess[:, 0] = time
-    times, found, size = _newton(scene, some, number, guess, span)
+def _solved(scene: Scene, slides: Slides, panels: _Panels, times, accuracy) -> _Solved:
+    times, kept, size = _newton(scene, slides, panels, times)
     series = (times - times[:, :1]) @ _TO_SERIES.T
-    length = (times[:, -1] - times[:, 0]) / span
+    length = (times[:, -1] - times[:, 0]) / panels.span
     tail = (np.abs(series[:, -1]) + np.abs(series[:, -2])) / length
     noise = _SPACING * np.abs(times[:, -1]) / length
     fine = (size <= np.maximum(_CONVERGED, noise)) & np.all(np.diff(times) > 0, axis=1)
     fine &= tail <= np.maximum(_TAIL * accuracy, noise)
-    fine &= times[:, -1] <= some.late
-    every = times, found.kept, found.length[:, -1], fine, tail
-    return _Panel(*(column[: now.size] for column in every))
+    fine &= times[:, -1] <= slides.late[panels.slide]
+    return _Solved(times, kept, fine, tail)
 
 
-def _left(scene: Scene, slides: Slides, first, time, pull, length) -> np.ndarray:
-    """Wells that surely remain before the end of the piece: a panel may span them."""
-    end = state_under(scene, slides.late, slides.track.sign * pull)
-    at_this_lag = slides.track.sign * (end - slides.origin) / slides.eps - first
-    at_this_pace = _SLOWING * (slides.late - time) / length
-    return np.floor(np.maximum(at_this_lag, at_this_pace) - _END)
+def _horizon(scene: Scene, slides: Slides, first, time, force) -> np.ndarray:
+    """Wells before the end of the piece: where the fold holds the tip, or at this pace."""
+    sign, fold = slides.track.sign, slides.track.fold
+    end = state_under(scene, slides.late, sign * fold)
+    held = sign * (end - slides.origin) / slides.eps - first
+    beyond = np.maximum(force, 1e-300)[:, None]
+    length = steady_passages(slides.track, slides.viscosity, beyond)[:, 0]
+    return np.where(held >= SMALLEST, held, _SLOWING * (slides.late - time) / length)
 
 
-def _passage(scene: Scene, slides: Slides, first, time) -> np.ndarray:
-    """Length in s of one passage from each start."""
-    which = _repeated(np.arange(slides.eps.size))
-    some = _chosen(slides, which)
-    pull = _pull(scene, some, first[which, None], time[which, None])
-    every = one_passage(some.track, Pull(*(v[:, 0] for v in pull)), some.viscosity)
-    return every[: first.size].copy()
+def _cut(scene: Scene, slides: Slides, now, first, time, tail, share):
+    """Panels of the slides `now` from where they are, and times guessed at their nodes."""
+    some, first, time = _chosen(slides, now), first[now], time[now]
+    force = _beyond(scene, some, first, time)
+    wells = _horizon(scene, some, first, time, force)
+    able = (force > 0) & (wells >= SMALLEST)
+    wells, force = np.where(able, wells, 1.0), np.where(able, force, 1.0)
+    parts = some.track, some.eps, some.viscosity, some.origin
+    lags = lags_of(scene, *parts, first, time, force, wells)
+    slide, numbers, forces = [], [], []
+    for i in np.flatnonzero(able).tolist():
+        mine = Lags(*(column[i] for column in lags))
+        since = first[i] - some.first[i]
+        edges = edges_of(mine, some.late[i], since, tail, share[now[i]])
+        number = edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (_X + 1)
+        slide.append(np.full(edges.size - 1, now[i]))
+        numbers.append(first[i] + number)
+        forces.append(np.interp(number, mine.number, mine.force))
+    none = np.zeros((0, DEGREE + 1))
+    whose = np.concatenate([np.zeros(0, dtype=int), *slide])
+    panels = _Panels(whose, np.concatenate([none, *numbers]))
+    return panels, np.concatenate([none, *forces])
+
+
+def _guess(scene: Scene, slides: Slides, panels: _Panels, force, time) -> np.ndarray:
+    """Times at the nodes where the force beyond the fold is as given."""
+    some = _chosen(slides, panels.slide)
+    sign, wide = some.track.sign[:, None], np.ones_like(force)
+    states = some.origin[:, None] + sign * some.eps[:, None] * panels.number
+    pull = sign * (some.track.fold[:, None] + force)
+    early, late = time[panels.slide][:, None] * wide, some.late[:, None] * wide
+    flat = [column.ravel() for column in (states, pull, early, late)]
+    guess = arrivals_at(scene, *flat).reshape(force.shape).copy()
+    guess[panels.opens, 0] = time[panels.slide[panels.opens]]
+    # Panels meet in one time.
+    joint = np.flatnonzero(~panels.opens)
+    guess[joint, 0] = guess[joint - 1, -1]
+    return guess
 
 
 def follow(scene: Scene, slides: Slides, accuracy: float) -> list[Curve | None]:
     """Times of passage of every slide, from where it sets off to its end or until slow.
 
-    None where it is slow from the start, or too short.
+    All panels of all slides together, where the averaged equation puts them; those behind
+    one that does not hold are cut again. None where a slide is slow from the start, or too
+    short.
     """
     size = slides.eps.size
     first, time = slides.first.copy(), slides.time.copy()
-    pull = _excess(scene, slides, first, time)
-    length = _passage(scene, slides, first, time)
-    span = np.full(size, 2 * _SMALLEST)
-    reached, smallest = np.zeros(size), np.full(size, _SMALLEST)
-    going = np.isfinite(length)
-    panels: list[list[tuple]] = [[] for _ in range(size)]
-    for _ in range(_PANELS):
-        left = _left(scene, slides, first, time, pull, length)
-        going &= (left >= _SMALLEST) & (span >= smallest)
-        now = np.flatnonzero(going)
+    share, smallest = np.ones(size), np.full(size, SMALLEST)
+    now = np.arange(size)
+    found: list[list[tuple]] = [[] for _ in range(size)]
+    for _ in range(_ROUNDS):
         if now.size == 0:
             break
-        span = np.floor(np.where(left < 1.3 * span, left, span))
-        found = _panel(scene, slides, now, first, time, span, accuracy)
-        calm = np.all((found.kept > _SLOW) & (found.kept < 1 / _SLOW), axis=1)
-        on = found.fine & calm
-        for i, c in enumerate(now):
-            if on[i]:
-                kept = np.exp(np.mean(np.log(found.kept[i])))
-                row = first[c], time[c], span[c], found.times[i], found.tail[i], kept
-                panels[c].append(row)
-        # Where it turns slow on a panel, only a large part of the way is worth having.
-        reached[now] = np.where(on, span[now], reached[now])
-        slow = now[found.fine & ~calm]
-        smallest[slow] = np.maximum(_WORTH * reached[slow], _SMALLEST)
-        ahead = now[on]
-        first[ahead] += span[ahead]
-        time[ahead], length[ahead] = found.times[on, -1], found.length[on]
-        pull[ahead] = _excess(scene, slides, first, time)[ahead]
-        growth = np.where(found.tail < _ROOMY * _TAIL * accuracy, _GROWTH, _LITTLE)
-        span[now] *= np.where(on, growth, _SHRINK)
-    return [_curve(panels[c]) for c in range(size)]
+        panels, force = _cut(scene, slides, now, first, time, _TAIL * accuracy, share)
+        if panels.slide.size == 0:
+            break
+        guess = _guess(scene, slides, panels, force, time)
+        solved = _solved(scene, slides, panels, guess, accuracy)
+        calm = np.all((solved.kept > _SLOW) & (solved.kept < 1 / _SLOW), axis=1)
+        on = solved.fine & calm
+        going = []
+        for c in np.unique(panels.slide):
+            mine = np.flatnonzero(panels.slide == c)
+            held = mine[np.cumprod(on[mine], dtype=bool)]
+            for p in held:
+                kept = np.exp(np.mean(np.log(solved.kept[p])))
+                times, span = solved.times[p], panels.span[p]
+                found[c].append((first[c], times[0], span, times, solved.tail[p], kept))
+                first[c], time[c] = first[c] + span, times[-1]
+            if held.size == mine.size:
+                continue
+            failed = mine[held.size]
+            share[c] *= _AGAIN
+            # Where it turns slow, only a large part of the way is worth having.
+            if solved.fine[failed] and held.size:
+                smallest[c] = max(_WORTH * panels.span[held[-1]], SMALLEST)
+            if _AGAIN * panels.span[failed] >= smallest[c]:
+                going.append(c)
+        now = np.array(going, dtype=int)
+    return [_curve(rows) for rows in found]
 
 
 def _curve(panels: list[tuple]) -> Curve | None:
@@ -258,12 +268,6 @@ def _curve(panels: list[tuple]) -> Curve | None:
     series = (times - times[:, :1]) @ _TO_SERIES.T
     edges = np.append(first, first[-1] + span[-1])
     return Curve(edges, np.append(time, times[-1, -1]), series, tail, kept)
-
-
-def _repeated(which: np.ndarray) -> np.ndarray:
-    """Indices, the last one repeated up to one of few sizes."""
-    more = room(which.size, 4, 2) - which.size
-    return np.concatenate([which, np.repeat(which[-1:], more)])
 
 
 def _chosen(slides: Slides, which: np.ndarray) -> Slides:

@@ -5,9 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
+from .curve import Curves
 from .job_queue import Jobs, Legs
 from .path import Path, slopes_at, states_at, times_at
-from .rides import Ride
+from .rides import Ride, last_begun
 from .tolerance import Folds
 
 _ASIDE = 1e-6  # of a leg: where one-sided slopes are taken
@@ -18,6 +19,7 @@ _FASTER = 1.5  # how much slides may have been faster, squared, where lanes set 
 # Wells: lags that are longer are taken at the speed of the moment. (At the largest speed
 # always: lanes of 300 wells in slow parts of slides at gamma = 0.4, where ten do.)
 _LONG_LAG = 5.0
+_FORGETS = 0.7  # share that a well leaves of a shift, where slides are slow
 _WHOLE = 1e-4  # wells: rounding of times, in numbers of wells
 
 
@@ -177,34 +179,37 @@ def _ridden(
 
     `way` (W,): m that a lane of the bracket goes until the window begins, its lag included.
     """
-    ridden = Starts(*(column.copy() for column in plain))
-    ridden.time[:] = -np.inf
-    inside = np.zeros(begin.size, dtype=bool)
-    for c in np.unique(cell):
-        for ride in ground.rides[c]:
-            mine = np.flatnonzero((cell == c) & (begin >= ride.begin))
-            if mine.size:
-                _set_off(ride, mine, begin[mine], back[mine], ridden)
-                inside[mine] = begin[mine] <= ride.end
-    some = np.flatnonzero(ridden.ridden)
-    both = np.concatenate([begin[some], ridden.time[some]])
-    late, early = np.split(way_at(scene, path, both), 2)
-    nearer = plain.known[some] | inside[some] | (late - early <= way[some])
-    chosen = np.zeros(begin.size, dtype=bool)
-    chosen[some[nearer]] = True
-    return Starts(*(np.where(chosen, r, p) for r, p in zip(ridden, plain, strict=True)))
+    rides, which = last_begun(ground.rides, cell, begin)
+    some = np.flatnonzero(which >= 0)
+    if some.size == 0:
+        return plain
+    ridden, inside = _on_rides(rides, which[some], begin[some], back[some])
+    late, early = np.split(way_at(scene, path, np.append(begin[some], ridden.time)), 2)
+    # Where a ride ends before its slide turns slow, lags are not yet those of the moment.
+    slow = np.array([ride.curve.kept[-1] < _FORGETS for ride in rides])[which[some]]
+    turns = np.array([path.edges[ride.piece + 1] for ride in rides])[which[some]]
+    lagging = ~slow & (plain.time[some] <= turns)
+    nearer = plain.known[some] | inside | lagging | (late - early <= way[some])
+    starts = Starts(*(column.copy() for column in plain))
+    for column, row in zip(starts, ridden, strict=True):
+        column[some[nearer]] = row[nearer]
+    return starts
 
 
-def _set_off(ride: Ride, mine: np.ndarray, begin, back, starts: Starts) -> None:
-    """Put starts at a lattice point of the ride, its error behind and ahead of it."""
-    curve = ride.curve
-    number = np.floor(curve.number_at(np.minimum(begin, ride.end)) + _WHOLE) - back
-    number = np.maximum(number, curve.edges[0])
-    time = np.minimum(curve.time_of(number), begin)
-    well, error = ride.wells_at(number), ride.sign * ride.error_at(number)
-    rows = (time, False, True, well, ride.tip - error, well, ride.tip + error)
-    for column, row in zip(starts, rows, strict=True):
-        column[mine] = row
+def _on_rides(rides: list[Ride], which: np.ndarray, begin, back):
+    """Starts at lattice points of rides, their errors behind and ahead; and what holds
+    `begin`."""
+    curves = Curves([ride.curve for ride in rides])
+    rows = [(r.sign, r.well, r.tip, r.curve.edges[0], r.end) for r in rides]
+    sign, well, tip, first, end = np.array(rows)[which].T
+    number = np.floor(curves.number_at(which, np.minimum(begin, end)) + _WHOLE) - back
+    number = np.maximum(number, first)
+    errors = np.concatenate([ride.error for ride in rides])
+    error = sign * errors[curves.panel_of(which, number)]
+    time = np.minimum(curves.time_of(which, number), begin)
+    none, well = np.zeros(which.size, dtype=bool), well + sign * number
+    starts = Starts(time, none, ~none, well, tip - error, well, tip + error)
+    return starts, begin <= end
 
 
 def slow_share(scene: Scene, path: Path, time: np.ndarray, state: np.ndarray) -> np.ndarray:

@@ -23,7 +23,7 @@ _CONSTANT, _TOLERANCE, _LAG, _NARROW = 1.278, 0.417, -0.092, 0.41
 _SMOOTH, _BELOW_TENTH, _BELOW_ONE = -0.131, 0.505, 1.466
 # Rides, in the same cells: steps over those of one run-up; and wells that lanes, one after
 # the other, wait for each other. Both for a thousand wells, and how they grow with wells.
-_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH = 1.5, 4e3, 0.05
+_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH = 1.5, 8e2, 0.05
 # What a step costs more: for each harmonic after the first (1.2 at 4, 2.3 at 16, 5.7 at 64
 # were measured), for each degree of the bristle's series after the first (1.35 at 4), and
 # for a bristle without one.

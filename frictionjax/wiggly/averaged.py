@@ -1,0 +1,104 @@
+"""About when a slide passes its wells: the slow equation, averaged over a well.
+
+`dT/dn = P(X)`, with X the force beyond the fold at the time T and the lattice point n, and
+P the time of a passage under that force. It says how a slide is cut into panels, and is a
+guess for the recursion that is solved on them.
+"""
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array
+
+from ..programs import Program, in_chunks
+from ..scene import Scene
+from .passage import Track, steady_passages
+
+_STEPS = 96  # of a slide, from its start to its end
+_SHORT = 4.0  # wells of the first step and the last
+# Forces of the table, over the one at the start, and how many.
+_RANGE, _ROWS = np.log([1e-3, 1e4]), 48
+_SWEEPS = 8  # of Newton's method in a step
+_FLOOR = 0.05  # of the force before: below it P is continued by its tangent
+_SLIDES = 4  # in a compiled call
+
+
+class Lags(NamedTuple):
+    """A slide on a grid of numbers of wells since its start, shape (_STEPS + 1,).
+
+    `force`: N beyond the fold. `time`: s. `kept`: share of a shift that a well leaves.
+    """
+
+    number: np.ndarray
+    force: np.ndarray
+    time: np.ndarray
+    kept: np.ndarray
+
+
+def _grid(wells: np.ndarray) -> np.ndarray:
+    """Numbers from 0 to `wells`, graded towards both ends; (C, _STEPS + 1)."""
+    many = np.log(np.maximum(wells / (2 * _SHORT), 1.1))[:, None]
+    half = 0.5 * np.expm1(many * np.linspace(0, 1, _STEPS // 2 + 1)) / np.expm1(many)
+    return wells[:, None] * np.concatenate([half, 1 - half[:, -2::-1]], axis=1)
+
+
+@Program
+def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, number):
+    pitch = (_RANGE[1] - _RANGE[0]) / (_ROWS - 1)
+
+    def one(table, low, fold, sign, eps, origin, first, time, number):
+        def law(force: Array) -> tuple[Array, Array]:
+            """P in s, and its derivative."""
+            place = (jnp.log(force) - low) / pitch
+            row = jnp.clip(jnp.floor(place).astype(int), 0, _ROWS - 2)
+            rise = table[row + 1] - table[row]
+            length = jnp.exp(table[row] + rise * (place - row))
+            return length, length * rise / (pitch * force)
+
+        def force_at(time: Array, at: Array) -> Array:
+            held = scene.support.force(origin + sign * eps * (first + at))
+            return sign * (scene.load(time) - held) - fold
+
+        def step(before, at):
+            time, force, last = before
+            wells, floor = at - last, _FLOOR * force
+            length, _ = law(force)
+
+            def sweep(_, later):
+                here = force_at(later, at)
+                known = jnp.maximum(here, floor)
+                length, slope = law(known)
+                length = length + slope * (here - known)
+                rate = sign * scene.load.slope(later)
+                return later - (later - time - wells * length) / (1 - wells * slope * rate)
+
+            later = jax.lax.fori_loop(0, _SWEEPS, sweep, time + wells * length)
+            here = force_at(later, at)
+            gain = law(here)[1] * sign * scene.load.slope(later)
+            return (later, here, at), (here, later, jnp.exp(gain))
+
+        begin = force_at(time, number[0])
+        gain = law(begin)[1] * sign * scene.load.slope(time)
+        _, rows = jax.lax.scan(step, (time, begin, number[0]), number[1:])
+        start = begin, time, jnp.exp(gain)
+        return [jnp.concatenate([a[None], b]) for a, b in zip(start, rows, strict=True)]
+
+    return jax.vmap(one)(table, low, fold, sign, eps, origin, first, time, number)
+
+
+def lags_of(
+    scene: Scene, track: Track, eps, viscosity, origin, first, time, force, wells
+) -> Lags:
+    """Slides of `wells` from the lattice points `first`, passed at `time` (s); all (C,).
+
+    `force`: beyond the fold there. Not finite, or negative forces, from where slides end.
+    """
+    low = np.log(force) + _RANGE[0]
+    logs = low[:, None] + np.linspace(0.0, _RANGE[1] - _RANGE[0], _ROWS)
+    table = np.log(steady_passages(track, viscosity, np.exp(logs)))
+    number = _grid(wells)
+    columns = table, low, track.fold, track.sign, eps, origin, first, time, number
+    found = in_chunks(_march, _SLIDES, (scene,), columns)
+    return Lags(number, *found)
