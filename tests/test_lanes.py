@@ -7,10 +7,10 @@ from frictionjax.wiggly.lane import Cells
 from frictionjax.wiggly.lanes import NARROW, WIDTH, Room, _kind, _Loops, _wells
 
 PROGRAM = np.ones(3), "scheme", True
-FEW = Room(1, 7, 14)
+FEW, LARGE = Room(1, 7, 14), Room(64, 2048, 4096)
 
 
-def loops(width, room=Room(64, 2048, 4096)):
+def loops(width, room=LARGE):
     """Loops of which one is compiled."""
     known, kind = _Loops(), _kind((*PROGRAM, width))
     known._known[kind] = {room: None}

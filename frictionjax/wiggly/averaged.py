@@ -21,14 +21,15 @@ _SHORT = 4.0  # wells of the first step and the last
 # Forces of the table, over the one at the start, and how many.
 _RANGE, _ROWS = np.log([1e-3, 1e4]), 48
 _SWEEPS = 8  # of Newton's method in a step
-_FLOOR = 0.05  # of the force before: below it P is continued by its tangent
+_FARTHEST, _CONVERGED = 2.0, 0.01  # change of log X in a sweep, and in the last one
 _SLIDES = 4  # in a compiled call
 
 
 class Lags(NamedTuple):
     """A slide on a grid of numbers of wells since its start, shape (_STEPS + 1,).
 
-    `force`: N beyond the fold. `time`: s. `kept`: share of a shift that a well leaves.
+    `force`: N beyond the fold, NaN from where slides end. `time`: s. `kept`: share of a
+    shift that a well leaves.
     """
 
     number: np.ndarray
@@ -62,22 +63,27 @@ def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, numbe
             return sign * (scene.load(time) - held) - fold
 
         def step(before, at):
+            # Newton's method for log X: in T it diverged where X is 1e-7 of the load.
             time, force, last = before
-            wells, floor = at - last, _FLOOR * force
-            length, _ = law(force)
+            wells = at - last
 
-            def sweep(_, later):
-                here = force_at(later, at)
-                known = jnp.maximum(here, floor)
-                length, slope = law(known)
-                length = length + slope * (here - known)
+            def sweep(_, state):
+                log, _ = state
+                force = jnp.exp(log)
+                length, slope = law(force)
+                later = time + wells * length
                 rate = sign * scene.load.slope(later)
-                return later - (later - time - wells * length) / (1 - wells * slope * rate)
+                left = force - force_at(later, at)
+                change = left / (force * (1 - wells * slope * rate))
+                return log - jnp.clip(change, -_FARTHEST, _FARTHEST), change
 
-            later = jax.lax.fori_loop(0, _SWEEPS, sweep, time + wells * length)
-            here = force_at(later, at)
-            gain = law(here)[1] * sign * scene.load.slope(later)
-            return (later, here, at), (here, later, jnp.exp(gain))
+            begin = jnp.log(force), jnp.zeros_like(force)
+            log, change = jax.lax.fori_loop(0, _SWEEPS, sweep, begin)
+            here = jnp.where(jnp.abs(change) < _CONVERGED, jnp.exp(log), jnp.nan)
+            length, slope = law(here)
+            later = time + wells * length
+            kept = jnp.exp(slope * sign * scene.load.slope(later))
+            return (later, here, at), (here, later, kept)
 
         begin = force_at(time, number[0])
         gain = law(begin)[1] * sign * scene.load.slope(time)
@@ -93,7 +99,7 @@ def lags_of(
 ) -> Lags:
     """Slides of `wells` from the lattice points `first`, passed at `time` (s); all (C,).
 
-    `force`: beyond the fold there. Not finite, or negative forces, from where slides end.
+    `force`: beyond the fold there.
     """
     low = np.log(force) + _RANGE[0]
     logs = low[:, None] + np.linspace(0.0, _RANGE[1] - _RANGE[0], _ROWS)

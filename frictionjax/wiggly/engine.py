@@ -37,6 +37,7 @@ class _Cellwise(NamedTuple):
     eps: np.ndarray
     ground: Ground
     cells: Cells
+    brief: np.ndarray
     needs: Needs
 
 
@@ -66,11 +67,13 @@ class _Sweep(NamedTuple):
     every_slip: bool
     report: Report
 
-    def rounds(self, ground: Ground, cells: Cells) -> Rounds:
+    def rounds(self, every: _Cellwise) -> Rounds:
         """What rounds of windows of some cells need."""
-        parts = self.scene, self.lanes, self.path, ground, cells, self.tableau
-        nothing = np.zeros((2, ground.eps.size))
-        return Rounds(*parts, self.wanted, self.accuracy, self.report, nothing)
+        fixed = self.scene, self.lanes, self.path
+        parts = *fixed, every.ground, every.cells, self.tableau
+        nothing = np.zeros((2, every.eps.size))
+        told = self.wanted, self.accuracy, self.report
+        return Rounds(*parts, *told, nothing, every.brief)
 
     def attempt(self, cells: _Cellwise) -> tuple[Answers, np.ndarray]:
         """Answers of some cells, and which of them have a bracket that stays open."""
@@ -78,7 +81,7 @@ class _Sweep(NamedTuple):
         layout = lay_out(
             self.scene, self.path, cells.eps, self.ts, cells.needs, rides, whole
         )
-        rounds = self.rounds(cells.ground, cells.cells)
+        rounds = self.rounds(cells)
         found, open_ = collect(rounds, layout, cells.needs)
         start = cells.ground.start_well, cells.ground.start_tip
         answers = evaluate(
@@ -132,7 +135,7 @@ def integrate_cells(
     control, ground, needs, ridden = plan
     steering = control.tolerance, control.loosest, control.pace, control.reach
     cells = Cells(eps, eps**gamma, control.first_step, *steering)
-    parts = _Cellwise(eps, ground, cells, needs)
+    parts = _Cellwise(eps, ground, cells, np.asarray(control.brief), needs)
     every = method == "resolved"
     sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, wanted, every, report)
     parts, (steps, rejected) = _ridden(sweep, parts, eps**gamma, np.flatnonzero(ridden))
@@ -192,7 +195,7 @@ def _ridden(
     """The same cells, with the rides of those that are chosen, and what these took."""
     if chosen.size == 0:
         return every, np.zeros((2, every.eps.size))
-    rounds = sweep.rounds(every.ground, every.cells)
+    rounds = sweep.rounds(every)
     find_rides(rounds, chosen, viscosity, every.needs.warm)
     has = np.array([len(rides) > 0 for rides in every.ground.rides])
     nodes = np.where(has, NODES, every.needs.nodes)

@@ -298,6 +298,19 @@ def _tiles(segment: np.ndarray, tile: np.ndarray) -> list[np.ndarray]:
     return np.split(np.arange(segment.size), np.flatnonzero(cut) + 1)
 
 
+def _on_rides(rides: tuple, times: np.ndarray) -> np.ndarray:
+    """Blocks of wells on rides that are passed before each time.
+
+    Tiles end there: lanes set off from rides anywhere, and what waits for the longest tile
+    at gamma = 1/4, eps = 1e-8 took 7 s of 9.
+    """
+    passed = np.zeros(times.size)
+    for ride in rides:
+        held = np.clip(times, ride.begin, ride.end)
+        passed += np.floor(ride.curve.number_at(held) / _WELLS_A_LEG)
+    return passed
+
+
 def lay_out(
     scene: Scene,
     path: Path,
@@ -335,7 +348,7 @@ def lay_out(
     chain = [np.zeros(0, dtype=int)] * eps.size
     for k, (cell, (opening, own, segment)) in enumerate(zip(chained, cuts, strict=True)):
         since = (ways[2 * k + 1] - ways[2 * k][segment]) / eps[cell]
-        tile = np.floor(since / needs.tile[cell] - 1e-9)
+        tile = np.floor(since / needs.tile[cell] - 1e-9) + _on_rides(rides[cell], own)
         begins = own > opening[segment]
         own, segment, tile = own[begins], segment[begins], tile[begins]
         tiles = _tiles(segment, tile)

@@ -13,6 +13,7 @@ SMALLEST = 8.0  # wells of a panel
 _BEFORE = 12.0  # wells since the set-off where a slide begins, about: it is singular there
 _END = 3.0  # wells left before the end of a slide
 _GROWTH = 1.5  # of the way so far, at most: times may bend for other reasons
+_RECOVERS = 0.7
 # As the averaged equation has it: a little less than what the recursion may show.
 _SLOWER = 0.4
 
@@ -41,14 +42,20 @@ def _spans(wells: float, tail: float, side: float, left: float = 1.0) -> float:
     return 2 * wells / max(0.5 * (rho + 1 / rho) - side, 2 / _GROWTH)
 
 
-def edges_of(lags: Lags, late: float, since: float, tail: float, share: float):
-    """Edges of panels from 0 to where a slide ends, at `late` (s) at most, in wells.
+def edges_of(
+    lags: Lags, late: float, left: float, since: float, tail: float, share: float
+) -> np.ndarray:
+    """Edges of panels from 0 to where a slide ends, in wells.
+
+    At `late` (s) at most, as far as the averaged equation knows, and `left` wells on.
 
     Narrower near the set-off, `since` wells before, and near where the force would vanish,
     which matters until it is forgotten. `tail`: last coefficients allowed, wells.
-    `share`: of the spans that seem right.
+    `share`: of the spans that seem right, for the first panel: what was too wide there need
+    not be so further on.
     """
     (end, nothing), edges = _ends_of(lags, late), [0.0]
+    end = min(end, left - _END)
     while end - edges[-1] >= SMALLEST:
         begun = _BEFORE + since + edges[-1]
         kept = np.interp(edges[-1], lags.number, lags.kept)
@@ -56,6 +63,7 @@ def edges_of(lags: Lags, late: float, since: float, tail: float, share: float):
         if np.isfinite(nothing):
             span = min(span, _spans(max(nothing - edges[-1], 1.0), tail, -1.0))
         span = np.floor(max(share * span, SMALLEST))
-        left = np.floor(end - edges[-1])
-        edges.append(edges[-1] + (left if left < 1.3 * span else span))
+        share = share**_RECOVERS
+        rest = np.floor(end - edges[-1])
+        edges.append(edges[-1] + (rest if rest < 1.3 * span else span))
     return np.array(edges)

@@ -31,7 +31,7 @@ def find_rides(
     }
     cells_ = rounds.cells
     fixed = {name: _TIGHT_LOOK * getattr(cells_, name) for name in ("tolerance", "loosest")}
-    closer = rounds._replace(cells=cells_._replace(**fixed))
+    closer = rounds._replace(cells=cells_._replace(**fixed), brief=None)
     rider = Rider(rounds.scene, rounds.path, ground.eps, viscosity, sides, rounds.accuracy)
 
     def look(cell: np.ndarray, begin: np.ndarray, stop: np.ndarray) -> Seen:
@@ -90,7 +90,8 @@ def _errors(
     sign, first, tip = np.array([(r.sign, r.well, r.tip) for r in rides])[who].T
     well, aim = first + sign * number, first + sign * (number + count)
     whose, known = np.array(cells)[who], np.ones(tip.size, dtype=bool)
-    starts = Starts(begin, known, ~known, well, tip, well, tip)
+    never = np.full(tip.size, -np.inf)
+    starts = Starts(begin, known, ~known, known, never, well, tip, well, tip)
     tight = np.where(np.isin(np.arange(rounds.ground.eps.size), cells), _TIGHT_RIDE, 1.0)
     tight = np.minimum(tight, rounds.cells.tolerance)
     exact = rounds._replace(cells=rounds.cells._replace(tolerance=tight, loosest=tight))

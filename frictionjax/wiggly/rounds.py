@@ -66,7 +66,8 @@ class Round(NamedTuple):
 class Rounds(NamedTuple):
     """What all rounds of one sweep share.
 
-    `spent` (2, cells): steps and rejected steps of all lanes so far, added in place.
+    `brief` (cells,): tolerances of lanes on rides through a few wells; None: those of the
+    others. `spent` (2, cells): steps and rejected steps so far, added in place.
     """
 
     scene: Scene
@@ -79,6 +80,7 @@ class Rounds(NamedTuple):
     accuracy: float
     report: Report
     spent: np.ndarray
+    brief: np.ndarray | None
 
     def run(self, windows: Windows, wells: np.ndarray, back: np.ndarray) -> Round:
         """March all windows, from `wells` of the path or `back` of a ride before them."""
@@ -102,6 +104,7 @@ class Rounds(NamedTuple):
         way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])
         wells = (way[jobs.past_leg] - way[jobs.first_leg]) / eps
         cost = wells + 1 + 0.3 * (jobs.past_leg - jobs.first_leg)
+        jobs, cells = self._steered(jobs, plan.brief)
         order = np.argsort(-cost, kind="stable")
         # Batches of less than two jobs a lane leave lanes idle.
         most = max(order.size // (2 * WORKERS * WIDTH), 1)
@@ -110,12 +113,21 @@ class Rounds(NamedTuple):
         seat = _seats(order.size, batches * WORKERS)
         for batch in range(batches):
             queues = [order[seat == batch + i * batches] for i in range(WORKERS)]
-            for part in _POOL.map(lambda q: self._queue(jobs, legs, q), queues):
+            for part in _POOL.map(lambda q: self._queue(cells, jobs, legs, q), queues):
                 found = _merged(found, part)
             self.report(1 / batches)
         return found
 
-    def _queue(self, jobs: Jobs, legs: Legs, chosen: np.ndarray) -> Arrivals:
+    def _steered(self, jobs: Jobs, brief: np.ndarray) -> tuple[Jobs, Cells]:
+        """Jobs that are `brief` in cells of their own, with their tolerance."""
+        if self.brief is None or not brief.any():
+            return jobs, self.cells
+        loosest = np.maximum(self.brief, self.cells.loosest)
+        others = self.cells._replace(tolerance=self.brief, loosest=loosest)
+        both = (np.concatenate(pair) for pair in zip(self.cells, others, strict=True))
+        return jobs._replace(cell=jobs.cell + brief * self.brief.size), Cells(*both)
+
+    def _queue(self, cells: Cells, jobs: Jobs, legs: Legs, chosen: np.ndarray) -> Arrivals:
         if chosen.size == 0:
             return _nothing(legs)
         mine = Jobs(*(np.asarray(column)[chosen] for column in jobs))
@@ -125,7 +137,7 @@ class Rounds(NamedTuple):
         rows = np.repeat(mine.first_leg - (past - count), count) + np.arange(count.sum())
         mine = mine._replace(first_leg=past - count, past_leg=past)
         some = Legs(*(column[rows] for column in legs))
-        found = march(self.lanes, self.cells, mine, some, self.tableau, self.wanted)
+        found = march(self.lanes, cells, mine, some, self.tableau, self.wanted)
         return Arrivals(*(_spread(v, rows, legs.start.size) for v in found))
 
 
@@ -193,6 +205,6 @@ def run_ups(rounds: Rounds, windows: Windows, warm: np.ndarray) -> np.ndarray:
     starts = starts_of(rounds.scene, rounds.path, rounds.ground, *where)
     states = states_at(rounds.scene, rounds.path, starts.time)
     share = slow_share(rounds.scene, rounds.path, starts.time, states)
-    share = np.where(starts.ridden, 1.0, share)
+    share = np.where(starts.ridden | starts.lagging, 1.0, share)
     # Others keep theirs: what they find must not depend on their neighbours.
     return np.where(long, np.ceil(MARGIN + share * (wells - MARGIN)), wells)

@@ -30,6 +30,7 @@ _CONVERGED = 1e-4  # wells: the last correction of Newton's method, which is qua
 # A slide is slow where a passage forgets more than this of a shift: tips nearly rest at
 # folds, and windows started a few slips earlier do as well.
 _SLOW = 0.3
+_ON = 0.5  # at the end of the last panel: the slide may go on
 _AGAIN = 0.6  # of a panel that does not hold, and of those behind it
 _TAIL = 1e-3  # of the accuracy: last coefficients of a panel
 _SPACING = 1e-14  # of T: rounding of times, in the last coefficients
@@ -176,7 +177,7 @@ def _horizon(scene: Scene, slides: Slides, first, time, force) -> np.ndarray:
     return np.where(held >= SMALLEST, held, _SLOWING * (slides.late - time) / length)
 
 
-def _cut(scene: Scene, slides: Slides, now, first, time, tail, share):
+def _cut(scene: Scene, slides: Slides, now, first, time, tail, share, past):
     """Panels of the slides `now` from where they are, and times guessed at their nodes."""
     some, first, time = _chosen(slides, now), first[now], time[now]
     force = _beyond(scene, some, first, time)
@@ -189,7 +190,8 @@ def _cut(scene: Scene, slides: Slides, now, first, time, tail, share):
     for i in np.flatnonzero(able).tolist():
         mine = Lags(*(column[i] for column in lags))
         since = first[i] - some.first[i]
-        edges = edges_of(mine, some.late[i], since, tail, share[now[i]])
+        left = past[now[i]] - first[i]
+        edges = edges_of(mine, some.late[i], left, since, tail, share[now[i]])
         number = edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (_X + 1)
         slide.append(np.full(edges.size - 1, now[i]))
         numbers.append(first[i] + number)
@@ -226,12 +228,14 @@ def follow(scene: Scene, slides: Slides, accuracy: float) -> list[Curve | None]:
     size = slides.eps.size
     first, time = slides.first.copy(), slides.time.copy()
     share, smallest = np.ones(size), np.full(size, SMALLEST)
+    past = np.full(size, np.inf)  # numbers that the end of the piece does not let pass
     now = np.arange(size)
     found: list[list[tuple]] = [[] for _ in range(size)]
     for _ in range(_ROUNDS):
         if now.size == 0:
             break
-        panels, force = _cut(scene, slides, now, first, time, _TAIL * accuracy, share)
+        how = _TAIL * accuracy, share, past
+        panels, force = _cut(scene, slides, now, first, time, *how)
         if panels.slide.size == 0:
             break
         guess = _guess(scene, slides, panels, force, time)
@@ -248,9 +252,17 @@ def follow(scene: Scene, slides: Slides, accuracy: float) -> list[Curve | None]:
                 found[c].append((first[c], times[0], span, times, solved.tail[p], kept))
                 first[c], time[c] = first[c] + span, times[-1]
             if held.size == mine.size:
+                # The averaged equation may end a fast slide wells too early.
+                if _ON < solved.kept[held[-1], -1] < 1 / _ON:
+                    going.append(c)
                 continue
             failed = mine[held.size]
-            share[c] *= _AGAIN
+            if solved.times[failed, -1] > slides.late[c]:
+                nodes = solved.times[failed], panels.number[failed]
+                past[c] = np.interp(slides.late[c], *nodes)
+                going.append(c)
+                continue
+            share[c] = _AGAIN * (1.0 if held.size > 2 else share[c])
             # Where it turns slow, only a large part of the way is worth having.
             if solved.fine[failed] and held.size:
                 smallest[c] = max(_WORTH * panels.span[held[-1]], SMALLEST)

@@ -25,6 +25,7 @@ _FOLD = 0.03
 # gamma = 1/2, eps = 1e-4 (0.006) errors were 2.4e-3 eps without, where 1e-3 was asked for.
 _CREEP = 0.025
 _TIGHTEST = 1e-13
+_FEW_ADD = 30.0  # errors of a few slips; at eps = 1e-8 and gamma = 1/4 all add up to 1e4
 # Of the accuracy: error of a step in the middle of a slip. At 0.2 steps are 4% fewer, and
 # brackets at eps = 1e-8 stay open.
 _IN_SLIPS = 0.05
@@ -57,11 +58,13 @@ class Plan(NamedTuple):
     """Step control of one trajectory: tolerances and reach in periods, steps in s.
 
     `loosest`: tolerance in the middle of a slip; `pace`: periods a second of the fastest
-    slide: see `Control`. `memory`: slips back that a disturbance still matters.
+    slide: see `Control`. `brief`: tolerance of a lane that goes through a few wells only.
+    `memory`: slips back that a disturbance still matters.
     """
 
     tolerance: Real
     loosest: Real
+    brief: Real
     pace: Real
     reach: Real
     first_step: Real
@@ -204,16 +207,19 @@ def plan_steps(
     stretch = jnp.maximum(1.0, ground.stretch)
     creep = jnp.minimum(memory, 1.0) * _CREEP / _pace_at_fold(ground, pull, eps, gamma)
     adding = jnp.sqrt(1 + memory) * jnp.maximum(creep, 1.0)
-    tolerance = accuracy / (_SAFETY * adding * stretch)
+    share = accuracy / (_SAFETY * stretch)
     at_folds = _FOLD * _way_to_fold(ground, pull, eps, gamma)
-    tolerance = jnp.minimum(tolerance, at_folds)
     relaxation = eps ** (gamma + 1) / ground.steepest
     shortest = _DOUBLE_SPACING * scene.duration
     first = jnp.clip(1e-2 * relaxation, 2 * shortest, 1e-2 * scene.duration)
-    tolerance = jnp.clip(tolerance, _TIGHTEST, _LOOSEST)
+    tolerance, brief = (
+        jnp.clip(jnp.minimum(share / many, at_folds), _TIGHTEST, _LOOSEST)
+        for many in (adding, jnp.minimum(adding, _FEW_ADD))
+    )
     plan = Plan(
         tolerance=tolerance,
         loosest=jnp.maximum(tolerance, _IN_SLIPS * accuracy / stretch),
+        brief=brief,
         pace=jnp.where(pull.fastest > 0, pull.fastest / (pull.softest * eps), jnp.inf),
         reach=0.25 * ground.branch,
         first_step=first,

@@ -20,6 +20,7 @@ _FASTER = 1.5  # how much slides may have been faster, squared, where lanes set 
 # always: lanes of 300 wells in slow parts of slides at gamma = 0.4, where ten do.)
 _LONG_LAG = 5.0
 _FORGETS = 0.7  # share that a well leaves of a shift, where slides are slow
+_BRIEF = 20.0  # wells of a lane whose errors hardly add up
 _WHOLE = 1e-4  # wells: rounding of times, in numbers of wells
 
 
@@ -73,12 +74,15 @@ class Starts(NamedTuple):
     """Where lanes of windows set off, shape (W,).
 
     `time` in s. `known`: from the known z0; `ridden`: from a ride, as closely as its error
-    says. `behind_*` and `ahead_*`: well and tip of the two lanes of the bracket.
+    says, which ends at `until` (s); `lagging`: behind one, with the largest lag there is.
+    `behind_*` and `ahead_*`: well and tip of the two lanes of the bracket.
     """
 
     time: np.ndarray
     known: np.ndarray
     ridden: np.ndarray
+    lagging: np.ndarray
+    until: np.ndarray
     behind_well: np.ndarray
     behind_tip: np.ndarray
     ahead_well: np.ndarray
@@ -90,7 +94,7 @@ class Plan(NamedTuple):
 
     `behind`, `ahead` (S,): leg of each stop in either lane, -1 where the second does not
     run. `meet_behind`, `meet_ahead` (W,): legs that end where the windows begin. `known`,
-    `ridden` (W,): as in `Starts`.
+    `ridden` (W,): as in `Starts`. `brief` (J,): jobs on a ride that go through a few wells.
     """
 
     jobs: Jobs
@@ -101,6 +105,7 @@ class Plan(NamedTuple):
     meet_ahead: np.ndarray
     known: np.ndarray
     ridden: np.ndarray
+    brief: np.ndarray
 
 
 def way_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
@@ -166,30 +171,44 @@ def starts_of(
     share = np.ones(begin.size)
     share[slide] = slow_share(scene, path, time[slide], level[slide])
     share = np.where(lag > _LONG_LAG * eps, share, 1.0)
+    before = rides, which = last_begun(ground.rides, cell, begin)
+    lagging = _still_lagging(path, rides, which, time)
+    share = np.where(lagging, 1.0, share)
     lanes = _brackets(ground, cell, direction, level, known, share)
-    plain = Starts(time, known, np.zeros(begin.size, dtype=bool), *lanes)
+    none = np.zeros(begin.size, dtype=bool)
+    plain = Starts(time, known, none, lagging, np.full(begin.size, -np.inf), *lanes)
     reach = wells * eps + 2 * share * lag
-    return _ridden(scene, path, ground, cell, begin, plain, back, reach)
+    return _ridden(scene, path, before, begin, plain, back, reach)
 
 
-def _ridden(
-    scene: Scene, path: Path, ground: Ground, cell, begin, plain: Starts, back, way
-):
+def _still_lagging(path: Path, rides: list[Ride], which: np.ndarray, time: np.ndarray):
+    """Whether a slide that its ride left at full speed may still lag as that did, (W,).
+
+    Lags are not those of the moment there. (Brackets of these left the tip out: 6e-2 eps,
+    16 wells behind a ride.)
+    """
+    some = np.flatnonzero(which >= 0)
+    lagging = np.zeros(which.size, dtype=bool)
+    if some.size:
+        fast = np.array([ride.curve.kept[-1] >= _FORGETS for ride in rides])[which[some]]
+        turns = np.array([path.edges[ride.piece + 1] for ride in rides])[which[some]]
+        lagging[some] = fast & (time[some] <= turns)
+    return lagging
+
+
+def _ridden(scene: Scene, path: Path, before: tuple, begin, plain: Starts, back, way):
     """The same starts, from the last ride where it holds the window or ends nearer to it.
 
-    `way` (W,): m that a lane of the bracket goes until the window begins, its lag included.
+    `before`: as `last_begun` says. `way` (W,): m that a lane of the bracket goes until the
+    window begins, its lag included.
     """
-    rides, which = last_begun(ground.rides, cell, begin)
+    rides, which = before
     some = np.flatnonzero(which >= 0)
     if some.size == 0:
         return plain
     ridden, inside = _on_rides(rides, which[some], begin[some], back[some])
     late, early = np.split(way_at(scene, path, np.append(begin[some], ridden.time)), 2)
-    # Where a ride ends before its slide turns slow, lags are not yet those of the moment.
-    slow = np.array([ride.curve.kept[-1] < _FORGETS for ride in rides])[which[some]]
-    turns = np.array([path.edges[ride.piece + 1] for ride in rides])[which[some]]
-    lagging = ~slow & (plain.time[some] <= turns)
-    nearer = plain.known[some] | inside | lagging | (late - early <= way[some])
+    nearer = plain.known[some] | inside | (late - early <= way[some])
     starts = Starts(*(column.copy() for column in plain))
     for column, row in zip(starts, ridden, strict=True):
         column[some[nearer]] = row[nearer]
@@ -208,7 +227,8 @@ def _on_rides(rides: list[Ride], which: np.ndarray, begin, back):
     error = sign * errors[curves.panel_of(which, number)]
     time = np.minimum(curves.time_of(which, number), begin)
     none, well = np.zeros(which.size, dtype=bool), well + sign * number
-    starts = Starts(time, none, ~none, well, tip - error, well, tip + error)
+    lanes = well, tip - error, well, tip + error
+    starts = Starts(time, none, ~none, none, end, *lanes)
     return starts, begin <= end
 
 
@@ -322,7 +342,12 @@ def plan_windows(
     ahead[chosen[mark[two & (mark >= 0)]]] = index[two & (mark >= 0)]
     meet_ahead[second[owner[two & (mark == -1)]]] = index[two & (mark == -1)]
     marks = behind, ahead, meet_behind, meet_ahead
-    return Plan(jobs, legs, *marks, starts.known, starts.ridden)
+    last = np.full(count, -np.inf)
+    np.maximum.at(last, windows.owner, windows.stop)
+    inside = last <= starts.until
+    brief = np.concatenate([inside, inside[second]])
+    brief &= np.bincount(job, wells, brief.size) <= _BRIEF
+    return Plan(jobs, legs, *marks, starts.known, starts.ridden, brief)
 
 
 def _legs(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Legs:
