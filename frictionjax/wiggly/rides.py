@@ -26,6 +26,9 @@ _OVERSHOT = 12.0  # wells after a turn, at the pace before it
 _STILL = 4.0  # of them that must have been passed for the slide to go on
 _CLOSED = 0.1  # wells of time: gaps of brackets at the start of a ride, at most
 _LONG = 100.0  # wells of lag that are worth a slip map after the turn
+_REST = (
+    0.6  # share at the end of a ride below which the tip comes to rest where the path is
+)
 _FAST = 0.9  # share that a well leaves of a shift, where lags are many wells
 
 
@@ -208,8 +211,6 @@ def _touches(rider: Rider, look: Look, cells: np.ndarray, piece: int) -> np.ndar
     rests short of where the path does.
     """
     touch = np.full(cells.size, rider.path.touch[piece])
-    if piece == 0:
-        return touch
     seen = look(cells, touch, touch)
     # Lanes that failed stay candidates no longer than their gap is looked at.
     states = rider.states(cells, np.nan_to_num(seen.well), np.nan_to_num(seen.tip))
@@ -218,7 +219,9 @@ def _touches(rider: Rider, look: Look, cells: np.ndarray, piece: int) -> np.ndar
     return arrivals_at(rider.scene, states, force, touch, late)
 
 
-def _starting(rider: Rider, look: Look, cells: np.ndarray, piece: int) -> Candidates | None:
+def _starting(
+    rider: Rider, look: Look, cells: np.ndarray, piece: int, last: list[Ride | None]
+) -> Candidates | None:
     """Candidates at the start of the slide of a piece."""
     late = rider.path.edges[piece + 1]
     wait = _set_off(rider, cells, piece)
@@ -226,7 +229,11 @@ def _starting(rider: Rider, look: Look, cells: np.ndarray, piece: int) -> Candid
     cells, wait = cells[able], wait[able]
     if cells.size == 0:
         return None
-    touch = _touches(rider, look, cells, piece)
+    touch = np.full(cells.size, rider.path.touch[piece])
+    before = [last[c] for c in cells]
+    lags = np.array([r is not None and r.curve.kept[-1] > _REST for r in before])
+    if lags.any():
+        touch[lags] = _touches(rider, look, cells[lags], piece)
     stops = touch + wait
     able = stops < late
     cells, stops, touch = cells[able], stops[able], touch[able]
@@ -314,7 +321,7 @@ def ride_through(
             continue
         new = [c for c in cells if not _joins(last[c], piece, direction, rider.path)]
         if new:
-            found = _starting(rider, look, np.array(new), piece)
+            found = _starting(rider, look, np.array(new), piece, last)
             _go(rider, found, check, keep, last)
 
 
