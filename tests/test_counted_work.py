@@ -97,7 +97,7 @@ def executed(monkeypatch, solver, accuracy):
     "solver",
     [
         diffrax.Kvaerno3(),
-        diffrax.ImplicitEuler(),
+        pytest.param(diffrax.ImplicitEuler(), marks=pytest.mark.slow),
         pytest.param(diffrax.Tsit5(), marks=pytest.mark.slow),
         pytest.param(_Twice(), marks=pytest.mark.slow),
         pytest.param(_EveryStage(), marks=pytest.mark.slow),

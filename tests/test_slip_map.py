@@ -282,6 +282,7 @@ def test_tiles_end_on_rides():
     assert layout._on_rides((), times).tolist() == [0] * 8
 
 
+@pytest.mark.slow
 def test_lag_follows_the_averaged_equation():
     """Where gamma is small, `v = eps^-gamma/int dY/(f - W')` gives the lag of a ramp."""
     load = fx.loads.Ramp(2.0, 0.0)
@@ -306,6 +307,7 @@ def test_a_ride_alone_equals_the_batch():
     assert float(gap.max()) < 1e-6 * eps[1]
 
 
+@pytest.mark.slow
 def test_starts_behind_a_ride_that_ends_fast():
     """A slide that ends while it lags: what follows must not trust lags of the moment.
 

@@ -52,7 +52,10 @@ def plain_slide(eps, gamma, rate, stiffness, sign, slips=16):
     return slip.y[1, -1] / period, peak
 
 
-@pytest.mark.parametrize(("eps", "gamma", "rate"), [(0.05, 1.0, 1.0), (0.1, 1.5, 0.3)])
+@pytest.mark.parametrize(
+    ("eps", "gamma", "rate"),
+    [pytest.param(0.05, 1.0, 1.0, marks=pytest.mark.slow), (0.1, 1.5, 0.3)],
+)
 def test_forces_are_those_of_an_integration_in_time(eps, gamma, rate):
     support = fx.supports.Spring(0.7)
     found = fx.steady_slide(WAVES, SLANTED, eps, gamma, rate, support)

@@ -240,7 +240,7 @@ def given_potential() -> Case:
 
 CASES = [
     vertical_sine,
-    homothetic_ramp_far_below,
+    pytest.param(homothetic_ramp_far_below, marks=pytest.mark.slow),
     given_potential,
 ]
 _MORE = [
