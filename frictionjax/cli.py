@@ -183,7 +183,7 @@ def study(
     _start()
     from .report.job import number_list, read_job
     from .report.place import require_folder
-    from .report.study import expected_cost, run_study, within_budget
+    from .report.study import expected_cost, prepare_study, run_study, within_budget
 
     folder = require_folder(out)
     given = {"eps": eps, "gamma": gamma}
@@ -194,6 +194,7 @@ def study(
         wanted["accuracy"] = accuracy
     job = read_job(scene, **surface)
     job = job._replace(study=job.study | wanted)
+    prepare_study(job, method)  # while its cost is found
     if budget is not None:
         job = within_budget(job, budget, method, accuracy)
     elif (expected := expected_cost(job, method)) is not None:

@@ -1,4 +1,4 @@
-"""All cells eps x gamma of a scene, integrated in vmapped blocks, as a data set."""
+"""All cells eps x gamma of a scene as a data set."""
 
 from typing import TYPE_CHECKING, Any
 

@@ -27,12 +27,16 @@ def expected_cost(job: Job, method: str) -> CostPrediction | None:
     if not is_ours(method):
         return None
     ts = study_times(job)
-    _prepare(job)
     return predict_cost(job.scene, ts=ts, method=method, measure=False, **job.study)
 
 
-def _prepare(job: Job) -> None:
-    """Have the longest program compiled, 0.4 s where it is kept, while costs are found."""
+def prepare_study(job: Job, method: str) -> None:
+    """Have the longest program compiled in the background, 0.4 s where it is kept.
+
+    Raises `ValueError` for eps and gamma as `sweep` does.
+    """
+    if not is_ours(method):
+        return
     eps, gamma = grid_of("eps", job.study["eps"]), grid_of("gamma", job.study["gamma"])
     require_reach(job.scene.potential, jnp.asarray(eps))
     prepare_cells(job.scene, cells_of(eps, gamma)[0], _TIMES)

@@ -13,7 +13,7 @@ SMALLEST = 8.0  # wells of a panel
 _BEFORE = 12.0  # wells since the set-off where a slide begins, about: it is singular there
 _END = 3.0  # wells left before the end of a slide
 _GROWTH = 1.5  # of the way so far, at most: times may bend for other reasons
-_RECOVERS = 0.7
+_RECOVERS = 0.7  # power of a panel's share for the next (1: twice as many panels)
 # As the averaged equation has it: a little less than what the recursion may show.
 _SLOWER = 0.4
 
