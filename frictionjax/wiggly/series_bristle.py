@@ -17,18 +17,19 @@ _ROUNDING = 1e-14  # of the largest value: coefficients below are left out
 
 
 class SeriesBristle(AbstractBristle):
-    """`A'` and `F'` as power series in `eta/scale`, A and F their integrals.
+    """`A'` and `F'` as power series in `eta per_height`, A and F their integrals.
 
     Two square roots and an arc tangent a stage, which XLA does not vectorise, become a
-    handful of products: 3 times less time for a step of the angular spring.
+    handful of products: 3 times less time for a step of the angular spring. (Divided by a
+    height instead: a quarter more for every step.)
     """
 
     ahead: Float[Array, " terms"]
     climb: Float[Array, " terms"]
-    scale: Real
+    per_height: Real
 
     def _integral(self, terms: Array, eta: Real) -> Real:
-        x = eta / self.scale
+        x = eta * self.per_height
         total = jnp.zeros_like(x)
         for power in range(terms.shape[0] - 1, -1, -1):
             total = total * x + terms[power] / (power + 1)
@@ -65,4 +66,4 @@ def series_of(bristle: AbstractBristle, highest: float) -> AbstractBristle:
     ahead, climb = (np.polynomial.chebyshev.cheb2poly(f[: degree + 1]) for f in found)
     terms = [np.pad(t, (0, degree + 1 - t.size)) for t in (ahead, climb)]
     series = [jnp.asarray(t) for t in terms]
-    return SeriesBristle(series[0], series[1], jnp.asarray(highest))
+    return SeriesBristle(series[0], series[1], jnp.asarray(1 / highest))
