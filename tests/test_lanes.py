@@ -5,6 +5,7 @@ import numpy as np
 from frictionjax.wiggly.job_queue import Jobs, Legs
 from frictionjax.wiggly.lane import Cells
 from frictionjax.wiggly.lanes import NARROW, WIDTH, Room, _kind, _Loops, _wells
+from frictionjax.wiggly.rounds import longest_alone
 
 PROGRAM = np.ones(3), "scheme", True
 FEW, LARGE = Room(1, 7, 14), Room(64, 2048, 4096)
@@ -32,10 +33,26 @@ def test_few_jobs_take_a_wide_loop_that_is_there_until_it_costs_more():
     assert loops(WIDTH).width_for(PROGRAM, FEW, 2e5) == NARROW
 
 
-def test_wells_on_the_way_are_counted_in_each_cells_own_periods():
+def test_wells_one_after_the_other_are_counted_in_each_cells_own_periods():
     cells = Cells(np.array([0.1, 1e-3]), *[None] * (len(Cells._fields) - 1))
     nothing = np.zeros(2)
     jobs = Jobs(np.array([0.0, 1.0]), *[nothing] * 3, np.array([0, 2]), np.array([2, 3]))
     legs = {name: np.zeros(3) for name in Legs._fields}
     legs |= {"guide0": np.array([0.0, 1.0, 0.5]), "guide1": np.array([1.0, 0.5, 1.5])}
-    assert _wells(cells, jobs, Legs(**legs)) == 15 + 1000
+    assert _wells(cells, jobs, Legs(**legs)) == 1000
+    legs["guide1"][0] = 200.0  # 2005 wells of the first job
+    assert _wells(cells, jobs, Legs(**legs)) == 2005
+    many = Jobs(np.ones(9), *[np.zeros(9)] * 3, np.arange(9), np.arange(1, 10))
+    legs = {name: np.zeros(9) for name in Legs._fields} | {"guide1": np.full(9, 0.016)}
+    assert _wells(cells, many, Legs(**legs)) == 18
+
+
+def test_the_longest_jobs_go_beside_many_short_ones():
+    """Three long lanes would keep two wide loops waiting; one loop is as good for few."""
+    short = np.full(600, 10.0)
+    assert longest_alone(np.append([2000.0, 1900.0, 1800.0], short)) == 3
+    assert longest_alone(np.append([11.0] * 3, short)) == 0
+    assert longest_alone(np.full(8, 500.0)) == 0
+    assert longest_alone(np.array([700.0])) == 0
+    # More than a narrow loop holds: the rest stays where it is.
+    assert longest_alone(np.append(np.full(100, 2000.0), short)) == 0

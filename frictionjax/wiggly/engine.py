@@ -1,5 +1,6 @@
 """All cells of a sweep through lanes: rounds of windows until every bracket has closed."""
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import jax
@@ -66,6 +67,7 @@ class _Sweep(NamedTuple):
     wanted: Sums
     every_slip: bool
     report: Report
+    workers: int = WORKERS
 
     def rounds(self, every: _Cellwise) -> Rounds:
         """What rounds of windows of some cells need."""
@@ -73,7 +75,7 @@ class _Sweep(NamedTuple):
         parts = *fixed, every.ground, every.cells, self.tableau
         nothing = np.zeros((2, every.eps.size))
         told = self.wanted, self.accuracy, self.report
-        return Rounds(*parts, *told, nothing, every.brief)
+        return Rounds(*parts, *told, nothing, every.brief, self.workers)
 
     def attempt(self, cells: _Cellwise) -> tuple[Answers, np.ndarray]:
         """Answers of some cells, and which of them have a bracket that stays open."""
@@ -138,13 +140,8 @@ def integrate_cells(
     parts = _Cellwise(eps, ground, cells, np.asarray(control.brief), needs)
     every = method == "resolved"
     sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, wanted, every, report)
-    parts, (steps, rejected) = _ridden(sweep, parts, eps**gamma, np.flatnonzero(ridden))
-    answers, never = sweep.attempt(parts)
-    answers = answers._replace(
-        steps=answers.steps + steps,
-        rejected=answers.rejected + rejected,
-        tolerance=np.asarray(control.tolerance),
-    )
+    answers, never = _first_attempt(sweep, parts, ridden)
+    answers = answers._replace(tolerance=np.asarray(control.tolerance))
     for _ in range(_SURVEYS):
         rough = np.flatnonzero(sweep.is_rough(answers, eps) & ~never)
         if not _surveyed_again(sweep, parts, answers, never, rough):
@@ -189,17 +186,49 @@ def _in_tiles(sweep: _Sweep, every: _Cellwise, answers: Answers, never: np.ndarr
     never[chosen] = open_
 
 
-def _ridden(
-    sweep: _Sweep, every: _Cellwise, viscosity: np.ndarray, chosen: np.ndarray
-) -> tuple[_Cellwise, np.ndarray]:
-    """The same cells, with the rides of those that are chosen, and what these took."""
-    if chosen.size == 0:
-        return every, np.zeros((2, every.eps.size))
-    rounds = sweep.rounds(every)
-    find_rides(rounds, chosen, viscosity, every.needs.warm)
-    has = np.array([len(rides) > 0 for rides in every.ground.rides])
-    nodes = np.where(has, NODES, every.needs.nodes)
-    return every._replace(needs=every.needs._replace(nodes=nodes)), rounds.spent
+def _first_attempt(
+    sweep: _Sweep, every: _Cellwise, ridden: np.ndarray
+) -> tuple[Answers, np.ndarray]:
+    """Answers of all cells, and which have an open bracket: those without rides aside.
+
+    Their lanes run while rides are found, which is mostly NumPy on one core.
+    """
+    some, others = np.flatnonzero(ridden), np.flatnonzero(~ridden)
+    if some.size == 0:
+        return sweep.attempt(every)
+    if others.size == 0:
+        return _with_rides(sweep, every, some)
+    with ThreadPoolExecutor(1) as aside:
+        # With both cores lanes would hold up every small program of the other thread.
+        beside = aside.submit(sweep._replace(workers=1).attempt, _some(every, others))
+        found, open_ = _with_rides(sweep, every, some)
+        parts = ((others, *beside.result()), (some, found, open_))
+    never = np.zeros(ridden.size, dtype=bool)
+    columns = []
+    for pair in zip(*(answers for _, answers, _ in parts), strict=True):
+        whole = np.empty((ridden.size, *pair[0].shape[1:]), pair[0].dtype)
+        whole[others], whole[some] = pair
+        columns.append(whole)
+    for which, _, open_ in parts:
+        never[which] = open_
+    return Answers(*columns), never
+
+
+def _with_rides(
+    sweep: _Sweep, every: _Cellwise, chosen: np.ndarray
+) -> tuple[Answers, np.ndarray]:
+    """An attempt at some cells after their rides have been found."""
+    some = _some(every, chosen)
+    rounds = sweep.rounds(some)
+    find_rides(rounds, some.cells.viscosity, some.needs.warm)
+    # The rides belong to the cells from here on: later attempts use them too.
+    every.ground.rides[chosen] = some.ground.rides
+    has = np.array([len(rides) > 0 for rides in some.ground.rides])
+    nodes = np.where(has, NODES, some.needs.nodes)
+    every.needs.nodes[chosen] = nodes
+    answers, never = sweep.attempt(some._replace(needs=some.needs._replace(nodes=nodes)))
+    spent = answers.steps + rounds.spent[0], answers.rejected + rounds.spent[1]
+    return answers._replace(steps=spent[0], rejected=spent[1]), never
 
 
 def prepare_cells(

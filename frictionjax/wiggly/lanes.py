@@ -18,7 +18,7 @@ from .rosenbrock import Tableau
 # XLA splits the arrays over threads, 0.17. A few jobs go through the narrow loop, whose
 # steps take less time.
 WIDTH, NARROW = 64, 8
-_FEW_JOBS = 20  # a step of the wide loop takes 2.6 times as long as one of the narrow
+FEW_JOBS = 20  # a step of the wide loop takes 2.6 times as long as one of the narrow
 # Wells that few jobs go through in a wide loop that is there before the narrow one is
 # compiled for them: 0.1 ms lost with each, where that takes 0.4 s to load, 2 s to compile.
 _PATIENCE = 4000
@@ -142,14 +142,16 @@ def march(
 
     program = scene, tableau, wanted
     width = WIDTH
-    if needed.jobs <= _FEW_JOBS:
+    if needed.jobs <= FEW_JOBS:
         width = _LOOPS.width_for(program, needed, _wells(cells, jobs, legs))
     found = _LOOPS.run((*program, width), needed, fill)
     return Arrivals(*np.asarray(found)[: needed.legs].T)
 
 
 def _wells(cells: Cells, jobs: Jobs, legs: Legs) -> float:
-    """Wells on the way of all jobs together."""
+    """Wells that few jobs go through one after the other in the narrow loop."""
     eps = np.asarray(cells.eps)[np.asarray(jobs.cell, dtype=int)]
-    periods = np.repeat(eps, np.asarray(jobs.past_leg - jobs.first_leg, dtype=int))
-    return float(np.sum(np.abs(legs.guide1 - legs.guide0) / periods))
+    count = np.asarray(jobs.past_leg - jobs.first_leg, dtype=int)
+    owner = np.repeat(np.arange(eps.size), count)
+    wells = np.bincount(owner, np.abs(legs.guide1 - legs.guide0) / eps[owner], eps.size)
+    return float(max(wells.max(), wells.sum() / NARROW))

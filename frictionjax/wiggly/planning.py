@@ -15,7 +15,7 @@ from ..programs import Program, in_chunks
 from ..scene import Scene
 from .forgetting import lag_forces
 from .lane import LaneScene
-from .layout import Needs, cost_of, longest_lane, wells_of
+from .layout import Needs, cost_of, wells_of
 from .path import Path
 from .rodas5p import RODAS5P
 from .rounds import LONG_MEMORY, MARGIN
@@ -42,11 +42,10 @@ _AFTER_SLIP, _SHORT_REST = 0.05, 0.2
 _SLIPS_FORGET = 1.5
 # Wells of a slide that are worth a slip map, where windows set off far back.
 _LONG_SLIDE = 60.0
-# Wells of lanes that take as long as a slip map, and those of them that take as long as one
-# of the longest lane. Most of a map's time is waiting, which the cells of a sweep share:
-# gamma = 1/2, eps = 1e-2 alone is faster without, 16 eps to 1e-4 slower by 14,000 steps in
-# a row.
-_MAP, _ALONE = 2e3, 11.0
+# Wells that one lane from z0 goes through in about the time of a slip map, for a sine. (16
+# eps to 1e-4, gamma = 1/2, seconds with maps from 1100, 1800, 2500 and 4000 on: 0.35, 0.26,
+# 0.25, 0.39; angular scene 0.58, 0.51, 0.43, 0.38.)
+_MAP = 2500.0
 WIDEST = 0.125  # reach of a sine, periods
 # Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2, 16
 # eps to 1e-4: 0.62 s at 1, 0.52 at 1.5 and 2, 0.73 at 3.)
@@ -175,18 +174,29 @@ def _choose(path: Path, eps: np.ndarray, needs: Needs, times: int, method: str) 
     return needs._replace(tile=np.maximum(needs.tile, outer / TILES))
 
 
-def _worth_a_map(
-    control: StepPlan, path: Path, eps: np.ndarray, needs: Needs, times: int, method: str
-) -> np.ndarray:
-    """Cells that remember too many slips for windows, and have slides worth a map."""
+def _long_memories(
+    control: StepPlan, path: Path, eps: np.ndarray, needs: Needs, method: str
+) -> tuple[np.ndarray, Needs]:
+    """Which cells follow slip maps: where windows would remember too many slips.
+
+    With few slips altogether one lane goes through all from z0, needing no bracket.
+    """
+    if method == "resolved":
+        return np.zeros(eps.size, dtype=bool), needs
+    long = needs.warm > LONG_MEMORY
     longest = np.max(np.abs(np.diff(path.states)), initial=0.0) / eps
-    long = (needs.warm > LONG_MEMORY) & (longest > _LONG_SLIDE) & (method != "resolved")
+    ridden = long & (longest > _LONG_SLIDE)
     if method == "auto":
-        wells = cost_of(path, eps, needs, times) + _ALONE * longest_lane(path, eps, needs)
-        # On narrow branches steps are shorter, and brackets stay open at first. (Angular
-        # scene, 16 eps to 1e-4: power 1 3.3 s, maps for all 2.5 s, for none 11.6 s.)
-        long &= wells * (WIDEST / np.asarray(control.reach)) ** 1.5 > _MAP
-    return long
+        # Steps are the shorter, the narrower the branches.
+        narrow = (WIDEST / np.asarray(control.reach)) ** (2 / 3)
+        way = path.travel[-1] / eps * narrow
+        ridden &= way > _MAP
+        alone = long & (way <= _MAP)
+        needs = needs._replace(
+            nodes=np.where(alone, 0, needs.nodes),
+            tile=np.where(alone, np.inf, needs.tile),
+        )
+    return ridden, needs
 
 
 class Planned(NamedTuple):
@@ -219,5 +229,5 @@ def planned(
     ground = ground_of(scene, path, eps, gamma, control.folds)
     needs = _needs(control, ground, path, accuracy)
     needs = _choose(path, eps, needs, times, method)
-    ridden = _worth_a_map(control, path, eps, needs, times, method)
+    ridden, needs = _long_memories(control, path, eps, needs, method)
     return Planned(control, ground, needs, ridden)

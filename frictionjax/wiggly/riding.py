@@ -6,7 +6,8 @@ import numpy as np
 
 from .curve import Curves
 from .job_queue import Arrivals
-from .rides import Ride, Rider, Seen, ride_through
+from .ride_starts import ride_through
+from .rides import Ride, Rider, Seen
 from .rounds import EARLIER, ROUNDS, Rounds, run_ups
 from .windows import Plan, Starts, Windows
 
@@ -20,10 +21,8 @@ _TIGHT_LOOK = 0.2  # of the tolerance: lanes that lead to the start of a slip ma
 _NOISE, _MOST_CHECKED = 0.03, 400.0
 
 
-def find_rides(
-    rounds: Rounds, cells: np.ndarray, viscosity: np.ndarray, warm: np.ndarray
-) -> None:
-    """Put the rides of some cells into the ground of the rounds."""
+def find_rides(rounds: Rounds, viscosity: np.ndarray, warm: np.ndarray) -> None:
+    """Put the rides of all cells into the ground of the rounds."""
     ground, folds = rounds.ground, rounds.ground.folds
     sides = {
         1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
@@ -32,27 +31,34 @@ def find_rides(
     cells_ = rounds.cells
     fixed = {name: _TIGHT_LOOK * getattr(cells_, name) for name in ("tolerance", "loosest")}
     closer = rounds._replace(cells=cells_._replace(**fixed), brief=None)
-    rider = Rider(rounds.scene, rounds.path, ground.eps, viscosity, sides, rounds.accuracy)
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
+    of_cells = ground.eps, viscosity, lag, sides
+    rider = Rider(rounds.scene, rounds.path, *of_cells, rounds.accuracy)
 
     def look(cell: np.ndarray, begin: np.ndarray, stop: np.ndarray) -> Seen:
         paired, one = np.ones(cell.size, dtype=bool), np.arange(cell.size)
         windows = Windows(cell, np.minimum(begin, stop), paired, one, stop)
         wells, back = run_ups(rounds, windows, warm), np.ones(cell.size)
+        found, open_ = Seen(*np.empty((3, cell.size))), one
         for _ in range(ROUNDS):
-            plan, found = closer.run(windows, wells, back)
-            seen = Seen(*_at_stops(rounds, plan, found, cell))
-            if np.all(seen.gap <= _SET_OFF * rounds.accuracy):
+            some = windows.chosen(open_)
+            plan, arrived = closer.run(some, wells[open_], back[open_])
+            for column, part in zip(found, _at_stops(rounds, plan, arrived), strict=True):
+                column[open_] = part
+            open_ = np.flatnonzero(~(found.gap <= _SET_OFF * rounds.accuracy))
+            if open_.size == 0:
                 break
-            wells, back = wells * EARLIER, back * EARLIER
-        return seen
+            wells[open_], back[open_] = wells[open_] * EARLIER, back[open_] * EARLIER
+        return found
 
     def keep(cell: int, ride: Ride) -> None:
         ground.rides[cell] = (*ground.rides[cell], ride)
 
-    ride_through(rider, cells, look, functools.partial(_errors, rounds), keep)
+    check = functools.partial(_errors, rounds)
+    ride_through(rider, np.arange(ground.eps.size), look, check, keep)
 
 
-def _at_stops(rounds: Rounds, plan: Plan, found: Arrivals, cell: np.ndarray):
+def _at_stops(rounds: Rounds, plan: Plan, found: Arrivals):
     """Well, tip and gap in wells of time at the one stop of each window."""
     a, b = plan.behind, np.maximum(plan.ahead, 0)
     way = (found.well[b] - found.well[a]) + (found.tip[b] - found.tip[a])

@@ -10,7 +10,7 @@ from ..scene import Scene
 from .brackets import gaps_of, shifts_of
 from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
-from .lanes import WIDTH, march
+from .lanes import FEW_JOBS, NARROW, WIDTH, march
 from .layout import Layout, Needs
 from .path import Path, states_at
 from .rosenbrock import Tableau
@@ -31,6 +31,8 @@ ROUNDS = 3
 EARLIER = 4  # times as far back in each round
 MARGIN = 3  # wells: one to fall behind, one to catch up, one to forget
 LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast slides are
+# Time of a step of a narrow loop, of a wide one's; and of all, what is worth two loops.
+_NARROW_STEP, _WORTH = 0.35, 0.9
 _BATCH = 1e5  # wells: a few seconds, between two reports
 
 Report = Callable[[float], None]
@@ -44,6 +46,30 @@ def _seats(count: int, seats: int) -> np.ndarray:
     """Seats dealt there and back, so that none gets all the lanes behind of brackets."""
     row, seat = np.divmod(np.arange(count), seats)
     return np.where(row % 2 == 0, seat, seats - 1 - seat)
+
+
+def longest_alone(cost: np.ndarray) -> int:
+    """How many of the longest jobs go through a narrow loop beside all others.
+
+    `cost` in wells, the longest first. 0 where two loops of the same width are as fast.
+    """
+    if cost.size < 2:
+        return 0
+    few = np.arange(1, min(NARROW, cost.size - 1) + 1)
+    left = cost.sum() - np.cumsum(cost)[few - 1]
+    others = _taken(cost.size - few, cost[few], left)
+    both = np.maximum(_taken(few, cost[0], cost[:1]), others)
+    half = cost.size / WORKERS
+    even = _taken(half, cost[0], cost.sum() / WORKERS)
+    best = int(np.argmin(both))
+    return int(few[best]) if both[best] < _WORTH * even else 0
+
+
+def _taken(jobs, longest, together):
+    """Time of a queue, in wells of a lane of the wide loop."""
+    narrow = jobs <= FEW_JOBS
+    lanes, step = np.where(narrow, NARROW, WIDTH), np.where(narrow, _NARROW_STEP, 1.0)
+    return step * np.maximum(longest, together / lanes)
 
 
 def _merged(one: Arrivals, other: Arrivals) -> Arrivals:
@@ -67,7 +93,8 @@ class Rounds(NamedTuple):
     """What all rounds of one sweep share.
 
     `brief` (cells,): tolerances of lanes on rides through a few wells; None: those of the
-    others. `spent` (2, cells): steps and rejected steps so far, added in place.
+    others. `workers`: queues at once. `spent` (2, cells): steps and rejected steps so far,
+    added in place.
     """
 
     scene: Scene
@@ -81,6 +108,7 @@ class Rounds(NamedTuple):
     report: Report
     spent: np.ndarray
     brief: np.ndarray | None
+    workers: int = WORKERS
 
     def run(self, windows: Windows, wells: np.ndarray, back: np.ndarray) -> Round:
         """March all windows, from `wells` of the path or `back` of a ride before them."""
@@ -107,12 +135,16 @@ class Rounds(NamedTuple):
         jobs, cells = self._steered(jobs, plan.brief)
         order = np.argsort(-cost, kind="stable")
         # Batches of less than two jobs a lane leave lanes idle.
-        most = max(order.size // (2 * WORKERS * WIDTH), 1)
+        most = max(order.size // (2 * self.workers * WIDTH), 1)
         batches = min(int(np.ceil(cost.sum() / _BATCH)), most)
         found = _nothing(legs)
-        seat = _seats(order.size, batches * WORKERS)
+        can = batches == 1 and self.workers > 1
+        alone = longest_alone(cost[order]) if can else 0
+        seat = _seats(order.size, batches * self.workers)
         for batch in range(batches):
-            queues = [order[seat == batch + i * batches] for i in range(WORKERS)]
+            queues = [order[seat == batch + i * batches] for i in range(self.workers)]
+            if alone:
+                queues = [order[:alone], order[alone:]]
             for part in _POOL.map(lambda q: self._queue(cells, jobs, legs, q), queues):
                 found = _merged(found, part)
             self.report(1 / batches)

@@ -12,24 +12,26 @@ def first_wells(
     potential: AbstractPotential,
     eps: np.ndarray,
     fold: np.ndarray,
-    side: float,
+    side: np.ndarray,
     viscosity: np.ndarray,
-    rate: float,
-    stiffness: float,
+    rate: np.ndarray,
+    stiffness: np.ndarray,
     wells: float,
 ) -> np.ndarray:
     """Seconds from the touch of the strip's edge until about `wells` are behind the tip.
 
     The slow equation averaged over a well, `X' = l' - Phi'' v(X)` for the force X beyond
-    the fold, on a grid that nears the steady X like 1 - exp(-u). Of cells, shape (C,):
-    `eps`, `fold`, tip coordinates of the extreme fold, and `viscosity`, eps^gamma. Of all:
-    `rate`, l' in N/s; `stiffness`, Phi'' in N/m.
+    the fold, on a grid that nears the steady X like 1 - exp(-u). Of slides, shape (n,):
+    `eps`, `fold`, tip coordinates of the extreme fold, `side`, 1 or -1, `viscosity`,
+    eps^gamma, `rate`, l' in N/s, not 0, and `stiffness`, Phi'' in N/m.
     """
-    well = from_fold_to_fold(potential, eps, fold, np.full(eps.size, side)).thinned()
-    passages = well.passages(np.tile(FORCES, (eps.size, 1)))
+    own = np.unique(np.stack([eps, side]), axis=1, return_index=True, return_inverse=True)
+    _, first, which = own
+    one = from_fold_to_fold(potential, eps[first], fold[first], side[first]).thinned()
+    passages = one.passages(np.tile(FORCES, (first.size, 1)))[which]
     speeds = -np.log(viscosity[:, None] * passages)
-    columns = zip(eps, speeds, strict=True)
-    return np.array([_wait(e, own, rate, stiffness, wells) for e, own in columns])
+    columns = zip(eps, speeds, rate, stiffness, strict=True)
+    return np.array([_wait(*slide, wells) for slide in columns])
 
 
 def _wait(eps: float, speeds: np.ndarray, rate: float, stiffness: float, wells: float):

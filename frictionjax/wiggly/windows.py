@@ -19,7 +19,6 @@ _FASTER = 1.5  # how much slides may have been faster, squared, where lanes set 
 # Wells: lags that are longer are taken at the speed of the moment. (At the largest speed
 # always: lanes of 300 wells in slow parts of slides at gamma = 0.4, where ten do.)
 _LONG_LAG = 5.0
-_FORGETS = 0.7  # share that a well leaves of a shift, where slides are slow
 _BRIEF = 20.0  # wells of a lane whose errors hardly add up
 _WHOLE = 1e-4  # wells: rounding of times, in numbers of wells
 
@@ -190,7 +189,7 @@ def _still_lagging(path: Path, rides: list[Ride], which: np.ndarray, time: np.nd
     some = np.flatnonzero(which >= 0)
     lagging = np.zeros(which.size, dtype=bool)
     if some.size:
-        fast = np.array([ride.curve.kept[-1] >= _FORGETS for ride in rides])[which[some]]
+        fast = np.array([ride.lags for ride in rides])[which[some]]
         turns = np.array([path.edges[ride.piece + 1] for ride in rides])[which[some]]
         lagging[some] = fast & (time[some] <= turns)
     return lagging
