@@ -245,7 +245,7 @@ def test_a_ride_reaches_the_end_of_a_slide_of_a_hundred_million_wells(monkeypatc
     for ride in rides[:2]:
         assert ride.curve.edges[-1] > 0.98 * ways[ride.piece]
         assert ride.curve.edges.size < 50
-        assert ride.curve.kept[-1] < 0.5
+        assert ride.curve.last < 0.5
     assert rides[2].end > 3.0 - 1e-6  # with the load's last instant, at full speed
 
 
@@ -275,7 +275,7 @@ def test_tiles_end_on_rides():
     edges, none = np.array([0.0, 100.0]), np.zeros((1, 13))
     series = none + np.eye(13)[1] * 0.5  # a second for a hundred wells
     series[0, 0] = 0.5
-    curve = Curve(edges, np.array([1.0, 2.0]), series, none[:, 0], none[:, 0] + 0.9)
+    curve = Curve(edges, np.array([1.0, 2.0]), series, none[:, 0], none[:, 0] + 0.9, 0.9)
     ride = Ride(curve, 1.0, 0.0, 0.0, 0, none[:, 0])
     times = np.array([0.0, 1.0, 1.15, 1.17, 1.33, 1.9, 2.0, 5.0])
     assert layout._on_rides((ride,), times).tolist() == [0, 0, 0, 1, 2, 5, 6, 6]

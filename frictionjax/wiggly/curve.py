@@ -13,7 +13,7 @@ class Curve(NamedTuple):
 
     `edges` (K+1,): numbers of lattice points. `starts` (K+1,): times there, s. `series`
     (K, degree + 1): of T less the panel's start. `tail` (K,): its last coefficients,
-    in wells. `kept` (K,): share of a shift that a well leaves of it.
+    in wells. `kept` (K,): share of a shift that a well leaves of it; `last`: at the end.
     """
 
     edges: np.ndarray
@@ -21,6 +21,7 @@ class Curve(NamedTuple):
     series: np.ndarray
     tail: np.ndarray
     kept: np.ndarray
+    last: float
 
     def time_of(self, number: np.ndarray) -> np.ndarray:
         """Time in s at which each lattice point is passed, numbers need not be whole."""

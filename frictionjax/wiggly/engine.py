@@ -10,7 +10,8 @@ from ..scene import Scene
 from .evaluation import Answers, evaluate
 from .lane import Cells, LaneScene, Sums
 from .lanes import Room, prepare
-from .layout import Needs, lay_out
+from .layout import lay_out
+from .needs import Needs
 from .path import Path, path_of
 from .planning import (
     LOOSEST,

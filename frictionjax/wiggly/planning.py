@@ -15,7 +15,7 @@ from ..programs import Program, in_chunks
 from ..scene import Scene
 from .forgetting import lag_forces
 from .lane import LaneScene
-from .layout import Needs, cost_of, wells_of
+from .needs import Needs, cost_of, wells_of
 from .path import Path
 from .rodas5p import RODAS5P
 from .rounds import LONG_MEMORY, MARGIN
@@ -44,8 +44,8 @@ _SLIPS_FORGET = 1.5
 _LONG_SLIDE = 60.0
 # Wells that one lane from z0 goes through in about the time of a slip map, for a sine. (16
 # eps to 1e-4, gamma = 1/2, seconds with maps from 1100, 1800, 2500 and 4000 on: 0.35, 0.26,
-# 0.25, 0.39; angular scene 0.58, 0.51, 0.43, 0.38.)
-_MAP = 2500.0
+# 0.25, 0.39.)
+_MAP = 2200.0
 WIDEST = 0.125  # reach of a sine, periods
 # Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2, 16
 # eps to 1e-4: 0.62 s at 1, 0.52 at 1.5 and 2, 0.73 at 3.)
@@ -188,7 +188,7 @@ def _long_memories(
     ridden = long & (longest > _LONG_SLIDE)
     if method == "auto":
         # Steps are the shorter, the narrower the branches.
-        narrow = (WIDEST / np.asarray(control.reach)) ** (2 / 3)
+        narrow = (WIDEST / np.asarray(control.reach)) ** 0.6
         way = path.travel[-1] / eps * narrow
         ridden &= way > _MAP
         alone = long & (way <= _MAP)

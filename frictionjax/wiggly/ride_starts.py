@@ -96,7 +96,7 @@ def _overshooting(
     rows = []
     for c in cells:
         ride = last.get(c)
-        if ride is None or ride.piece != piece - 1 or ride.curve.kept[-1] < _FAST:
+        if ride is None or ride.piece != piece - 1 or ride.curve.last < _FAST:
             continue
         pace = _pace(ride)
         well = ride.well + ride.sign * ride.curve.edges[-1]

@@ -17,8 +17,9 @@ from .path import Path
 from .slip_map import Slides, follow
 
 _NARROW = 0.2  # of the force beyond the fold at the start: the smallest one on the way
-# Share that a well leaves of a shift, below which tips come to rest where the path does.
-RESTS = 0.6
+# Share that a well leaves of a shift, below which tips come to rest where the path does:
+# slides lag by half the wells that they remember, 1.4 here.
+RESTS = 0.7
 
 
 class Ride(NamedTuple):
@@ -49,7 +50,7 @@ class Ride(NamedTuple):
     @property
     def lags(self) -> bool:
         """Whether the tip is behind the path where the ride ends, by more than a slip."""
-        return bool(self.curve.kept[-1] > RESTS)
+        return bool(self.curve.last > RESTS)
 
 
 def last_begun(rides: np.ndarray, cell: np.ndarray, time: np.ndarray):

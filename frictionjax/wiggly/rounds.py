@@ -11,7 +11,8 @@ from .brackets import gaps_of, shifts_of
 from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
 from .lanes import FEW_JOBS, NARROW, WIDTH, march
-from .layout import Layout, Needs
+from .layout import Layout
+from .needs import Needs
 from .path import Path, states_at
 from .rosenbrock import Tableau
 from .stops import Found

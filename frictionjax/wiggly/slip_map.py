@@ -249,7 +249,10 @@ def follow(scene: Scene, slides: Slides, accuracy: float) -> list[Curve | None]:
             for p in held:
                 kept = np.exp(np.mean(np.log(solved.kept[p])))
                 times, span = solved.times[p], panels.span[p]
-                found[c].append((first[c], times[0], span, times, solved.tail[p], kept))
+                last = solved.kept[p, -1]
+                found[c].append(
+                    (first[c], times[0], span, times, solved.tail[p], kept, last)
+                )
                 first[c], time[c] = first[c] + span, times[-1]
             if held.size == mine.size:
                 # The averaged equation may end a fast slide wells too early.
@@ -276,10 +279,11 @@ def _curve(panels: list[tuple]) -> Curve | None:
     if not panels:
         return None
     columns = [np.array(c) for c in zip(*panels, strict=True)]
-    first, time, span, times, tail, kept = columns
+    first, time, span, times, tail, kept, last = columns
     series = (times - times[:, :1]) @ _TO_SERIES.T
     edges = np.append(first, first[-1] + span[-1])
-    return Curve(edges, np.append(time, times[-1, -1]), series, tail, kept)
+    starts = np.append(time, times[-1, -1])
+    return Curve(edges, starts, series, tail, kept, float(last[-1]))
 
 
 def _chosen(slides: Slides, which: np.ndarray) -> Slides:

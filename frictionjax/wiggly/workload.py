@@ -8,7 +8,7 @@ from ..potentials import BristlePotential
 from ..profiles import Fourier
 from ..scene import Scene
 from .lane import LaneScene
-from .layout import Needs, cost_of, longest_lane, wells_a_leg, wells_of
+from .needs import Needs, cost_of, longest_lane, wells_a_leg, wells_of
 from .path import Path, path_of
 from .planning import LOOSEST, WIDEST, lane_scene, planned
 from .series_bristle import SeriesBristle

@@ -1,0 +1,143 @@
+"""The parts of slides of which only some periods are measured, and which periods."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..scene import Scene
+from .needs import TAIL, Needs, inner_wells
+from .path import Path, states_at, times_at
+from .survey import nodes_of
+
+# Wells of a part for each node that is measured in it. On fewer, nodes moved to whole wells
+# are no Chebyshev points any more; and behind rides periods still change in shape.
+_SPARSE, _FEW = 6, 20
+
+
+class Parts(NamedTuple):
+    """Inner parts of slides: cell, piece, first and last well of the slide, times.
+
+    `ride`: which of the cell's, with wells counted from its start; -1 where wells are those
+    of the path. `nodes`: periods to be measured.
+    """
+
+    cell: np.ndarray
+    piece: np.ndarray
+    first: np.ndarray
+    last: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    ride: np.ndarray
+    nodes: np.ndarray
+
+
+def level_at(path: Path, eps: np.ndarray, needs: Needs, cell, piece, well) -> np.ndarray:
+    """The path's state in m at a lattice point of a slide."""
+    way = (well + needs.offset[cell, piece]) * eps[cell]
+    return path.states[piece] + path.direction[piece] * way
+
+
+def _path_parts(scene: Scene, path: Path, eps, needs: Needs, rides) -> Parts:
+    """Inner parts of slides that are known from brackets: all but those with rides."""
+    ways = np.abs(np.diff(path.states))[None, :] / eps[:, None]
+    inner = inner_wells(ways, needs)
+    for c in range(eps.size):
+        inner[c, [ride.piece for ride in rides[c]]] = 0.0
+    cell, piece = np.nonzero(inner)
+    first = np.ceil(needs.settle)[cell]
+    last = first + inner[cell, piece]
+    nodes = needs.nodes[cell]
+    return _between(scene, path, eps, needs, cell, piece, first, last, nodes)
+
+
+def _between(scene, path, eps, needs: Needs, cell, piece, first, last, nodes) -> Parts:
+    """Parts between wells of the path."""
+    levels = [level_at(path, eps, needs, cell, piece, well) for well in (first, last)]
+    both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
+    low, high = np.split(both, 2)
+    none = np.full(cell.size, -1)
+    return Parts(cell, piece, first, last, low, high, none, nodes)
+
+
+def _ridden_parts(needs: Needs, rides: np.ndarray) -> list[tuple]:
+    """Each panel of a ride that is long enough to be known from some of its wells."""
+    rows = []
+    for c in range(needs.nodes.size):
+        # Panels hold times that are polynomials already: half the nodes do.
+        count = needs.nodes[c] // 2 + 1
+        for index, ride in enumerate(rides[c] if needs.nodes[c] > 0 else ()):
+            edges, starts = ride.curve.edges, ride.curve.starts
+            for k in np.flatnonzero(np.diff(edges) > _SPARSE * count):
+                span = edges[k], edges[k + 1], starts[k], starts[k + 1]
+                rows.append((c, ride.piece, *span, index, count))
+    return rows
+
+
+def _rests_of_slides(scene: Scene, path: Path, eps, needs: Needs, rides) -> list[tuple]:
+    """Where rides end because slides turn slow: the path's wells from there on."""
+    cells = [c for c in range(eps.size) if needs.nodes[c] > 0]
+    last = [(c, ride) for c in cells for ride in _last_of_pieces(path, rides[c])]
+    ends = np.array([ride.end for _, ride in last])
+    rows = []
+    for (c, ride), at in zip(last, states_at(scene, path, ends), strict=True):
+        piece = ride.piece
+        way = abs(path.states[piece + 1] - path.states[piece]) / eps[c]
+        first = np.ceil(abs(at - path.states[piece]) / eps[c]) + TAIL
+        past = np.floor(way - needs.offset[c, piece]) - TAIL
+        if ride.end > path.touch[piece] and past - first > _FEW * needs.nodes[c]:
+            # Slides turn from fast to slow there: 17 nodes leave 6e-4 eps.
+            rows.append((c, piece, first, past, 2 * needs.nodes[c]))
+    return rows
+
+
+def _last_of_pieces(path: Path, rides: tuple) -> list:
+    """The last ride of each piece, where it goes the piece's way."""
+    last = {ride.piece: ride for ride in rides}
+    return [r for r in last.values() if path.direction[r.piece] == r.sign]
+
+
+def inner_parts(scene: Scene, path: Path, eps, needs: Needs, rides: np.ndarray) -> Parts:
+    parts = [_path_parts(scene, path, eps, needs, rides)]
+    ridden = _ridden_parts(needs, rides)
+    if ridden:
+        parts.append(Parts(*(np.array(column) for column in zip(*ridden, strict=True))))
+    rest = _rests_of_slides(scene, path, eps, needs, rides)
+    if rest:
+        columns = (np.array(column) for column in zip(*rest, strict=True))
+        parts.append(_between(scene, path, eps, needs, *columns))
+    return Parts(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+def sampled(scene: Scene, path: Path, eps, needs: Needs, parts: Parts, rides: np.ndarray):
+    """Wells whose passage is measured in each inner part, and times before and after."""
+    wells, owner = [], []
+    nodes = [
+        nodes_of(float(low), float(high), int(count))
+        for count, low, high in zip(parts.nodes, parts.low, parts.high, strict=True)
+    ]
+    states = states_at(scene, path, np.concatenate([*nodes, np.zeros(0)]))
+    cuts = np.cumsum([times.size for times in nodes])
+    for i, here in enumerate(np.split(states, cuts)[:-1] if nodes else []):
+        if parts.ride[i] >= 0:
+            at = rides[parts.cell[i]][parts.ride[i]].curve.number_at(nodes[i])
+        else:
+            way = np.abs(here - path.states[parts.piece[i]])
+            at = way / eps[parts.cell[i]] - needs.offset[parts.cell[i], parts.piece[i]]
+        at = np.clip(np.round(at), parts.first[i], parts.last[i] - 1)
+        wells.append(np.unique(at))
+        owner.append(np.full(wells[-1].size, i))
+    if not wells:
+        empty = np.zeros(0)
+        return empty.astype(int), empty, empty
+    at, who = np.concatenate(wells), np.concatenate(owner)
+    start, end = np.empty(at.size), np.empty(at.size)
+    plain = np.flatnonzero(parts.ride[who] < 0)
+    cell, piece = parts.cell[who[plain]], parts.piece[who[plain]]
+    levels = [level_at(path, eps, needs, cell, piece, at[plain] + k) for k in (0, 1)]
+    both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
+    start[plain], end[plain] = np.split(both, 2)
+    for i in np.flatnonzero(parts.ride >= 0).tolist():
+        mine = np.flatnonzero(who == i)
+        curve = rides[parts.cell[i]][parts.ride[i]].curve
+        start[mine], end[mine] = curve.time_of(at[mine]), curve.time_of(at[mine] + 1)
+    return who, start, end
