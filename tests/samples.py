@@ -6,10 +6,16 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 
 import frictionjax as fx
 
 BRISTLES = ("homothetic", "vertical", "slanted", "angular", "custom")
+# Where each compiles a program: the others are slanted springs upright, and no offset.
+FEW_BRISTLES = (
+    *("slanted", "angular", "custom"),
+    *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("homothetic", "vertical")),
+)
 PROFILES = ("sine", "fourier", "spline", "custom")
 
 

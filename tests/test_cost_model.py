@@ -61,7 +61,9 @@ def test_the_work_is_foreseen(eps, gamma, accuracy, method):
 @pytest.mark.parametrize(
     ("eps", "gamma", "times", "method"),
     [
-        ([5e-2, 1e-2, 1e-3], [1.0, 2.0], 401, "auto"),
+        pytest.param(
+            *([5e-2, 1e-2, 1e-3], [1.0, 2.0], 401, "auto"), marks=pytest.mark.slow
+        ),
         ([1e-5], [1.0], 401, "auto"),
         ([1e-3], [1.0], 2001, "resolved"),
     ],

@@ -96,7 +96,7 @@ def executed(monkeypatch, solver, accuracy):
 @pytest.mark.parametrize(
     "solver",
     [
-        diffrax.Kvaerno3(),
+        pytest.param(diffrax.Kvaerno3(), marks=pytest.mark.slow),
         pytest.param(diffrax.ImplicitEuler(), marks=pytest.mark.slow),
         pytest.param(diffrax.Tsit5(), marks=pytest.mark.slow),
         pytest.param(_Twice(), marks=pytest.mark.slow),

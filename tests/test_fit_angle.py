@@ -56,7 +56,13 @@ def number_of(free, part):
     return float(numbers)
 
 
-@pytest.mark.parametrize(("kind", "free", "factor"), DESIGNS)
+@pytest.mark.parametrize(
+    ("kind", "free", "factor"),
+    [
+        pytest.param(*one, marks=pytest.mark.slow) if one[0] in WANTED else one
+        for one in DESIGNS
+    ],
+)
 def test_random_reachable_targets_are_met(kind, free, factor):
     rng = np.random.default_rng(5)
     worst = 0.0
@@ -301,6 +307,7 @@ def test_sensitivities_are_central_differences(free):
     np.testing.assert_allclose(batch.sensitivities.target, slopes[0], rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_sensitivities_of_a_batch_are_those_of_its_targets():
     batch = fx.fit_angle(WAVES, SLANTED, ratio=np.array([1.1, 1.3, 1.2]))
     many = batch.sensitivities

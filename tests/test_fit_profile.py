@@ -325,3 +325,19 @@ def test_units_do_not_matter():
     tiny = fx.fit_profile(fx.Target(HOMOTHETIC, 3e-6, -1e-6), starts=2)
     np.testing.assert_allclose(1e5 * tiny.profile.sin, large.profile.sin, rtol=1e-5)
     assert jnp.all(jnp.isfinite(tiny.profile.sin))
+
+
+def test_a_closed_form_is_taken_and_told():
+    """The same surface as by descent, to what the barrier leaves; proven to rounding."""
+    target = fx.Target(HOMOTHETIC, 0.3, -0.2)
+    fit = fx.fit_profile(target, starts=2)
+    assert fit.success
+    assert fit.largest_error < 1e-13
+    assert fit.bending_energy == pytest.approx(fit.bending_bound, rel=1e-12)
+    assert [start.steps for start in fit.starts] == [1, 1]
+    # With bounds on heights, not felt, the same problem goes through the barrier.
+    unfelt = {"largest_amplitude": 10.0, "smallest_radius": 1e-3}
+    other = fx.fit_profile(target, starts=2, **unfelt)
+    assert min(start.steps for start in other.starts) > 10
+    assert fit.bending_energy <= other.bending_energy <= fit.bending_energy * 1.001
+    assert np.max(np.abs(fit.profile.sin - other.profile.sin)) < 1e-3

@@ -5,7 +5,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from samples import central, pair
+from samples import FEW_BRISTLES, central, pair
 
 import frictionjax as fx
 from frictionjax.friction_law import (
@@ -28,7 +28,11 @@ def test_R_is_positively_homogeneous():
 
 @pytest.mark.parametrize(
     "kind",
-    ["vertical", "slanted", pytest.param("angular", marks=pytest.mark.slow), "given"],
+    [
+        "slanted",
+        "given",
+        *(pytest.param(k, marks=pytest.mark.slow) for k in ("angular", "vertical")),
+    ],
 )
 def test_K_against_brute_quadrature(kind):
     if kind == "given":
@@ -49,7 +53,7 @@ def test_K_against_brute_quadrature(kind):
     np.testing.assert_allclose(found, brute, atol=3e-8 * size)  # of the midpoint rule
 
 
-@pytest.mark.parametrize("kind", ["homothetic", "slanted", "angular", "custom"])
+@pytest.mark.parametrize("kind", FEW_BRISTLES)
 def test_K_is_above_its_argument_inside_only(kind):
     for surface in ("sine", "fourier"):
         parts = pair(surface, kind, 1, 8)

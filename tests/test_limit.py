@@ -83,7 +83,9 @@ LAWS = {
 }
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(
+    "law", ["spring", "quartic", pytest.param("log cosh", marks=pytest.mark.slow)]
+)
 def test_against_incremental_minimisation(law):
     support, force, stiffness = LAWS[law]
     ts = np.linspace(0, 3, 90_001)
@@ -96,8 +98,15 @@ def test_against_incremental_minimisation(law):
     assert np.all(np.diff(found.dissipation) > -1e-15)
 
 
-@pytest.mark.parametrize("support", [SPRING, QUARTIC])
-@pytest.mark.parametrize("load", [LOOPS, fx.loads.Sine(1.3, 0.9)])
+@pytest.mark.parametrize(
+    ("load", "support"),
+    [
+        (fx.loads.Sine(1.3, 0.9), SPRING),
+        (LOOPS, QUARTIC),
+        pytest.param(LOOPS, SPRING, marks=pytest.mark.slow),
+        pytest.param(fx.loads.Sine(1.3, 0.9), QUARTIC, marks=pytest.mark.slow),
+    ],
+)
 def test_values_do_not_depend_on_the_times_asked_for(load, support):
     problem = scene(load, support)
     ts = jnp.linspace(0, 3, 73)

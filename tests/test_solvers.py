@@ -35,10 +35,9 @@ def truth(scene):
     [
         "auto",
         "windowed",
-        diffrax.Dopri8(),
         *(
             pytest.param(m, marks=pytest.mark.slow)
-            for m in ("Kvaerno5", "Tsit5", diffrax.Kvaerno3)
+            for m in (diffrax.Dopri8(), "Kvaerno5", "Tsit5", diffrax.Kvaerno3)
         ),
     ],
     ids=str,

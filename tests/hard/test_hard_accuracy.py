@@ -15,6 +15,7 @@ _LATE = (
     "slips shorter than floats",
     "soft support",
     "gamma 4",
+    "gamma 0.05",
 )
 
 
