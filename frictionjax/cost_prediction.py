@@ -89,8 +89,7 @@ def _predicted(
 
 def _one(work: Workload, cell: int) -> Workload:
     some = slice(cell, cell + 1)
-    steps, chain, jobs, legs = (column[some] for column in work[:4])
-    return Workload(steps, chain, jobs, legs, work.weight)
+    return Workload(*(column[some] for column in work[:-1]), weight=work.weight)
 
 
 def predict_cost(

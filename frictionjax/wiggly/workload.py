@@ -23,7 +23,8 @@ _CONSTANT, _TOLERANCE, _LAG, _NARROW = 1.278, 0.417, -0.092, 0.41
 _SMOOTH, _BELOW_TENTH, _BELOW_ONE = -0.131, 0.505, 1.466
 # Rides, in the same cells: steps over those of one run-up; and wells that lanes, one after
 # the other, wait for each other. Both for a thousand wells, and how they grow with wells.
-_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH = 1.5, 8e2, 0.05
+# Steps are twice as many as measured on the vertical scene, half on the angular one.
+_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH = 4.0, 4e2, 0.05
 # What a step costs more: for each harmonic after the first (1.2 at 4, 2.3 at 16, 5.7 at 64
 # were measured), for each degree of the bristle's series after the first (1.35 at 4), and
 # for a bristle without one.
@@ -34,14 +35,15 @@ class Workload(NamedTuple):
     """Work of lanes in each cell, shape (cells,).
 
     `steps`: of all lanes. `chain`: those that one lane takes after the other. `jobs`:
-    lanes that set off; `legs`: of their ways. `weight`: of a step, relative to a linear
-    spring on a sine.
+    lanes that set off; `legs`: of their ways. `ridden`: whether slip maps are made.
+    `weight`: of a step, relative to a linear spring on a sine.
     """
 
     steps: np.ndarray
     chain: np.ndarray
     jobs: np.ndarray
     legs: np.ndarray
+    ridden: np.ndarray
     weight: float
 
 
@@ -70,7 +72,7 @@ def workload(
     total = np.where(ridden, _RIDE_STEPS * needs.warm * steps * growth, total)
     chain = np.where(ridden, _RIDE_CHAIN * steps * growth, chain)
     jobs, legs = _rows(path, eps, needs, times)
-    return Workload(total, chain, jobs, legs, _weight_of(lanes))
+    return Workload(total, chain, jobs, legs, ridden, _weight_of(lanes))
 
 
 def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
