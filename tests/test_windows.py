@@ -9,7 +9,7 @@ from reference import solve as solve_plainly
 import frictionjax as fx
 from frictionjax.wiggly import engine, planning, rounds
 from frictionjax.wiggly.path import path_of, states_at, times_at
-from frictionjax.wiggly.windows import starts_of
+from frictionjax.wiggly.starts import starts_of
 
 TIMES = np.linspace(0.0, 3.0, 31)
 SINE = fx.loads.Sine(1.0488, 3.0)

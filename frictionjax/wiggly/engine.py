@@ -24,8 +24,8 @@ from .planning import (
 from .riding import find_rides
 from .rosenbrock import Tableau
 from .rounds import CLOSED, WORKERS, Report, Rounds, collect
+from .starts import Ground
 from .status import Status
-from .windows import Ground
 
 _MOST_NODES, _SURVEYS = 65, 3
 # Wells that one lane alone goes through at most: a minute or two.

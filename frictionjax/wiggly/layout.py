@@ -10,7 +10,8 @@ from .needs import WELLS_A_LEG, Needs, wells_a_leg
 from .path import Path, states_at, times_at
 from .rides import last_begun
 from .slide_parts import Parts, inner_parts, level_at, sampled
-from .windows import Windows, way_at
+from .starts import way_at
+from .windows import Windows
 
 
 class Slide(NamedTuple):

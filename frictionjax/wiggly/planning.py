@@ -20,9 +20,9 @@ from .path import Path
 from .rodas5p import RODAS5P
 from .rounds import LONG_MEMORY, MARGIN
 from .series_bristle import series_of
+from .starts import Ground
 from .tolerance import Folds, plan_steps, pull_of
 from .tolerance import Plan as StepPlan
-from .windows import Ground
 
 # Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as fast
 # for one cell, as lanes wait for the longest tile; three times: 0.7.) Of the whole sweep

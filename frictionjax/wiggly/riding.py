@@ -9,7 +9,8 @@ from .job_queue import Arrivals
 from .ride_starts import ride_through
 from .rides import Ride, Rider, Seen
 from .rounds import EARLIER, ROUNDS, Rounds, run_ups
-from .windows import Plan, Starts, Windows
+from .starts import Starts
+from .windows import Plan, Windows
 
 # Tolerance of the lanes that measure a slip map; errors of the map at its start, as lanes
 # leave it, and at least, of the accuracy. (At 0.1 brackets of times in the first wells of a

@@ -15,16 +15,9 @@ from .layout import Layout
 from .needs import Needs
 from .path import Path, states_at
 from .rosenbrock import Tableau
+from .starts import Ground, Starts, slow_share, starts_of
 from .stops import Found
-from .windows import (
-    Ground,
-    Plan,
-    Starts,
-    Windows,
-    plan_windows,
-    slow_share,
-    starts_of,
-)
+from .windows import Plan, Windows, plan_windows
 
 WORKERS = 2  # XLA runs each queue of lanes on one core
 CLOSED = 0.5  # of the accuracy: gaps of brackets accepted
