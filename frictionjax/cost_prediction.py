@@ -89,7 +89,8 @@ def _predicted(
 
 def _one(work: Workload, cell: int) -> Workload:
     some = slice(cell, cell + 1)
-    return Workload(*(column[some] for column in work[:-1]), weight=work.weight)
+    steps, chain, jobs, legs, ridden = (column[some] for column in work[:-1])
+    return Workload(steps, chain, jobs, legs, ridden, work.weight)
 
 
 def predict_cost(
