@@ -8,6 +8,7 @@ eps at eps = 1e-2.
 
 import itertools
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -15,6 +16,7 @@ import numpy as np
 from scipy.integrate import LSODA
 
 TWO_PI = 2 * math.pi
+_RESTARTS, _SHORT = 1000, 1e-4  # of a piece; first step of each over the longest
 
 
 @dataclass(frozen=True)
@@ -95,12 +97,19 @@ def _tip(system: System, eps: float, z: float) -> float:
 
 def _piece(rates, start: float, end: float, state, times, longest: float):
     """States at `times`, increasing, the last of them `end`."""
-    solver = LSODA(rates, start, state, end, rtol=1e-11, atol=1e-11, max_step=longest)
-    found = np.empty((len(times), 2))
-    done = 0
+    found, done, left = np.empty((len(times), 2)), 0, _RESTARTS
+    solver = _lsoda(rates, start, state, end, longest)
     while solver.status == "running":
         before = solver.y[0]
-        message = solver.step()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of the failure that is looked at here
+            message = solver.step()
+        if solver.status == "failed" and left:
+            # Where G is nearly 0 a Jacobian from a step ago is none: begin again.
+            left -= 1
+            where = solver.t, solver.y, end
+            solver = _lsoda(rates, *where, longest, first_step=_SHORT * longest)
+            continue
         assert solver.status != "failed", message
         assert abs(solver.y[0] - before) < 0.25, "a step over a quarter of a well"
         upto = int(np.searchsorted(times, solver.t, side="right"))
@@ -108,6 +117,12 @@ def _piece(rates, start: float, end: float, state, times, longest: float):
             found[done:upto] = solver.dense_output()(times[done:upto]).T
             done = upto
     return found
+
+
+def _lsoda(rates, start: float, state, end: float, longest: float, **options) -> LSODA:
+    return LSODA(
+        rates, start, state, end, rtol=1e-11, atol=1e-11, max_step=longest, **options
+    )
 
 
 def slip_shift(system: System, eps: float) -> float:
