@@ -59,9 +59,10 @@ def fit_profile(
 
     Coefficients see only the extreme slopes (Lemmas 2 and 3), so infinitely many surfaces
     fit: this is the one with the least `int_0^1 w''^2`; `.bending_bound` proves how near.
-    `.identifiability` and `.family` say what is left open. Every iterate is admissible
-    (`1 + a omega > 0`, the bristles' own bounds) and keeps the other bounds with a margin
-    of 0.5%. Targets that no surface meets come back with the best weighted compromise and
+    `.identifiability` and `.family` say what is left open. Where nothing is flattened and
+    no bound is felt it has a closed form, which every start takes in one step. Every other
+    iterate is admissible (`1 + a omega > 0`, the bristles' own bounds) and keeps the other
+    bounds with a margin of 0.5%. Targets that no surface meets come back with the best weighted compromise and
     a `.status` and `.message` that say why.
 
     Raises `ValueError` for targets of the wrong sign, shape or kind, weights or
