@@ -101,11 +101,9 @@ def _piece(rates, start: float, end: float, state, times, longest: float):
     solver = _lsoda(rates, start, state, end, longest)
     while solver.status == "running":
         before = solver.y[0]
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of the failure that is looked at here
-            message = solver.step()
+        message = solver.step()
         if solver.status == "failed" and left:
-            # Where G is nearly 0 a Jacobian from a step ago is none: begin again.
+            # Seen in the first step after a kink, where G is nearly 0.
             left -= 1
             where = solver.t, solver.y, end
             solver = _lsoda(rates, *where, longest, first_step=_SHORT * longest)
@@ -150,7 +148,10 @@ def solve(
     for start, end in itertools.pairwise(edges):
         inside = wanted[(wanted > start) & (wanted <= end)]
         times = np.union1d(inside, [end])
-        states = _piece(rates, start, end, state, times, longest)
+        with warnings.catch_warnings():
+            # LSODA's own of a failure, which `_piece` looks at.
+            warnings.filterwarnings("ignore", "lsoda", UserWarning)
+            states = _piece(rates, start, end, state, times, longest)
         z = _state(system, eps, states[:, 0])
         found |= dict(zip(times, zip(z, states[:, 1], strict=True), strict=True))
         state = list(states[-1])

@@ -231,8 +231,8 @@ def test_a_ride_reaches_the_end_of_a_slide_of_a_hundred_million_wells(monkeypatc
     """
     rides = []
 
-    def only_rides(rounds, viscosity, warm):
-        riding.find_rides(rounds, viscosity, warm)
+    def only_rides(rounds, warm):
+        riding.find_rides(rounds, warm)
         rides.extend(rounds.ground.rides[0])
         raise InterruptedError
 

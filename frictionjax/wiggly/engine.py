@@ -221,7 +221,7 @@ def _with_rides(
     """An attempt at some cells after their rides have been found."""
     some = _some(every, chosen)
     rounds = sweep.rounds(some)
-    find_rides(rounds, some.cells.viscosity, some.needs.warm)
+    find_rides(rounds, some.needs.warm)
     # The rides belong to the cells from here on: later attempts use them too.
     every.ground.rides[chosen] = some.ground.rides
     has = np.array([len(rides) > 0 for rides in some.ground.rides])

@@ -22,7 +22,7 @@ _TIGHT_LOOK = 0.2  # of the tolerance: lanes that lead to the start of a slip ma
 _NOISE, _MOST_CHECKED = 0.03, 400.0
 
 
-def find_rides(rounds: Rounds, viscosity: np.ndarray, warm: np.ndarray) -> None:
+def find_rides(rounds: Rounds, warm: np.ndarray) -> None:
     """Put the rides of all cells into the ground of the rounds."""
     ground, folds = rounds.ground, rounds.ground.folds
     sides = {
@@ -33,7 +33,7 @@ def find_rides(rounds: Rounds, viscosity: np.ndarray, warm: np.ndarray) -> None:
     fixed = {name: _TIGHT_LOOK * getattr(cells_, name) for name in ("tolerance", "loosest")}
     closer = rounds._replace(cells=cells_._replace(**fixed), brief=None)
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
-    of_cells = ground.eps, viscosity, lag, sides
+    of_cells = ground.eps, cells_.viscosity, lag, sides
     rider = Rider(rounds.scene, rounds.path, *of_cells, rounds.accuracy)
 
     def look(cell: np.ndarray, begin: np.ndarray, stop: np.ndarray) -> Seen:

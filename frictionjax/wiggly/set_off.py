@@ -25,8 +25,8 @@ def first_wells(
     `eps`, `fold`, tip coordinates of the extreme fold, `side`, 1 or -1, `viscosity`,
     eps^gamma, `rate`, l' in N/s, not 0, and `stiffness`, Phi'' in N/m.
     """
-    own = np.unique(np.stack([eps, side]), axis=1, return_index=True, return_inverse=True)
-    _, first, which = own
+    sides = np.stack([eps, side])
+    _, first, which = np.unique(sides, axis=1, return_index=True, return_inverse=True)
     one = from_fold_to_fold(potential, eps[first], fold[first], side[first]).thinned()
     passages = one.passages(np.tile(FORCES, (first.size, 1)))[which]
     speeds = -np.log(viscosity[:, None] * passages)
