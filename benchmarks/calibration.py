@@ -58,7 +58,7 @@ def cells(scene, eps, gamma, method):
     when = instants(scene, eps, TIMES)
     way = "resolved" if eps >= EVERY_SLIP else "windowed"
     z, spent, _ = solved(scene, eps, gamma, when, 1e-8, way)
-    counted = np.abs(z[:, 2] - z[:, 0]) <= 0.05 * eps
+    counted = ~when.in_slip(z, eps, float(scene.duration))
     keep = np.zeros(when.ts.size, dtype=bool)
     keep[when.asked] = True
     counted &= keep

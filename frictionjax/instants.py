@@ -9,6 +9,7 @@ from .scene import Scene
 
 _SLIP_TIMES = 32  # over one whole slip period
 _SHIFT = 0.005  # share of a slip period within which a slip is looked for
+_MOVES = 0.05  # eps: a slip moves z by more within both shifts of its instant
 
 
 class Instants(NamedTuple):
@@ -32,6 +33,15 @@ class Instants(NamedTuple):
         times = np.clip(times, 0, end)
         order = np.argsort(times, kind="stable")
         return times[order], np.argsort(order, kind="stable").reshape(3, -1)
+
+    def in_slip(self, around: np.ndarray, eps: float, end: float) -> np.ndarray:
+        """Which instants are inside a slip, by the states (..., 3, n) around them, in m.
+
+        Where a scene begins or ends only one side is known and stands for both.
+        """
+        cut = (self.ts < self.shift) | (self.ts > end - self.shift)
+        moved = np.abs(around[..., 2, :] - around[..., 0, :])
+        return np.where(cut, 2.0, 1.0) * moved > _MOVES * eps
 
 
 def slips_of(scene: Scene, eps: float) -> float:

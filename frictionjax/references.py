@@ -14,7 +14,6 @@ from .wiggly.trajectory import solve
 
 # Slips that lanes one after the other (0.4 ms each) and side by side (10 us) may take.
 _ONE_BY_ONE, _EVERY = 2e4, 2e6
-_MOVES = 0.05  # eps: a slip moves z by more within the shifts of its instant
 _TIGHTER, _TIGHTEST = 1e-2, 1e-9
 
 
@@ -59,7 +58,7 @@ def reference(
             found.append(_Found(f"{name} at {asked:.0e}", z, spent[1]))
         if len(found) == 2:
             break
-    return _compared(when, eps, found)
+    return _compared(when, eps, float(scene.duration), found)
 
 
 def _ways(slips: float, tight: float) -> Iterator[tuple]:
@@ -71,14 +70,14 @@ def _ways(slips: float, tight: float) -> Iterator[tuple]:
     yield "windows", "windowed", max(0.1 * tight, 0.1 * _TIGHTEST)
 
 
-def _compared(when: Instants, eps: float, found: list[_Found]) -> Reference:
+def _compared(when: Instants, eps: float, end: float, found: list[_Found]) -> Reference:
     unknown = dict.fromkeys(MEASURES, float("inf"))
     if not found:
         blank = np.full(when.ts.size, np.nan)
         return Reference(blank, blank, np.zeros(when.ts.size, dtype=bool), unknown, "none")
     ways = " against ".join(one.way for one in found)
-    (before, z, after), spent = found[0].z, found[0].dissipation
-    in_slip = np.abs(after - before) > _MOVES * eps
+    z, spent = found[0].z[1], found[0].dissipation
+    in_slip = when.in_slip(found[0].z, eps, end)
     errors = unknown
     if len(found) == 2:
         other = found[1]

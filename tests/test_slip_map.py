@@ -13,11 +13,11 @@ from scipy.integrate import solve_ivp
 import frictionjax as fx
 from frictionjax.wiggly import engine, layout, riding, rounds, slip_map
 from frictionjax.wiggly.curve import Curve
+from frictionjax.wiggly.landscape import Landscape, landscape
 from frictionjax.wiggly.passage import Stretch, passages, pull_at, track_of
 from frictionjax.wiggly.path import path_of
 from frictionjax.wiggly.planning import lane_scene, planned
 from frictionjax.wiggly.rides import Ride
-from frictionjax.wiggly.tolerance import Landscape, landscape
 
 COS, SIN = [0.0, 0.0024, 0.0, 0.0012], [0.0096, 0.0, -0.0024, 0.0006]
 PROFILES = {"sine": fx.profiles.Sine(0.1), "four": fx.profiles.Fourier(COS, SIN)}

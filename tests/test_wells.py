@@ -7,8 +7,9 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.wiggly.integration import integrate
+from frictionjax.wiggly.landscape import landscape
 from frictionjax.wiggly.rosenbrock_solvers import Rodas5P
-from frictionjax.wiggly.tolerance import Plan, landscape, plan_steps
+from frictionjax.wiggly.tolerance import Plan, plan_steps
 
 EPS = 0.02
 

@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from ..potentials import AbstractPotential
 from ..programs import Program, in_chunks
-from .tolerance import Folds
+from .landscape import Folds
 
 # Half of the grid over a well, graded towards the fold by e-folds that resolve folds down
 # to 1e-13 of a period.

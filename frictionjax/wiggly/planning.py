@@ -14,6 +14,7 @@ from ..profiles import AbstractProfile
 from ..programs import Program, in_chunks
 from ..scene import Scene
 from .forgetting import lag_forces
+from .landscape import Folds
 from .lane import LaneScene
 from .needs import Needs, cost_of, wells_of
 from .path import Path
@@ -21,8 +22,8 @@ from .rodas5p import RODAS5P
 from .rounds import LONG_MEMORY, MARGIN
 from .series_bristle import series_of
 from .starts import Ground
-from .tolerance import Folds, plan_steps, pull_of
 from .tolerance import Plan as StepPlan
+from .tolerance import plan_steps, pull_of
 
 # Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as fast
 # for one cell, as lanes wait for the longest tile; three times: 0.7.) Of the whole sweep

@@ -6,9 +6,9 @@ import numpy as np
 
 from ..scene import Scene
 from .curve import Curves
+from .landscape import Folds
 from .path import Path, slopes_at, states_at, times_at
 from .rides import Ride, last_begun
-from .tolerance import Folds
 
 ASIDE = 1e-6  # of a stretch of time: where one-sided slopes are taken
 _GAP = 1e-6  # of a well: rounding of z/eps

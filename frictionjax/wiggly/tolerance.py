@@ -2,16 +2,13 @@
 
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float
 
 from ..arguments import Real, require_real
 from ..coefficients import Coefficients, coefficients
-from ..extrema import periodic_extrema, slope_of
-from ..potentials import AbstractPotential
 from ..scene import Scene, load_range
+from .landscape import Folds, Landscape, landscape
 
 # At 100 and 0.1 below, errors at gamma = 0.65 were 1.6 times as large, and 3e-3 eps where
 # 1e-3 was asked for, for 7% fewer steps.
@@ -24,6 +21,13 @@ _FOLD = 0.03
 # Speed at folds below which tolerances are tighter in proportion, where slips add up. At
 # gamma = 1/2, eps = 1e-4 (0.006) errors were 2.4e-3 eps without, where 1e-3 was asked for.
 _CREEP = 0.025
+_BEFORE = 0.005  # a slip, in slip periods: the last instants that count as outside it
+# Half a percent of a period before a slip the tip runs up to five times as fast as the
+# slide, and an error of a step is one in time: tolerances are tighter by this share of
+# that speed over the one at the fold. Without, errors of such instants were up to 3.9
+# times the accuracy asked for (slanted spring, gamma = 3/4, eps = 1e-4, accuracy 1e-6).
+_HASTE = 0.012
+_FASTEST_COUNTED = 5.0  # slide speeds: instants with a faster tip are inside a slip
 _TIGHTEST = 1e-13
 # Errors of a few slips, added up; those of all add up to 1e4 at eps = 1e-8, gamma = 1/4. At
 # 4, surveys at gamma = 0.4 were 4e-3 eps off; 16 to 500 gave the same to 1e-5 eps.
@@ -39,21 +43,6 @@ def require_accuracy(accuracy: Any) -> None:
     """Check the accuracy asked for."""
     allowed = "1e-10 <= accuracy <= 1 (error of z in units of eps)"
     require_real("accuracy", accuracy, allowed, lambda a: 1e-10 <= a <= 1)
-
-
-class Folds(NamedTuple):
-    """Extreme folds in the tip coordinate of well 0, where slides hang before a slip.
-
-    `place_*`: periods, `state_*`: z in m, `force_*`: V_eps' in N, at its maximum (plus)
-    and minimum (minus).
-    """
-
-    place_plus: Real
-    state_plus: Real
-    force_plus: Real
-    place_minus: Real
-    state_minus: Real
-    force_minus: Real
 
 
 class Plan(NamedTuple):
@@ -73,65 +62,6 @@ class Plan(NamedTuple):
     shortest_step: Real
     memory: Real
     folds: Folds
-
-
-class Landscape(eqx.Module):
-    """What step control needs to know of the wiggly force in the tip coordinate.
-
-    `fold_curvature`, `flat_curvature`: |W'''| at the sharper and at the flatter of the two
-    extreme folds, in N. `steepest`: max |W''| in N. `branch`: width in periods of the
-    narrowest branch on which `W'` is monotone; a tip must cross a falling one to change
-    wells. `stretch`: largest G.
-    """
-
-    fold_curvature: Real
-    flat_curvature: Real
-    steepest: Real
-    branch: Real
-    stretch: Real
-    folds: Folds
-
-
-def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
-    """Scan one period of `V_eps'` in the tip coordinate."""
-    points = potential.points
-
-    def force(y):
-        return potential.tip_force(y, eps)[0]
-
-    # Nobody differentiates a plan: a tenth less to trace.
-    extrema = periodic_extrema(force, points, differentiable=False)
-    grid = (jnp.arange(points) + 0.5) / points
-    one = jnp.ones_like(grid)
-    every = jax.vmap(lambda y: potential.tip_force(y, eps))
-    (_, stretches), (slopes, _) = jax.jvp(every, (grid,), (one,))
-    top, bottom = extrema.argmax, extrema.argmin
-    states = [eps * y + potential.offset(y, eps) for y in (top, bottom)]
-    # Forward twice: reverse mode takes twice as long to trace.
-    bend = slope_of(slope_of(jax.vmap(force)))
-    curvatures = jnp.abs(bend(jnp.stack([top, bottom])))
-    return Landscape(
-        fold_curvature=jnp.max(curvatures),
-        flat_curvature=jnp.min(curvatures),
-        steepest=jnp.max(jnp.abs(slopes)),
-        branch=jnp.minimum(_narrowest_run(slopes) / points, 0.5),
-        stretch=jnp.max(stretches),
-        folds=Folds(top, states[0], extrema.max, bottom, states[1], extrema.min),
-    )
-
-
-def _narrowest_run(slopes: Float[Array, " n"]) -> Real:
-    """Samples in the shortest run of one sign of the 1-periodic `slopes`, at least 2.
-
-    Rounding noise on flat stretches counts as rising.
-    """
-    falling: Bool[Array, " twice"] = jnp.tile(slopes < -1e-9 * jnp.max(jnp.abs(slopes)), 2)
-    index, twice = jnp.arange(falling.shape[0]), falling.shape[0]
-    turns = (falling != jnp.roll(falling, 1)) & (index > 0)
-    # Sorted to the front (a running maximum instead compiles three times as long).
-    places = jnp.sort(jnp.where(turns, index, 2 * twice))
-    widths = jnp.where(places[1:] < twice, jnp.diff(places), twice)
-    return jnp.maximum(jnp.min(widths), 2)
 
 
 class Pull(NamedTuple):
@@ -174,12 +104,17 @@ def _way_to_fold(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real:
 
     At rest the force is quadratic in the distance, which so shrinks like sqrt(eps). Where
     viscosity is large, the passage is wider: `eps^(gamma+1) y' = l' t + b y^2`, with b half
-    the curvature, has the scale `(eps^(gamma+1) l')^(1/3) b^(-2/3)`.
+    the curvature.
     """
     bend = jnp.maximum(0.5 * ground.fold_curvature, 1e-300)
-    at_rest = jnp.sqrt(0.005 * pull.softest * eps / bend)
-    passage = jnp.cbrt(eps ** (gamma + 1) * pull.fastest / bend**2)
-    return jnp.maximum(at_rest, 0.3 * passage)
+    at_rest = jnp.sqrt(_BEFORE * pull.softest * eps / bend)
+    return jnp.maximum(at_rest, 0.3 * _width_of_fold(ground, pull, eps, gamma))
+
+
+def _width_of_fold(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real:
+    """Of the passage, in periods: `(eps^(gamma+1) l')^(1/3) b^(-2/3)`."""
+    bend = jnp.maximum(0.5 * ground.fold_curvature, 1e-300)
+    return jnp.cbrt(eps ** (gamma + 1) * pull.fastest / bend**2)
 
 
 def _pace_at_fold(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real:
@@ -192,23 +127,35 @@ def _pace_at_fold(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real
     return pull.softest * jnp.cbrt(eps ** (2 - gamma) / (bend * rate))
 
 
+def _adding(ground: Landscape, pull: Pull, eps: Real, gamma: Real, memory: Real) -> Real:
+    """How many times an error of a step at a fold comes up in the state.
+
+    Errors of the slips remembered add up with mixed signs: as the root of their number.
+    (As the number itself: tolerances 6 times smaller at gamma = 1/2, for errors that were
+    10 times below the target already.) They are errors in time, the larger the slower a
+    tip passes the fold. One slip's own counts by the speed of the tip before it: a passage
+    of width s and time s/pace ends like `s^2/(pace (t* - t))`.
+    """
+    pace = _pace_at_fold(ground, pull, eps, gamma)
+    creep = jnp.minimum(memory, 1.0) * _CREEP / pace
+    before = _width_of_fold(ground, pull, eps, gamma) ** 2 / (pace * _BEFORE**2)
+    haste = _HASTE * jnp.minimum(before, _FASTEST_COUNTED) / pace
+    return jnp.maximum(jnp.sqrt(1 + memory) * jnp.maximum(creep, 1.0), haste)
+
+
 def plan_steps(
     scene: Scene, eps: Real, gamma: Real, accuracy: Real, pull: Pull | None = None
 ) -> Plan:
     """Step control for an error of `accuracy` eps in z at times outside slips.
 
-    Errors of the slips remembered add up with mixed signs: as the root of their number.
-    (As the number itself: tolerances 6 times smaller at gamma = 1/2, for errors that were
-    10 times below the target already.) They are errors in time, the larger the slower a
-    tip passes the fold. `pull`: that of the scene, where it is known.
+    `pull`: that of the scene, where it is known.
     """
     if pull is None:
         pull = pull_of(scene, coefficients(scene.potential))
     ground = landscape(scene.potential, eps)
     memory = remembered_slips(ground, pull, eps, gamma)
     stretch = jnp.maximum(1.0, ground.stretch)
-    creep = jnp.minimum(memory, 1.0) * _CREEP / _pace_at_fold(ground, pull, eps, gamma)
-    adding = jnp.sqrt(1 + memory) * jnp.maximum(creep, 1.0)
+    adding = _adding(ground, pull, eps, gamma, memory)
     share = accuracy / (_SAFETY * stretch)
     at_folds = _FOLD * _way_to_fold(ground, pull, eps, gamma)
     relaxation = eps ** (gamma + 1) / ground.steepest
