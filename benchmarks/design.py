@@ -248,13 +248,32 @@ def compare(name, plus, minus, radius, slow):
     if slow:
         peers.append(("SciPy trust-constr", by_trust_constr, 1))
     for label, solve, count in peers:
-        before = time.perf_counter()
-        ends = [solve(rows, begin[i]) for i in range(count)]
-        seconds = (time.perf_counter() - before) * STARTS / count
+        ends, seconds, ratio = beside(
+            lambda: fx.fit_profile(target, smallest_radius=radius),
+            lambda solve=solve, count=count: [solve(rows, begin[i]) for i in range(count)],
+            REPEATS if count == STARTS else 1,
+        )
+        seconds, ratio = seconds * STARTS / count, ratio * STARTS / count
         note = f"{ends[0].nit} iterations"
         note += "" if count == STARTS else f"; {count} start measured, times {STARTS}"
         note += "" if ends[0].success or ends[0].status in (1, 2) else "; not converged"
-        row(label, seconds, seconds / ours, *quality(ends[0].x, plus, minus, best), note)
+        row(label, seconds, ratio, *quality(ends[0].x, plus, minus, best), note)
+
+
+def beside(ours, peer, rounds):
+    """What the peer found, its median seconds and the median of its ratios to ours.
+
+    One after the other in each round: the speed of the machine changes within a run.
+    """
+    clocks, found = [], None
+    for _ in range(rounds):
+        start = time.perf_counter()
+        ours()
+        middle = time.perf_counter()
+        found = peer()
+        clocks.append((middle - start, time.perf_counter() - middle))
+    own, other = np.transpose(clocks)
+    return found, float(np.median(other)), float(np.median(other / own))
 
 
 def differences(fn, x, way, step):

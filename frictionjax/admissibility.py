@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .arguments import Real, as_text, is_concrete, require
+from .bristles import AbstractBristle
 from .coefficients import Coefficients, coefficients_jit
 from .extrema import smallest
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
@@ -22,10 +23,13 @@ _TOGETHER = 8  # eps of one compiled call
 @Program
 def _bristle_facts(potential: BristlePotential):
     bounds = potential.bristle.slope_bounds()
-    curvature = jax.grad(jax.grad(potential.bristle.energy))(jnp.zeros(()))
-    # Lengths cancel in alpha, for instance k (L_rest - h): this much of it is rounding.
-    noise = 4 * _EPS64 * jnp.abs(curvature) * getattr(potential.bristle, "height", 0.0)
-    return bounds.lower, bounds.upper, noise
+    return bounds.lower, bounds.upper, rounding_of_alpha(potential.bristle)
+
+
+def rounding_of_alpha(bristle: AbstractBristle) -> Real:
+    """Lengths cancel in alpha, for instance k (L_rest - h): this much of it is rounding."""
+    curvature = jax.grad(jax.grad(bristle.energy))(jnp.zeros(()))
+    return 4 * _EPS64 * jnp.abs(curvature) * getattr(bristle, "height", 0.0)
 
 
 def require_admissible(potential: AbstractPotential) -> None:
@@ -34,15 +38,26 @@ def require_admissible(potential: AbstractPotential) -> None:
     Raises `ValueError`: no slope of either sign, `alpha = 0`, `1 + a omega <= 0` at an
     end, or a slope outside what the bristle's contact allows.
     """
-    if not isinstance(potential, BristlePotential) or not is_concrete(potential):
-        return
+    if isinstance(potential, BristlePotential) and is_concrete(potential):
+        _require_coefficients(potential, coefficients_jit(potential))
+
+
+def admissible_coefficients(potential: AbstractPotential) -> Coefficients:
+    """The coefficients, of what `require_admissible` accepts."""
     found = coefficients_jit(potential)
-    lower, upper, noise = _bristle_facts(potential)
-    low, high = float(found.omega_minus), float(found.omega_plus)
+    if isinstance(potential, BristlePotential) and is_concrete(potential):
+        _require_coefficients(potential, found)
+    return found
+
+
+def _require_coefficients(potential: BristlePotential, found: Coefficients) -> None:
+    read = found, _bristle_facts(potential)
+    found, (lower, upper, noise) = jax.tree_util.tree_map(float, read)
+    low, high = found.omega_minus, found.omega_plus
     slopes = f"omega_minus = {low:.6g}, omega_plus = {high:.6g}"
     require(low < 0 < high, "profile", slopes, "omega_plus > 0 > omega_minus")
-    _require_alpha(float(found.alpha), float(noise))
-    _require_slopes(potential, found, float(lower), float(upper))
+    _require_alpha(found.alpha, noise)
+    _require_slopes(potential, found, lower, upper)
 
 
 def _require_alpha(alpha: float, noise: float) -> None:
@@ -52,10 +67,9 @@ def _require_alpha(alpha: float, noise: float) -> None:
 
 
 def _require_slopes(
-    potential: BristlePotential, found: Coefficients, lower: float, upper: float
+    potential: BristlePotential, found: Any, lower: float, upper: float
 ) -> None:
-    low, high = float(found.omega_minus), float(found.omega_plus)
-    a = float(found.a)
+    low, high, a = found.omega_minus, found.omega_plus, found.a
     if lower < low < high < upper and min(1 + a * low, 1 + a * high) > 0:
         return
     # The names alone: computing the bounds op by op takes 0.1 s, the first time.

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from .arguments import Real
 from .roots import find_root
@@ -69,7 +69,7 @@ def _summits(
     """
     right, left = jnp.roll(values, -1, axis=1), jnp.roll(values, 1, axis=1)
     bump = (values >= left) & (values >= right)
-    heights, best = jax.lax.top_k(jnp.where(bump, values, -jnp.inf), _BUMPS)
+    heights, best = _highest(jnp.where(bump, values, -jnp.inf))
     scanned, width = grid[best], 1 / grid.shape[0]
     side = jnp.array([[1.0], [-1.0]])
     every = jax.vmap(jax.vmap(fn))
@@ -81,6 +81,23 @@ def _summits(
     found = jnp.where(better, roots, scanned)
     chosen = jnp.argmax(jnp.where(better, polished, heights), axis=1)
     return jnp.take_along_axis(found, chosen[:, None], axis=1)[:, 0]
+
+
+def _highest(
+    values: Float[Array, "2 n"],
+) -> tuple[Float[Array, "2 bumps"], Int[Array, "2 bumps"]]:
+    """The largest entries of each row and where they are.
+
+    `jax.lax.top_k` sorts the whole rows: 0.4 ms of 0.7 for 1024 points.
+    """
+    rows = jnp.arange(values.shape[0])
+
+    def pick(left, _):
+        place = jnp.argmax(left, axis=1)
+        return left.at[rows, place].set(-jnp.inf), (left[rows, place], place)
+
+    _, (heights, places) = jax.lax.scan(pick, values, None, _BUMPS)
+    return heights.T, places.T
 
 
 def smallest(values: Array) -> Real:

@@ -7,10 +7,10 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array
 
-from .admissibility import require_admissible
+from .admissibility import admissible_coefficients
 from .arguments import Real, require, require_x64
 from .bristles import AbstractBristle
-from .coefficients import Coefficients, coefficients_jit
+from .coefficients import Coefficients
 from .potentials import AbstractPotential, BristlePotential, potential
 
 _STEPS = 6  # of Newton: H' is a parabola at worst, where xi is close to rho
@@ -36,8 +36,7 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
     else:
         wiggle = potential(scene_or_profile, bristle)
     require_x64(wiggle)
-    require_admissible(wiggle)
-    return coefficients_jit(wiggle)
+    return admissible_coefficients(wiggle)
 
 
 def dissipation_potential(rho_plus: Real, rho_minus: Real, v: Real) -> Real:

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .admissibility import require_admissible, require_convex
+from .admissibility import admissible_coefficients, require_convex
 from .arguments import (
     Real,
     as_real,
@@ -19,7 +19,6 @@ from .arguments import (
     require_real,
 )
 from .bristles import AbstractBristle
-from .coefficients import coefficients_jit
 from .loads import AbstractLoad
 from .potentials import AbstractPotential, BristlePotential, potential
 from .profiles import AbstractProfile
@@ -148,8 +147,7 @@ def _forces_met(scene: Scene) -> tuple[Real, Real, Real]:
 def _require_hypotheses(scene: Scene) -> None:
     if not is_concrete(scene) or not in_64_bits():
         return  # traced values cannot be looked at; 32 bits raise at the entry points
-    require_admissible(scene.potential)
-    found = coefficients_jit(scene.potential)
+    found = admissible_coefficients(scene.potential)
     low, high, start = (float(v) for v in _forces_met(scene))
     finite = np.isfinite(low) and np.isfinite(high)
     require(finite, "load", f"[{low:.6g}, {high:.6g}]", "finite values on [0, duration]")

@@ -341,3 +341,18 @@ def test_a_closed_form_is_taken_and_told():
     assert min(start.steps for start in other.starts) > 10
     assert fit.bending_energy <= other.bending_energy <= fit.bending_energy * 1.001
     assert np.max(np.abs(fit.profile.sin - other.profile.sin)) < 1e-3
+
+
+def test_one_proven_start_stands_for_all_and_no_other_does():
+    """Where targets contradict each other every start has its own descent."""
+    flattened = fx.fit_profile(fx.Target(HOMOTHETIC, 0.3, -0.1), starts=3)
+    assert flattened.bending_energy <= flattened.bending_bound * (1 + 5e-3)
+    assert len({start.bending_energy for start in flattened.starts}) == 1
+    assert [start.number for start in flattened.starts] == [0, 1, 2]
+    np.testing.assert_array_equal(flattened.history.loss[0], flattened.history.loss[2])
+    torn = [fx.Target(HOMOTHETIC, 0.3, -0.1), fx.Target(HOMOTHETIC, 0.36, -0.1)]
+    fit = fx.fit_profile(torn, starts=3)
+    assert fit.status.name == "CONTRADICTORY"
+    assert len({start.bending_energy for start in fit.starts}) == 3
+    energies = [start.bending_energy for start in fit.starts]
+    assert max(energies) < min(energies) * 1.001

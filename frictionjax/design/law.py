@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from ..bristles import AbstractBristle
 from .free_parameter import FreeParameter
-from .targets import Geometry, geometry
+from .targets import Geometry, coefficients_of, geometry
 
 
 class AbstractLaw(eqx.Module):
@@ -24,15 +24,7 @@ class AbstractLaw(eqx.Module):
         self, plus: Any, minus: Any, free: Float[Array, " free"]
     ) -> Float[Array, "targets 2"]:
         """`rho_plus`, `rho_minus` in N of slopes `plus` > 0 and -`minus` < 0."""
-        known = self.at(free)
-        high = known.alpha * plus / (1 + known.a * plus)
-        low = -known.alpha * minus / (1 - known.a * minus)
-        swapped = known.alpha < 0
-        rho_plus, rho_minus = (
-            jnp.where(swapped, low, high),
-            jnp.where(swapped, high, low),
-        )
-        return jnp.stack([rho_plus, rho_minus], axis=-1)
+        return coefficients_of(self.at(free), plus, minus)
 
 
 class FixedLaw(AbstractLaw):

@@ -1,15 +1,50 @@
-"""The least bent surface in closed form, where nothing but its extreme slopes bounds it."""
+"""The least bent surface in closed form, where nothing but its extreme slopes bounds it.
 
-import jax.numpy as jnp
+In NumPy: nothing to compile, so that a first fit of this kind takes no seconds.
+"""
+
+from typing import Any
+
 import numpy as np
-from jaxtyping import Array, Bool
 
-from .bending import kernel_ratio
-from .constraints import MARGIN, Layout, Unknowns, flat
-from .extreme_slopes import reach
-from .interior import LAST, Path, Task, residuals
+from .bending import free_energy, kernel_ratio
+from .constraints import MARGIN, Layout, basis
+from .extreme_slopes import Reach
+from .interior import LAST, Path, Task
+from .profile_program import Runs, repeated
+from .settling import Settled
+from .targets import Geometry, coefficients_of, extreme_slopes
 
 _EXACT = 1e-12  # of the targets, weighted: rounding of coefficients
+
+
+def least_bent(layout: Layout, task: Task, starts: int) -> Runs | None:
+    """The optimum, found by every start in a step; None where no theorem gives it.
+
+    It is (see `bending`) where the ratio of the extreme slopes flattens nothing, all
+    targets agree on them, and the bounds hold with the margin of the rows.
+    """
+    if not has_closed_form(layout):
+        return None
+    none: Any = np.zeros(0)
+    law = task.law.at(none)
+    ends = _ends(task, law)
+    plus, minus = ends
+    possible = np.all(np.isfinite(ends)) and np.all(ends > 0)
+    if not (possible and np.max(ends / ends[::-1]) <= kernel_ratio(layout.harmonics)):
+        return None
+    reached = coefficients_of(law, task.slope * plus, task.slope * minus, np)
+    left = ((reached - np.asarray(task.coefficients)) * task.factors).ravel()
+    waves = _waves(layout.harmonics, plus, minus)
+    sharpest = _curvature(layout, waves)
+    steep = np.stack([plus * task.slope / law.upper, minus * task.slope / -law.lower])
+    met = np.all(np.abs(left) <= _EXACT) and np.all(steep < 1)
+    if not (met and sharpest <= MARGIN * task.curvature):
+        return None
+    room = {"slopes": 1 - np.max(steep)}
+    if layout.sharp:
+        room["curvature"] = 1 - sharpest / task.curvature
+    return repeated(starts, _found(task, waves, ends, left, room, sharpest))
 
 
 def has_closed_form(layout: Layout) -> bool:
@@ -17,57 +52,49 @@ def has_closed_form(layout: Layout) -> bool:
     return layout.free == 0 and not layout.high and layout.harmonics > 1
 
 
-def least_bent(layout: Layout, task: Task) -> tuple[Array, Bool[Array, ""]]:
-    """The surface as unknowns of the fit, and whether it is the optimum.
+def _ends(task: Task, law: Geometry) -> np.ndarray:
+    """Slopes (omega_plus, -omega_minus) that the first target asks for."""
+    wanted = np.asarray(task.coefficients)[0]
+    plus, minus = extreme_slopes(wanted[0], wanted[1], law.a[0], law.alpha[0])
+    return np.array([plus, -minus]) / np.asarray(task.slope)
 
-    It is (see `bending`) where the ratio of the extreme slopes flattens nothing, all
-    targets agree on them, and the bounds hold with the margin of the rows.
-    """
-    none = jnp.zeros(0)
-    plus, minus = _slopes(task)
-    n = np.arange(1, layout.harmonics + 1)
-    sizes = np.sqrt(2.0) / (2 * np.pi * n)
-    signs = (-1.0) ** n
+
+def _waves(harmonics: int, plus: Any, minus: Any) -> np.ndarray:
+    """The combination of both kernels with `v(0) = plus`, `v(1/2) = -minus`."""
+    n = np.arange(1, harmonics + 1)
+    sizes, signs = np.sqrt(2.0) / (2 * np.pi * n), (-1.0) ** n
     own, cross = np.sum(sizes**2), np.sum(signs * sizes**2)
     determinant = own**2 - cross**2
     first = (own * plus + cross * minus) / determinant
     second = -(own * minus + cross * plus) / determinant
-    cosines = sizes * (first + signs * second)
-    waves = jnp.concatenate([cosines, jnp.zeros(layout.harmonics)])
-    point = Unknowns(waves, jnp.stack([plus, plus]), jnp.stack([minus, minus]), none, none)
-    uneven = jnp.maximum(plus / minus, minus / plus)
-    left = residuals(task, plus, minus, none)
-    known = (plus > 0) & (minus > 0) & (uneven <= kernel_ratio(layout.harmonics))
-    known &= jnp.all(jnp.abs(left) <= _EXACT)
-    known &= reach(waves).curvature <= MARGIN * task.curvature
-    law = task.law.at(none)
-    limits = jnp.all(law.upper > task.slope * plus) & jnp.all(
-        -law.lower > task.slope * minus
+    return np.concatenate([sizes * (first + signs * second), np.zeros(harmonics)])
+
+
+def _curvature(layout: Layout, waves: np.ndarray) -> float:
+    """Largest |v'| on the rows; 0 where nothing bounds it."""
+    if not layout.sharp:
+        return 0.0
+    return float(np.max(np.abs(basis(layout.harmonics, layout.points, 1) @ waves)))
+
+
+def _found(task: Task, waves: Any, ends: Any, left: Any, room: Any, sharpest: Any) -> Runs:
+    """One start's row: one step of Newton's method, from anywhere."""
+    plus, minus = ends
+    array: Any = np.asarray
+    none, true = array([]), array(True)
+    reach = Reach(plus, minus, sharpest, array(np.nan))
+    path = Path(
+        x=array([[*waves, plus, plus, minus, minus]]),
+        loss=np.sum(waves**2, keepdims=True) / task.energy,
+        weight=array([LAST]),
+        decrement=array([0.0]),
+        steps=array(1),
+        done=true,
     )
-    return flat(point), known & limits
-
-
-def _slopes(task: Task) -> tuple[Array, Array]:
-    """`omega_plus` and `-omega_minus` that the first target asks for, in the task's units.
-
-    Lemmas 2 and 3, inverted: `omega = mu/(1 - a mu)` with `mu = rho/alpha`.
-    """
-    law = task.law.at(jnp.zeros(0))
-    a, alpha = law.a[0], law.alpha[0]
-    share = task.coefficients[0] / alpha
-    plus, minus = jnp.where(alpha > 0, share, share[::-1])
-    return plus / (1 - a * plus) / task.slope, -minus / (1 - a * minus) / task.slope
-
-
-def path_to(layout: Layout, task: Task, x: Array, kept: int) -> Path:
-    """The way there: one step of Newton's method, from anywhere."""
-    empty = jnp.full(kept, jnp.nan)
-    energy = jnp.sum(layout.split(x).waves ** 2) / task.energy
-    return Path(
-        x=jnp.full((kept, x.size), jnp.nan).at[0].set(x),
-        loss=empty.at[0].set(energy),
-        weight=empty.at[0].set(LAST),
-        decrement=empty.at[0].set(0.0),
-        steps=jnp.asarray(1),
-        done=jnp.asarray(True),
+    return Runs(
+        settled=Settled(waves, none, reach, ends, left, true),
+        path=path,
+        room=room,
+        bound=free_energy(plus, minus, waves.size // 2),
+        misfit=np.sum(left**2, keepdims=True),
     )

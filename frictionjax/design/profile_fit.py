@@ -14,7 +14,8 @@ from .constraints import Layout
 from .free_parameter import free_parameter, require_bounds, with_arrays
 from .interior import Task
 from .law import AbstractLaw, FixedLaw, FreeLaw
-from .profile_program import run
+from .least_bent import least_bent
+from .profile_program import Runs, descended
 from .profile_report import report
 from .profile_result import ProfileFit
 from .starts import SHARES, places
@@ -60,10 +61,11 @@ def fit_profile(
     Coefficients see only the extreme slopes (Lemmas 2 and 3), so infinitely many surfaces
     fit: this is the one with the least `int_0^1 w''^2`; `.bending_bound` proves how near.
     `.identifiability` and `.family` say what is left open. Where nothing is flattened and
-    no bound is felt it has a closed form, which every start takes in one step. Every other
-    iterate is admissible (`1 + a omega > 0`, the bristles' own bounds) and keeps the other
-    bounds with a margin of 0.5%. Targets that no surface meets come back with the best
-    weighted compromise and a `.status` and `.message` that say why.
+    no bound is felt it has a closed form, which every start takes in one step; where the
+    problem is convex, a start whose optimum is proven stands for all. Every other iterate
+    is admissible (`1 + a omega > 0`, the bristles' own bounds) and keeps the other bounds
+    with a margin of 0.5%. Targets that no surface meets come back with the best weighted
+    compromise and a `.status` and `.message` that say why.
 
     Raises `ValueError` for targets of the wrong sign, shape or kind, weights or
     uncertainties that are not positive, bristles that press on nothing, and names and
@@ -74,15 +76,22 @@ def fit_profile(
         _require_whole(name, value)
     _require_whole("max_steps", max_steps)
     problem = problem_of(asked, harmonics, free, bounds, smallest_radius, largest_amplitude)
-    layout, law = problem.layout, problem.law
+    apart: Any = np.array(places(problem.layout, starts))
+    runs = least_bent(problem.layout, problem.task, starts)
+    if runs is None:
+        runs = _descended(problem, apart, seed, max_steps)
+    return report(problem, runs, apart)
+
+
+def _descended(problem: Problem, apart: Any, seed: int, max_steps: int) -> Runs:
+    """From random surfaces and free parameters to the optimum of each start."""
+    layout, law, starts = problem.layout, problem.law, apart.size
     keys: Any = jax.random.split(jax.random.PRNGKey(seed), starts)
     shares: Any = np.random.default_rng(seed).uniform(*SHARES, size=(starts, layout.free))
     if isinstance(law, FreeLaw):
         shares[0] = np.clip(np.asarray(law.shares()), *SHARES)
-    apart: Any = np.array(places(layout, starts))
     kept = room(max_steps, _KEPT)
-    runs = run(layout, kept, np.asarray(max_steps), problem.task, apart, keys, shares)
-    return report(problem, jax.device_get(runs), apart)
+    return descended(layout, problem.task, apart, keys, shares, kept, max_steps)
 
 
 def _require_whole(name: str, value: Any) -> None:

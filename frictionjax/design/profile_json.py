@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+from functools import partial
 from typing import Any
 
 import equinox as eqx
@@ -86,7 +87,7 @@ def _fields(document: dict[str, Any]) -> dict[str, Any]:
         "status": ProfileStatus[document["status"]],
         "starts": tuple(_start(entry) for entry in document["starts"]),
         "history": None if history is None else _history(history),
-        "identifiability": Identifiability(**seen),
+        "identify": partial(Identifiability, **seen),
     }
 
 

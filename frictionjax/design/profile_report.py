@@ -1,24 +1,25 @@
 """From what the program computed to what the user is told."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..arguments import as_text
-from ..friction_law import friction
+from ..coefficients import coefficients_jit
+from ..potentials import potential
 from ..profiles import Fourier
 from .bending import bending_energy
 from .constraints import MARGIN, heights_of
 from .law import FreeLaw
 from .open_directions import identifiability
 from .profile_history import History, Start
-from .profile_program import Runs
+from .profile_program import TARGET_MET, Runs
 from .profile_result import ProfileFit
 from .profile_status import MET, ProfileStatus
 from .reachable import reachable_share, reachable_text
 from .targets import Geometry
 
-_MET = 1e-9  # relative error of a coefficient that counts as met
 _SURE = 0.99  # of random targets that agree with one surface have a smaller chi2
 _TIE = 1e-9  # relative difference of losses that counts as none
 _NEAR = 1e-3  # share of a bound that counts as reached
@@ -38,7 +39,7 @@ def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
     bristles = _bristles(problem, free)
     series: Any = cos, sin
     profile = Fourier(*series)
-    found = tuple(friction(profile, bristle) for bristle in bristles)
+    found = tuple(coefficients_jit(potential(profile, bristle)) for bristle in bristles)
     wanted = np.asarray(task.coefficients)
     reached = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in found])
     statuses = [_status(problem, runs, i, losses[i]) for i in range(order.size)]
@@ -63,7 +64,7 @@ def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
             for i in order
         ),
         history=_history(problem, runs),
-        identifiability=identifiability(task.law, series[0], series[1], free),
+        identify=partial(identifiability, task.law, series[0], series[1], free),
         free=_free_values(problem, free),
         bounds=problem.bounds,
     )
@@ -73,7 +74,7 @@ def _sorted(losses: np.ndarray, energies: np.ndarray) -> np.ndarray:
     """Best first: by loss, and by bending energy among losses that tie."""
     filled = np.where(np.isfinite(losses), losses, np.inf)
     level = np.min(filled)
-    tied = filled <= level * (1 + _TIE) + _MET**2
+    tied = filled <= level * (1 + _TIE) + TARGET_MET**2
     return np.lexsort((np.where(tied, energies, filled), ~tied))
 
 
@@ -107,7 +108,7 @@ def _status(problem: Any, runs: Runs, index: int, loss: float) -> ProfileStatus:
     residuals = np.asarray(runs.settled.residuals[index]).reshape(-1, 2)
     task = problem.task
     errors = residuals / np.asarray(task.factors) / np.asarray(task.coefficients)
-    if np.max(np.abs(errors)) <= _MET:
+    if np.max(np.abs(errors)) <= TARGET_MET:
         return ProfileStatus.MET
     given = problem.targets[0].uncertainty is not None
     if given and loss <= _likely(_freedom(problem)):

@@ -1,6 +1,8 @@
 """What the fit of a profile returns."""
 
 import dataclasses
+from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import jax
@@ -30,6 +32,7 @@ class ProfileFit:
     `chi2`: weighted squares, in units of uncertainties where given, else of the targets;
     `degrees_of_freedom` of them, and `misfit` = sqrt(chi2/residuals). `starts`: best first.
     `free`: value of each free parameter by name. `bounds`: those on the surface.
+    `identify`: makes `identifiability`, when that is asked for.
     """
 
     profile: Fourier
@@ -48,9 +51,14 @@ class ProfileFit:
     message: str
     starts: tuple[Start, ...]
     history: History | None
-    identifiability: Identifiability
+    identify: Callable[[], Identifiability]
     free: dict[str, float]
     bounds: dict[str, float | None]
+
+    @cached_property
+    def identifiability(self) -> Identifiability:
+        """What the coefficients see of the surface, and what they leave open."""
+        return self.identify()
 
     @property
     def singular_values(self) -> np.ndarray:
