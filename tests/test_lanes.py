@@ -25,11 +25,15 @@ def test_few_jobs_take_the_narrow_loop_where_none_is_there():
     assert loops(WIDTH, Room(1, 2, 4)).width_for(PROGRAM, FEW, 1.0) == NARROW
 
 
-def test_few_jobs_take_a_wide_loop_that_is_there_until_it_costs_more():
-    known = loops(WIDTH)
-    found = [known.width_for(PROGRAM, FEW, 1500.0) for _ in range(5)]
-    assert found == [WIDTH, WIDTH, NARROW, NARROW, NARROW]
-    assert known.width_for(PROGRAM, FEW, 100.0) == WIDTH
+def test_few_jobs_take_a_wide_loop_that_is_there_until_it_costs_more(monkeypatch):
+    known, loaded = loops(WIDTH), []
+    monkeypatch.setattr(known, "load", lambda program, room: loaded.append((program, room)))
+    for asked in range(1, 6):
+        assert known.width_for(PROGRAM, FEW, 1500.0) == WIDTH  # nobody waits for it
+        assert len(loaded) == (asked > 2)
+    assert loaded == [((*PROGRAM, NARROW), FEW)]
+    known._done.add((_kind((*PROGRAM, NARROW)), LARGE))
+    assert known.width_for(PROGRAM, FEW, 100.0) == NARROW
     assert loops(WIDTH).width_for(PROGRAM, FEW, 2e5) == NARROW
 
 

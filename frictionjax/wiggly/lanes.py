@@ -20,8 +20,9 @@ from .rosenbrock import Tableau
 WIDTH, NARROW = 64, 8
 FEW_JOBS = 20  # a step of the wide loop takes 2.6 times as long as one of the narrow
 # Wells that few jobs go through in a wide loop that is there before the narrow one is
-# compiled for them: 0.1 ms lost with each, where that takes 0.4 s to load, 2 s to compile.
-_PATIENCE = 4000
+# compiled beside them: 0.1 ms lost with each, where that takes 0.4 s to load, 2 s to
+# compile. For more at once they wait for it.
+_PATIENCE, _AT_ONCE = 4000, 20_000
 
 
 class Room(NamedTuple):
@@ -84,15 +85,31 @@ class _Loops:
         """Which of the two loops takes few jobs; `program` without its width."""
         narrow, wide = _kind((*program, NARROW)), _kind((*program, WIDTH))
         with self._lock:
-            there = any(room.holds(needed) for room in self._known.get(narrow, {}))
+            there = any(k == narrow and room.holds(needed) for k, room in self._done)
             ready = any(k == wide and room.holds(needed) for k, room in self._done)
-            if there or not ready:
+            if there or not ready or wells > _AT_ONCE:
                 return NARROW
-            waited = self._waited.get(narrow, 0.0) + wells
-            if waited > _PATIENCE:
-                return NARROW
-            self._waited[narrow] = waited
-            return WIDTH
+            before = self._waited.get(narrow, 0.0)
+            self._waited[narrow] = before + wells
+        if before <= _PATIENCE < before + wells:
+            self.load((*program, NARROW), needed)
+        return WIDTH
+
+    def load(self, program: tuple, needed: Room) -> None:
+        """Compile the loop in the background."""
+
+        def quietly() -> None:
+            # What cannot be compiled fails again in `run`, where somebody hears of it.
+            with contextlib.suppress(Exception):
+                self.run(program, needed, _nothing)
+
+        threading.Thread(target=quietly).start()
+
+
+def _nothing(room: Room) -> Tables:
+    widths = (len(Cells._fields), len(Jobs._fields), len(Legs._fields))
+    tables = (np.ones((n, w)) for n, w in zip(room, widths, strict=True))
+    return Tables(*tables, waiting=np.asarray(0))
 
 
 def _kind(program: tuple) -> tuple:
@@ -107,18 +124,7 @@ _LOOPS = _Loops()
 
 def prepare(scene: LaneScene, tableau: Tableau, needed: Room, wanted: Sums) -> None:
     """Compile the loop that `march` will want, in the background; a guess may be wrong."""
-
-    def nothing(room: Room) -> Tables:
-        widths = (len(Cells._fields), len(Jobs._fields), len(Legs._fields))
-        tables = (np.ones((n, w)) for n, w in zip(room, widths, strict=True))
-        return Tables(*tables, waiting=np.asarray(0))
-
-    def compile_quietly() -> None:
-        # What cannot be compiled fails again in `march`, where somebody hears of it.
-        with contextlib.suppress(Exception):
-            _LOOPS.run((scene, tableau, wanted, WIDTH), needed, nothing)
-
-    threading.Thread(target=compile_quietly).start()
+    _LOOPS.load((scene, tableau, wanted, WIDTH), needed)
 
 
 def march(

@@ -26,7 +26,7 @@ DEGREE = TOGETHER
 _X = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_X, DEGREE))
 _NEWTON = 6
-_CONVERGED = 1e-4  # wells: the last correction of Newton's method, which is quadratic
+_CONVERGED = 1e-4  # wells: what Newton's method leaves, by how its corrections shrink
 # A slide is slow where a passage forgets more than this of a shift: tips nearly rest at
 # folds, and windows started a few slips earlier do as well.
 _SLOW = 0.3
@@ -136,7 +136,7 @@ def _newton(scene: Scene, slides: Slides, panels: _Panels, times: np.ndarray):
     powers = (2 / span)[:, None] ** np.arange(1, DEGREE + 1)
     shift = np.einsum("ck,kij->cij", powers, _SHIFTS)[:, 1:]
     some, number = _chosen(slides, panels.slide), panels.number
-    guess = None
+    guess, before = None, np.full(span.size, np.nan)
     for _ in range(_NEWTON):
         pull = _pull(scene, some, number[:, 1:], times[:, 1:])
         found = passages(some.track, pull, some.viscosity, guess)
@@ -150,9 +150,12 @@ def _newton(scene: Scene, slides: Slides, panels: _Panels, times: np.ndarray):
         length = np.abs(times[:, -1] - times[:, 0]) / span
         size = np.max(np.abs(change), axis=1) / length
         guess = found.times
-        if not np.any(size > _CONVERGED):
+        # The next correction shrinks by as much again at least; it is not made.
+        shrinks = np.where(before > 0, np.minimum(size / before, 1.0), 1.0)
+        left, before = size * shrinks, size
+        if not np.any(left > _CONVERGED):
             break
-    return times, found.kept, size
+    return times, found.kept, left
 
 
 def _solved(scene: Scene, slides: Slides, panels: _Panels, times, accuracy) -> _Solved:
