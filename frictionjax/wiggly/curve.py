@@ -50,10 +50,26 @@ class Curves:
 
     def time_of(self, which: np.ndarray, number: np.ndarray) -> np.ndarray:
         """As that of each curve."""
+        start, since = self._times_of(which, number)
+        return start + since
+
+    def rounded_times(
+        self, which: np.ndarray, number: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """`time_of`, and by how much rounding has made these times too late, in s.
+
+        Far below the spacing of floats there: the series count from the panel's start.
+        """
+        start, since = self._times_of(which, number)
+        return start + since, ((start + since) - start) - since
+
+    def _times_of(self, which: np.ndarray, number: np.ndarray):
+        """Starts of the panels of lattice points, and times since then, in s."""
         panel = self.panel_of(which, number)
         x = np.clip(2 * (number - self.edges[panel]) / self.wells[panel] - 1, -1.0, 1.0)
         angles = np.arccos(x)[:, None] * np.arange(self.series.shape[1])
-        return self.starts[panel] + np.sum(self.series[panel] * np.cos(angles), axis=1)
+        since = np.sum(self.series[panel] * np.cos(angles), axis=1)
+        return self.starts[panel], since
 
     def number_at(self, which: np.ndarray, time: np.ndarray) -> np.ndarray:
         """As that of each curve."""
