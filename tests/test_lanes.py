@@ -29,7 +29,7 @@ def test_few_jobs_take_a_wide_loop_that_is_there_until_it_costs_more(monkeypatch
     known, loaded = loops(WIDTH), []
     monkeypatch.setattr(known, "load", lambda program, room: loaded.append((program, room)))
     for asked in range(1, 6):
-        assert known.width_for(PROGRAM, FEW, 1500.0) == WIDTH  # nobody waits for it
+        assert known.width_for(PROGRAM, FEW, 400.0) == WIDTH  # nobody waits for it
         assert len(loaded) == (asked > 2)
     assert loaded == [((*PROGRAM, NARROW), FEW)]
     known._done.add((_kind((*PROGRAM, NARROW)), LARGE))

@@ -18,11 +18,12 @@ from .rosenbrock import Tableau
 # XLA splits the arrays over threads, 0.17. A few jobs go through the narrow loop, whose
 # steps take less time.
 WIDTH, NARROW = 64, 8
+LOADER = "frictionjax-loader"  # threads that compile loops in the background
 FEW_JOBS = 20  # a step of the wide loop takes 2.6 times as long as one of the narrow
 # Wells that few jobs go through in a wide loop that is there before the narrow one is
-# compiled beside them: 0.1 ms lost with each, where that takes 0.4 s to load, 2 s to
-# compile. For more at once they wait for it.
-_PATIENCE, _AT_ONCE = 4000, 20_000
+# compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load, 2 s
+# to compile. For more at once they wait for it.
+_PATIENCE, _AT_ONCE = 1000, 20_000
 
 
 class Room(NamedTuple):
@@ -103,7 +104,7 @@ class _Loops:
             with contextlib.suppress(Exception):
                 self.run(program, needed, _nothing)
 
-        threading.Thread(target=quietly).start()
+        threading.Thread(target=quietly, name=LOADER).start()
 
 
 def _nothing(room: Room) -> Tables:
