@@ -28,7 +28,7 @@ def solve(
 
 
 def _wait_for_loops() -> None:
-    """Loops that the first calls have asked for compile beside later ones: no part of them."""
+    """Loops that first calls have asked for compile beside later ones: no part of them."""
     for thread in threading.enumerate():
         if thread.name == LOADER:
             thread.join()
