@@ -19,7 +19,8 @@ from .rosenbrock import Tableau
 # steps take less time.
 WIDTH, NARROW = 64, 8
 LOADER = "frictionjax-loader"  # threads that compile loops in the background
-FEW_JOBS = 20  # a step of the wide loop takes 2.6 times as long as one of the narrow
+NARROW_STEP = 0.385  # seconds of a narrow loop's step, of a wide one's
+FEW_JOBS = int(NARROW / NARROW_STEP)  # that the narrow loop takes no longer for
 # Wells that few jobs go through in a wide loop that is there before the narrow one is
 # compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load, 2 s
 # to compile. For more at once they wait for it.

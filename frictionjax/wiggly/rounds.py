@@ -10,7 +10,7 @@ from ..scene import Scene
 from .brackets import gaps_of, shifts_of
 from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
-from .lanes import FEW_JOBS, NARROW, WIDTH, march
+from .lanes import FEW_JOBS, NARROW, NARROW_STEP, WIDTH, march
 from .layout import Layout
 from .needs import Needs
 from .path import Path, states_at
@@ -25,8 +25,7 @@ ROUNDS = 3
 EARLIER = 4  # times as far back in each round
 MARGIN = 3  # wells: one to fall behind, one to catch up, one to forget
 LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast slides are
-# Time of a step of a narrow loop, of a wide one's; and of all, what is worth two loops.
-_NARROW_STEP, _WORTH = 0.35, 0.9
+_WORTH = 0.9  # of the time with two loops of the same width: what is worth two others
 _BATCH = 1e5  # wells: a few seconds, between two reports
 
 Report = Callable[[float], None]
@@ -62,7 +61,7 @@ def longest_alone(cost: np.ndarray) -> int:
 def _taken(jobs, longest, together):
     """Time of a queue, in wells of a lane of the wide loop."""
     narrow = jobs <= FEW_JOBS
-    lanes, step = np.where(narrow, NARROW, WIDTH), np.where(narrow, _NARROW_STEP, 1.0)
+    lanes, step = np.where(narrow, NARROW, WIDTH), np.where(narrow, NARROW_STEP, 1.0)
     return step * np.maximum(longest, together / lanes)
 
 
