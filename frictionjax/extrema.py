@@ -11,6 +11,7 @@ from .arguments import Real
 from .roots import find_root
 
 _BUMPS = 8  # scanned maxima that are polished
+_NEAR = 4  # scanned points of which one is looked at
 
 
 class Extrema(NamedTuple):
@@ -86,18 +87,18 @@ def _summits(
 def _highest(
     values: Float[Array, "2 n"],
 ) -> tuple[Float[Array, "2 bumps"], Int[Array, "2 bumps"]]:
-    """The largest entries of each row and where they are.
+    """The largest entries of each row and where they are; of neighbours the largest only.
 
-    `jax.lax.top_k` sorts the whole rows: 0.4 ms of 0.7 for 1024 points.
+    `jax.lax.top_k` sorts whole rows, 0.4 ms of 0.7 for 1024 points. Of a quarter of them it
+    takes 0.1; a scan over argmax the same.
     """
-    rows = jnp.arange(values.shape[0])
-
-    def pick(left, _):
-        place = jnp.argmax(left, axis=1)
-        return left.at[rows, place].set(-jnp.inf), (left[rows, place], place)
-
-    _, (heights, places) = jax.lax.scan(pick, values, None, _BUMPS)
-    return heights.T, places.T
+    count = values.shape[1]
+    # No two bumps of a resolved function are that near.
+    near = _NEAR if count % _NEAR == 0 and count > 16 * _NEAR else 1
+    parts = values.reshape(2, -1, near)
+    heights, part = jax.lax.top_k(jnp.max(parts, axis=2), _BUMPS)
+    inside = jnp.take_along_axis(jnp.argmax(parts, axis=2), part, axis=1)
+    return heights, near * part + inside
 
 
 def smallest(values: Array) -> Real:
