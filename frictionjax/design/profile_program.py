@@ -35,11 +35,7 @@ class Runs(NamedTuple):
 
 def repeated(starts: int, row: Any) -> Any:
     """`Runs` of one start, without the axis of starts, for each of them."""
-    if isinstance(row, dict):
-        return {name: repeated(starts, value) for name, value in row.items()}
-    if isinstance(row, tuple):
-        return type(row)(*(repeated(starts, value) for value in row))
-    return np.repeat(np.asarray(row)[None], starts, axis=0)  # a third of broadcast_to
+    return jax.tree_util.tree_map(lambda v: np.repeat(np.asarray(v)[None], starts, 0), row)
 
 
 def descended(
@@ -68,10 +64,17 @@ def descended(
 
 def _proven(task: Task, found: Runs) -> bool:
     """The targets are met, and no other surface with these slopes is less bent."""
-    errors = found.settled.residuals.reshape(-1, 2) / task.factors / task.coefficients
-    met = bool(found.settled.met[0]) and np.max(np.abs(errors)) <= TARGET_MET
+    ended = bool(found.path.done[0]) and bool(found.settled.met[0])
+    if not (ended and targets_met(task, found.settled.residuals[0])):
+        return False
     energy = np.sum(found.settled.waves**2)
-    return met and energy <= (1 + _PROVEN) * found.bound[0]
+    return bool(energy <= (1 + _PROVEN) * found.bound[0])
+
+
+def targets_met(task: Task, residuals: Any) -> bool:
+    """Whether scaled residuals of one start are those of coefficients that are met."""
+    errors = np.asarray(residuals).reshape(-1, 2) / task.factors / task.coefficients
+    return bool(np.max(np.abs(errors)) <= TARGET_MET)
 
 
 @eqx.filter_jit

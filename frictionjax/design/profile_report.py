@@ -14,7 +14,7 @@ from .constraints import MARGIN, heights_of
 from .law import FreeLaw
 from .open_directions import identifiability
 from .profile_history import History, Start
-from .profile_program import TARGET_MET, Runs
+from .profile_program import TARGET_MET, Runs, targets_met
 from .profile_result import ProfileFit
 from .profile_status import MET, ProfileStatus
 from .reachable import reachable_share, reachable_text
@@ -105,10 +105,7 @@ def _status(problem: Any, runs: Runs, index: int, loss: float) -> ProfileStatus:
         return ProfileStatus.MAX_STEPS
     if not bool(runs.settled.met[index]):
         return _bound_reached(problem, runs, index)
-    residuals = np.asarray(runs.settled.residuals[index]).reshape(-1, 2)
-    task = problem.task
-    errors = residuals / np.asarray(task.factors) / np.asarray(task.coefficients)
-    if np.max(np.abs(errors)) <= TARGET_MET:
+    if targets_met(problem.task, runs.settled.residuals[index]):
         return ProfileStatus.MET
     given = problem.targets[0].uncertainty is not None
     if given and loss <= _likely(_freedom(problem)):

@@ -18,13 +18,13 @@ from .rosenbrock import Tableau
 # XLA splits the arrays over threads, 0.17. A few jobs go through the narrow loop, whose
 # steps take less time.
 WIDTH, NARROW = 64, 8
-LOADER = "frictionjax-loader"  # threads that compile loops in the background
 NARROW_STEP = 0.385  # seconds of a narrow loop's step, of a wide one's
 FEW_JOBS = int(NARROW / NARROW_STEP)  # that the narrow loop takes no longer for
 # Wells that few jobs go through in a wide loop that is there before the narrow one is
 # compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load, 2 s
 # to compile. For more at once they wait for it.
 _PATIENCE, _AT_ONCE = 1000, 20_000
+LOADER = "frictionjax-loader"  # threads that compile loops in the background
 
 
 class Room(NamedTuple):
@@ -91,8 +91,9 @@ class _Loops:
             ready = any(k == wide and room.holds(needed) for k, room in self._done)
             if there or not ready or wells > _AT_ONCE:
                 return NARROW
-            before = self._waited.get(narrow, 0.0)
-            self._waited[narrow] = before + wells
+            waiting = narrow, room_for(needed)
+            before = self._waited.get(waiting, 0.0)
+            self._waited[waiting] = before + wells
         if before <= _PATIENCE < before + wells:
             self.load((*program, NARROW), needed)
         return WIDTH

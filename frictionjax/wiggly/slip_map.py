@@ -152,10 +152,10 @@ def _newton(scene: Scene, slides: Slides, panels: _Panels, times: np.ndarray):
         guess = found.times
         # The next correction shrinks by as much again at least; it is not made.
         shrinks = np.where(before > 0, np.minimum(size / before, 1.0), 1.0)
-        left, before = size * shrinks, size
-        if not np.any(left > _CONVERGED):
+        to_come, before = size * shrinks, size
+        if not np.any(to_come > _CONVERGED):
             break
-    return times, found.kept, left
+    return times, found.kept, to_come
 
 
 def _solved(scene: Scene, slides: Slides, panels: _Panels, times, accuracy) -> _Solved:
