@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from frictionjax.wiggly.brackets import gaps_of, shifts_of
+from frictionjax.wiggly.brackets import gaps_of, shifts_of, wells_between
 from frictionjax.wiggly.job_queue import Arrivals, Legs
 
 
@@ -40,3 +40,10 @@ def test_on_a_path_that_rests_for_good_nothing_is_a_slip():
     assert measured(gaps_of, paces=(1e5, 1e5), path=0.0, fastest=0.0) == pytest.approx(0.1)
     slow = measured(gaps_of, paces=(0.1, 0.1), path=0.0, fastest=1.0)
     assert slow == pytest.approx(0.1)
+
+
+def test_wells_between_keep_the_digits_of_tips():
+    # A tip added to the well first is lost: 1e8 wells are spaced by 1.5e-8.
+    well, tip = 1e8, 3.3e-11
+    assert wells_between(well, 0.0, well - 2, tip) + 2 == pytest.approx(tip, rel=1e-4)
+    assert wells_between(well, tip, well, 2 * tip) == pytest.approx(tip, rel=1e-12)

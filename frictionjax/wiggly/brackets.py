@@ -33,11 +33,19 @@ def shifts_of(
     return wells / np.maximum(slowest, _CREEP)
 
 
+def wells_between(well0, tip0, well1, tip1) -> np.ndarray:
+    """Signed wells from the tip `tip0` in well `well0` to another one, any shapes.
+
+    Whole wells first: added to 1e8 of them a tip is rounded to 1e-8.
+    """
+    return (well1 - well0) + (tip1 - tip0)
+
+
 def _apart(found: Arrivals, legs: Legs, behind, ahead, speed: float) -> tuple:
     """Wells between both lanes, and speeds of the slower and faster over the path's."""
     both = ahead >= 0
     a, b = np.where(both, ahead, 0), np.where(both, behind, 0)
-    wells = (found.well[a] - found.well[b]) + (found.tip[a] - found.tip[b])
+    wells = wells_between(found.well[b], found.tip[b], found.well[a], found.tip[a])
     # On a path that never moves nothing counts as a slip.
     usual = np.maximum(np.abs(legs.slope1[b]), _SLOW * speed if speed > 0 else np.inf)
     paces = np.abs(np.stack([found.speed[a], found.speed[b]])) / usual
