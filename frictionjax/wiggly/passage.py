@@ -28,8 +28,9 @@ _ROUGH = 1e-4  # of it: last coefficients of panels in s; passages err by its sq
 _PANELS = 4, 6, 8, 12, 16, 32, 64  # in s
 _INVERSE = 4  # sweeps of Newton's method for the place at an s
 # Sweeps of Newton's method from a guess that keeps the force constant, and from the
-# times of a passage nearby.
-_SWEEPS, _AGAIN = 5, 1
+# times of a passage nearby; from the former where none follow. (Five before others that
+# follow: a slip map takes a seventh longer, and not one of those fewer.)
+_SWEEPS, _AGAIN, _ALONE = 3, 1, 5
 _TRACKS = 16  # in a compiled call
 _NEAR = 256  # Taylor series of one compiled call
 TOGETHER = 12  # passages of a track side by side
@@ -282,14 +283,17 @@ def _passages(sweeps, way, against, weight, sign, load, support, viscosity, time
     return length + blank, jnp.exp(grown) + blank, times
 
 
-def passages(track: Track, pull: Pull, viscosity: np.ndarray, times=None) -> Passage:
+def passages(
+    track: Track, pull: Pull, viscosity: np.ndarray, times=None, sweeps: int = _SWEEPS
+) -> Passage:
     """Passages of one well from n lattice points of each cell; `pull` has shape (C, n).
 
-    `times` (C, n, M): a guess; None where the pull stays the same. `viscosity` (C,):
-    eps^gamma.
+    `times` (C, n, M): a guess, from which one sweep is made; None where the pull stays the
+    same, and it takes `sweeps`. `viscosity` (C,): eps^gamma.
     """
-    sweeps = _AGAIN if times is not None else _SWEEPS
-    if times is None:
+    if times is not None:
+        sweeps = _AGAIN
+    else:
         rate = pull.load[..., 1]  # where it is 0, nothing passes
         steady = pull.support[..., 1] / np.where(rate == 0, np.nan, rate)
         times = track.way[:, None, :] * steady[..., None]
@@ -308,7 +312,7 @@ def one_passage(track: Track, pull: Pull, viscosity: np.ndarray) -> np.ndarray:
     """Seconds of one passage of each track, shape (C,); `pull` has that shape too."""
     # As many as `passages` is asked for elsewhere: no further program is compiled.
     many = Pull(*(np.repeat(series[:, None], TOGETHER, axis=1) for series in pull))
-    return passages(track, many, viscosity).length[:, 0]
+    return passages(track, many, viscosity, sweeps=_ALONE).length[:, 0]
 
 
 @Program
