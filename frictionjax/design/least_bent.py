@@ -11,6 +11,7 @@ from .bending import free_energy, kernel_ratio
 from .constraints import MARGIN, Layout, basis
 from .extreme_slopes import Reach
 from .interior import LAST, Path, Task
+from .law import FixedLaw
 from .profile_program import Runs, repeated
 from .settling import Settled
 from .targets import Geometry, coefficients_of, extreme_slopes
@@ -24,10 +25,9 @@ def least_bent(layout: Layout, task: Task, starts: int) -> Runs | None:
     It is (see `bending`) where the ratio of the extreme slopes flattens nothing, all
     targets agree on them, and the bounds hold with the margin of the rows.
     """
-    if not has_closed_form(layout):
+    if not (has_closed_form(layout) and isinstance(task.law, FixedLaw)):
         return None
-    none: Any = np.zeros(0)
-    law = task.law.at(none)
+    law = task.law.known
     ends = _ends(task, law)
     plus, minus = ends
     possible = np.all(np.isfinite(ends)) and np.all(ends > 0)

@@ -121,8 +121,7 @@ def problem_of(
     weights = np.array([[float(t.weight)] for t in targets])
     factors = np.sqrt(weights) / sizes
     scale = float(np.max(factors * np.abs(wanted)))
-    own: Any = law.shares() if isinstance(law, FreeLaw) else np.zeros(0)
-    plus, minus = _expected(wanted, Geometry(*map(np.asarray, law.at(own))))
+    plus, minus = _expected(wanted, _own_geometry(law))
     slope = 0.5 * (plus + minus)
     if radius is not None:
         slope = min(slope, 0.25 / float(radius))
@@ -162,7 +161,7 @@ def _expected(wanted: np.ndarray, known: Geometry) -> tuple[float, float]:
 
 def _law(
     targets: list[Target], free: Sequence[str], bounds: Mapping[str, Any] | None
-) -> AbstractLaw:
+) -> FixedLaw | FreeLaw:
     names = [free] if isinstance(free, str) else list(free)
     given = dict(bounds or {})
     for name in given:
@@ -186,6 +185,13 @@ def _law(
     )
     _require_geometry(law, names)
     return law
+
+
+def _own_geometry(law: FixedLaw | FreeLaw) -> Geometry:
+    """Of the bristles as they are."""
+    if isinstance(law, FixedLaw):
+        return law.known
+    return Geometry(*map(np.asarray, law.at(law.shares())))
 
 
 def _index_of(bristle: Any, distinct: list[Any]) -> int:

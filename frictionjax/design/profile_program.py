@@ -65,16 +65,17 @@ def descended(
 def _proven(task: Task, found: Runs) -> bool:
     """The targets are met, and no other surface with these slopes is less bent."""
     ended = bool(found.path.done[0]) and bool(found.settled.met[0])
-    if not (ended and targets_met(task, found.settled.residuals[0])):
+    if not (ended and targets_met(task, found.settled.residuals)[0]):
         return False
     energy = np.sum(found.settled.waves**2)
     return bool(energy <= (1 + _PROVEN) * found.bound[0])
 
 
-def targets_met(task: Task, residuals: Any) -> bool:
-    """Whether scaled residuals of one start are those of coefficients that are met."""
-    errors = np.asarray(residuals).reshape(-1, 2) / task.factors / task.coefficients
-    return bool(np.max(np.abs(errors)) <= TARGET_MET)
+def targets_met(task: Task, residuals: Any) -> np.ndarray:
+    """Whether scaled residuals of starts, (n, rows), are of coefficients that are met."""
+    shape = len(residuals), *np.shape(task.coefficients)
+    errors = np.reshape(residuals, shape) / task.factors / task.coefficients
+    return np.max(np.abs(errors), axis=(1, 2)) <= TARGET_MET
 
 
 @eqx.filter_jit

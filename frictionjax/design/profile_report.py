@@ -39,11 +39,18 @@ def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
     bristles = _bristles(problem, free)
     series: Any = cos, sin
     profile = Fourier(*series)
+    # They are computed while the starts are listed.
     found = tuple(coefficients_jit(potential(profile, bristle)) for bristle in bristles)
     wanted = np.asarray(task.coefficients)
-    reached = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in found])
-    statuses = [_status(problem, runs, i, losses[i]) for i in range(order.size)]
+    met = targets_met(task, runs.settled.residuals)
+    statuses = [_status(problem, runs, i, losses[i], met[i]) for i in range(order.size)]
     status = statuses[best]
+    starts = tuple(
+        _start(problem, runs, int(i), statuses[i], losses[i], energies[i], places[i])
+        for i in order
+    )
+    history = _history(problem, runs)
+    reached = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in found])
     return ProfileFit(
         profile=profile,
         bristles=bristles,
@@ -59,11 +66,8 @@ def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
         success=status in MET,
         status=status,
         message=_message(problem, runs, best, status, reached, losses[best]),
-        starts=tuple(
-            _start(problem, runs, int(i), statuses[i], losses[i], energies[i], places[i])
-            for i in order
-        ),
-        history=_history(problem, runs),
+        starts=starts,
+        history=history,
         identify=partial(identifiability, task.law, series[0], series[1], free),
         free=_free_values(problem, free),
         bounds=problem.bounds,
@@ -98,14 +102,14 @@ def _free_values(problem: Any, free: Any) -> dict[str, float]:
     return dict(zip(labels, map(float, values), strict=True))
 
 
-def _status(problem: Any, runs: Runs, index: int, loss: float) -> ProfileStatus:
+def _status(problem: Any, runs: Runs, index: int, loss: float, met: bool) -> ProfileStatus:
     if not np.isfinite(loss):
         return ProfileStatus.NOT_FINITE
     if not bool(runs.path.done[index]):
         return ProfileStatus.MAX_STEPS
     if not bool(runs.settled.met[index]):
         return _bound_reached(problem, runs, index)
-    if targets_met(problem.task, runs.settled.residuals[index]):
+    if met:
         return ProfileStatus.MET
     given = problem.targets[0].uncertainty is not None
     if given and loss <= _likely(_freedom(problem)):
