@@ -61,14 +61,19 @@ class Curves:
         Far below the spacing of floats there: the series count from the panel's start.
         """
         start, since = self._times_of(which, number)
-        return start + since, ((start + since) - start) - since
+        time = start + since
+        part = time - start
+        return time, ((time - part) - start) + (part - since)  # exact (Knuth's TwoSum)
 
     def _times_of(self, which: np.ndarray, number: np.ndarray):
         """Starts of the panels of lattice points, and times since then, in s."""
         panel = self.panel_of(which, number)
-        x = np.clip(2 * (number - self.edges[panel]) / self.wells[panel] - 1, -1.0, 1.0)
-        angles = np.arccos(x)[:, None] * np.arange(self.series.shape[1])
-        since = np.sum(self.series[panel] * np.cos(angles), axis=1)
+        part = np.clip((number - self.edges[panel]) / self.wells[panel], 0.0, 1.0)
+        order = np.arange(self.series.shape[1])
+        # `T_k(2 p - 1) - T_k(-1) = -2 (-1)^k sin^2(k arcsin sqrt(p))`: small terms a few
+        # wells behind the start of 1e7. (Cosines cancelled there, to 0.02 of a spacing.)
+        waves = np.sin(np.arcsin(np.sqrt(part))[:, None] * order) ** 2
+        since = np.sum(self.series[panel] * (-2 * (-1.0) ** order) * waves, axis=1)
         return self.starts[panel], since
 
     def number_at(self, which: np.ndarray, time: np.ndarray) -> np.ndarray:

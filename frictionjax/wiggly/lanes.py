@@ -80,7 +80,8 @@ class _Loops:
             return run_queue(*program, fill(room))
         with compiling:
             found = run_queue(*program, fill(room))
-            self._done.add((kind, room))
+            with self._lock:  # others may be looking through it
+                self._done.add((kind, room))
             return found
 
     def width_for(self, program: tuple, needed: Room, wells: float) -> int:

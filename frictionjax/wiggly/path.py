@@ -4,6 +4,7 @@ Lanes measure from it and start by it; what they find does not depend on it, sin
 and known starts decide which values are accepted.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import jax
@@ -12,10 +13,14 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..coefficients import coefficients_jit
+from ..loads import AbstractLoad
+from ..loads.steep import steep_times
 from ..programs import Program, in_chunks
 from ..roots import find_root
 from ..scene import Scene
 from ..strip import CHUNK, strips_at
+
+_PIECES = 16  # of the load, in a compiled call
 
 
 class Path(NamedTuple):
@@ -121,11 +126,15 @@ def slopes_at(
     return np.where(slides, slope / stiffness, 0.0)
 
 
+@Program
+def _steep_times(load: AbstractLoad, start: Float[Array, " n"], end: Float[Array, " n"]):
+    return jax.vmap(partial(steep_times, load))(start, end)
+
+
 def _speeds(scene: Scene, path: Path) -> tuple[float, float]:
     """Largest speed on slides, sampled, and smallest stiffness there."""
-    share = (np.arange(64) + 0.5) / 64
-    start, end = path.touch[:, None], path.edges[1:, None]
-    times = (start + (end - start) * share).ravel()
+    whole = in_chunks(_steep_times, _PIECES, (scene.load,), (path.touch, path.edges[1:]))
+    times = whole.ravel()
     states = states_at(scene, path, times)
     speeds = slopes_at(scene, path, times, states)
     _, stiffness = in_chunks(_rates, CHUNK, (scene,), (times, states))

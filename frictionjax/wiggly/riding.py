@@ -128,6 +128,7 @@ def _summed(rounds: Rounds, ride: Ride, drift, pace, gap: float) -> np.ndarray:
         left = curve.kept[k] ** wells
         grown = (1 - left) / (1 - curve.kept[k]) if curve.kept[k] != 1 else wells
         after = error * left + drift[k] * grown + curve.tail[k]
-        errors.append(max(error, after, _LEAST_ERROR * rounds.accuracy))
+        # NaN of a lane that failed stays: `max` would lose it.
+        errors.append(np.max((error, after, _LEAST_ERROR * rounds.accuracy)))
         error = after
     return np.array(errors) * np.minimum(pace, 1.0)

@@ -1,5 +1,6 @@
 """From the accuracy asked for to the tolerance and the reach of a step."""
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -7,6 +8,7 @@ import jax.numpy as jnp
 
 from ..arguments import Real, require_real
 from ..coefficients import Coefficients, coefficients
+from ..loads.steep import steep_times
 from ..scene import Scene, load_range
 from .landscape import Folds, Landscape, landscape
 
@@ -36,7 +38,6 @@ _FEW_ADD = 30.0
 # Of the accuracy: error of a step in the middle of a slip. At 0.2 steps are 4% fewer, and
 # brackets at eps = 1e-8 stay open.
 _IN_SLIPS = 0.05
-_SAMPLES = 64  # of the load's slope between two turning points
 _DOUBLE_SPACING = 2.0**-50  # shortest step over the duration: four spacings of floats
 
 
@@ -76,8 +77,7 @@ def pull_of(scene: Scene, found: Coefficients) -> Pull:
     """The same for all cells: sampled between turning points, and over reached states."""
     ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
     edges = jnp.sort(jnp.concatenate([ends, scene.turning_points()]))
-    share = (jnp.arange(_SAMPLES) + 0.5) / _SAMPLES
-    times = (edges[:-1, None] + jnp.diff(edges)[:, None] * share).ravel()
+    times = jax.vmap(partial(steep_times, scene.load))(edges[:-1], edges[1:]).ravel()
     slopes = jax.vmap(scene.load.slope)(times)
     low, high = load_range(scene)
     forces = jnp.linspace(low - found.rho_plus, high - found.rho_minus, 9)

@@ -1,0 +1,38 @@
+"""Where a load is steepest between two of its turning points."""
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..arguments import Real
+from .load import AbstractLoad
+
+_SAMPLES = 64
+# Intervals between samples that are looked into, and how: a ramp that lasts a 1e-8 of the
+# way is found where it lifts the load by more than the bend of the rest.
+_SUSPECTS, _PARTS, _ZOOMS = 4, 16, 5
+
+
+def steep_times(load: AbstractLoad, start: Real, end: Real) -> Float[Array, " samples"]:
+    """Times in s between two turning points, among them those of the largest |l'|.
+
+    Evenly spaced, and where the load rises otherwise than its slope there says: a ramp
+    between two samples shows in the rise. (Without, a load that rose by 0.8 N in 2 ms of
+    3 s counted as flat, and states were 32 times the accuracy off.)
+    """
+    edges = start + (end - start) * jnp.arange(_SAMPLES + 1) / _SAMPLES
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    slopes = jax.vmap(load.slope)(middles)
+    gaps = jnp.abs(jnp.diff(jax.vmap(load)(edges)) - slopes * jnp.diff(edges))
+    _, suspects = jax.lax.top_k(gaps, _SUSPECTS)
+
+    def steepest(low: Real, high: Real) -> Real:
+        for _ in range(_ZOOMS):
+            inner = low + (high - low) * jnp.arange(_PARTS + 1) / _PARTS
+            rises = jnp.abs(jnp.diff(jax.vmap(load)(inner)))
+            part = jnp.argmax(rises)
+            low, high = inner[part], inner[part + 1]
+        return 0.5 * (low + high)
+
+    found = jax.vmap(steepest)(edges[suspects], edges[suspects + 1])
+    return jnp.concatenate([middles, found])
