@@ -171,7 +171,8 @@ def require_convex(support: AbstractSupport, low: Any, high: Any) -> None:
     size = max(1e-300, float(np.max(np.abs(wanted))))
     reached = np.all(np.abs(np.asarray(forces) - wanted) <= 1e-6 * size)
     span = f"[{float(ends[0]):.6g}, {float(ends[1]):.6g}]"
-    needs = f"Phi' to reach the forces [{wanted[0]:.6g}, {wanted[1]:.6g}]"
+    forces_wanted = f"[{wanted[0]:.6g}, {wanted[1]:.6g}]"
+    needs = f"Phi uniformly convex and Phi' to reach the forces {forces_wanted}"
     require(np.all(np.isfinite(np.asarray(ends))) and reached, "support", span, needs)
     needs = f"Phi uniformly convex on the range reached, z in {span}"
     require(float(least) > 1e-9 * float(largest), "support: min Phi''", least, needs)

@@ -108,7 +108,10 @@ def require_function(name: str, fn: Any, what: str) -> None:
     """Check that `fn` takes one number to one number."""
     require(callable(fn), name, fn, what)
     number = jax.ShapeDtypeStruct((), float)
-    shape = jax.eval_shape(lambda x: jnp.asarray(fn(x)), number).shape
+    try:
+        shape = jax.eval_shape(lambda x: jnp.asarray(fn(x)), number).shape
+    except jax.errors.JAXTypeError:
+        require(False, name, fn, f"{what}, written with jax.numpy")
     require(shape == (), name, f"values of shape {shape}", f"{what}, one number for one")
 
 
@@ -117,11 +120,12 @@ def require_x64(*trees: Any) -> None:
 
     A well at eps = 1e-4 has 3 digits left in 32 bits: nothing here can be trusted then.
     """
-    mend = 'run `jax.config.update("jax_enable_x64", True)` before building the scene'
     if not in_64_bits():
+        mend = 'run `jax.config.update("jax_enable_x64", True)` before building the scene'
         raise ValueError(f"jax_enable_x64 = False: needs 64-bit floats; {mend}")
     for leaf in jax.tree_util.tree_leaves(trees):
         if eqx.is_inexact_array(leaf) and leaf.dtype != np.float64:
+            mend = "build the parts from Python numbers or float64 arrays, in 64 bits"
             raise ValueError(f"dtype = {leaf.dtype}: needs float64 leaves; {mend}")
 
 
@@ -134,4 +138,4 @@ def require_numbers(name: str, value: Any, allowed: str, test) -> None:
     except (TypeError, ValueError):
         raise ValueError(f"{name} = {as_text(value)}: needs {allowed}") from None
     good = array.size > 0 and np.all(np.isfinite(array)) and bool(np.all(test(array)))
-    require(good, name, array, allowed)
+    require(good, name, value, allowed)

@@ -16,7 +16,7 @@ from .grids import grid_of
 from .instants import Instants, instants
 from .provenance import explain, origin
 from .references import Reference, reference
-from .scene import Scene, require_times
+from .scene import Scene, require_times, require_told_apart
 from .timed_runs import ENDED, accounted, runner, timed
 from .wiggly.general import SCIPY, Run
 from .wiggly.methods import solver_of
@@ -193,6 +193,7 @@ def work_precision(
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     names, labels, asked = _required(methods, accuracies, repeats, seconds)
     require_reach(scene.potential, eps)
+    require_told_apart(scene, eps)
     ts = np.asarray(require_times(scene, ts, _TIMES))
     effort = _Effort(asked, int(repeats), float(seconds))
     cells, truths = [], []

@@ -10,7 +10,7 @@ from .arguments import as_real, require, require_real, require_x64
 from .grids import cells_of, grid_of
 from .limit_system import require_start_in_strip
 from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
-from .scene import Scene, require_times
+from .scene import Scene, require_times, require_told_apart
 from .wiggly.own_methods import OURS, is_ours
 from .wiggly.tolerance import require_accuracy
 from .wiggly.workload import Workload, workload
@@ -121,6 +121,7 @@ def predict_cost(
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
     require_reach(scene.potential, eps)
+    require_told_apart(scene, eps)
     machine = machine_cost() if measure else known_machine() or ELSEWHERE
     wanted = float(as_real(accuracy))
     return _predicted(scene, eps, gamma, len(ts), wanted, method, machine)

@@ -24,6 +24,8 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
 
     Raises `ValueError` naming the hypothesis of the paper that fails: `omega_plus > 0 >
     omega_minus`, `alpha != 0`, `1 + a omega > 0` at both ends, the bristle's own bounds.
+    Traced values cannot be looked at: under `jit` and `vmap` nothing is checked, and what
+    an inadmissible bristle gives means nothing (`design_map` has NaN there).
     """
     if bristle is None:
         require(

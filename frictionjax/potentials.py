@@ -1,7 +1,9 @@
 """The wiggly potential `V_eps` (eq. 2.8), of a bristle or given directly."""
 
 import abc
+import inspect
 from collections.abc import Callable
+from functools import partial
 
 import equinox as eqx
 import jax
@@ -193,6 +195,16 @@ def _nothing(eps: Real, Y: Real) -> Real:
     return jnp.zeros_like(Y)
 
 
+def _takes_two(fn: Callable) -> bool:
+    try:
+        inspect.signature(fn).bind(None, None)
+    except TypeError:
+        return False
+    except ValueError:  # no signature to be had
+        return True
+    return True
+
+
 class GivenPotential(AbstractPotential):
     """The abstract setting: `W` and `Q` as functions (eq. 2.8), z its own tip coordinate.
 
@@ -209,7 +221,10 @@ class GivenPotential(AbstractPotential):
 
     def __init__(self, W: Callable, Q: Callable | None = None, points: int = 4096):
         require_function("potential.W", W, "a function of Y")
-        require(Q is None or callable(Q), "potential.Q", Q, "a function of (eps, Y)")
+        if Q is not None:
+            what = "a function of (eps, Y)"
+            require(callable(Q) and _takes_two(Q), "potential.Q", Q, what)
+            require_function("potential.Q", partial(Q, jnp.asarray(1e-3)), what)
         enough = isinstance(points, int) and points >= 16
         require(enough, "potential.points", points, "points >= 16")
         self.W_fn = W

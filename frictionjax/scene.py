@@ -15,6 +15,7 @@ from .arguments import (
     as_text,
     in_64_bits,
     is_concrete,
+    known_numbers,
     require,
     require_real,
 )
@@ -26,6 +27,8 @@ from .programs import Program
 from .supports import AbstractSupport
 
 _TRACED_TURNS = 64  # turning points allowed for where the load's numbers are traced
+_TOLD_APART = 1e-13  # of the largest |z|: at half of it z itself is off by 1e-3 eps
+_MOST_TURNS = 2**20  # in a scene: 8 MB a copy of their times
 
 
 class Scene(eqx.Module):
@@ -128,6 +131,8 @@ def _room_for_turns(load: AbstractLoad, duration: Any) -> int:
     if not is_concrete(load, duration):
         return _TRACED_TURNS
     count = load.turning_count(float(duration))
+    allowed = f"at most {_MOST_TURNS} in [0, duration]"
+    require(count <= _MOST_TURNS, "load: turning points", count, allowed)
     return 1 << max(2, (count - 1).bit_length()) if count else 0
 
 
@@ -156,11 +161,36 @@ def _require_hypotheses(scene: Scene) -> None:
     require_convex(scene.support, low, high)
 
 
+@Program
+def _farthest(scene: Scene) -> Real:
+    """Largest |z| in m that the load reaches on the flat surface, or that of z0."""
+    forces = jnp.stack(load_range(scene))
+    states = jax.vmap(scene.support.state_of)(forces)
+    return jnp.maximum(jnp.max(jnp.abs(states)), jnp.abs(scene.z0))
+
+
+def require_told_apart(scene: Scene, eps: Any) -> None:
+    """Check that floats tell the wells apart that a scene goes through.
+
+    Raises `ValueError` naming the smallest eps.
+    """
+    if not is_concrete(scene, eps):
+        return
+    least, far = float(np.min(np.asarray(eps, dtype=float))), float(_farthest(scene))
+    smallest = _TOLD_APART * far
+    allowed = f"eps >= {smallest:.3g}: wells at {far:.3g} m that floats can tell apart"
+    require(least >= smallest, "eps", least, allowed)
+
+
 def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " n"]:
     """Check requested times: sorted, inside [0, duration]; evenly spaced where None."""
     duration = jnp.asarray(scene.duration)
     if ts is None:
         return duration * jnp.linspace(0.0, 1.0, fallback)
+    if is_concrete(ts):
+        numbers = known_numbers(ts)
+        require(numbers.dtype != object, "ts", ts, "times, shape (n,), n > 0")
+        ts = numbers
     ts = jnp.asarray(ts, dtype=float)
     if not is_concrete(ts, scene.duration):
         return ts

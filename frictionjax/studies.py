@@ -44,8 +44,12 @@ def study(dataset: xr.Dataset) -> Study:
     Raises `ValueError` where the data set lacks what `sweep` puts there.
     """
     needed = {"sup_error", "status", "strip_excess", "z"}
-    missing = sorted(needed - set(dataset.variables))
-    require(not missing, "dataset", ", ".join(missing) or "-", "the variables of a sweep")
+    given = getattr(dataset, "variables", None)
+    allowed = "a data set that `sweep` has made"
+    require(given is not None, "dataset", type(dataset).__name__, allowed)
+    missing = ", ".join(sorted(needed - set(given)))
+    allowed = "one that `sweep` has made, with suprema=True"
+    require(not missing, "dataset", f"one without {missing}", allowed)
     gammas = dataset.gamma.values
     columns = _columns("", dataset, dataset.accuracy * dataset.eps)
     if "dissipation_error" in dataset:

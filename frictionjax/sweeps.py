@@ -15,7 +15,7 @@ from .limit_system import (
 )
 from .progress import progress_bar
 from .provenance import describe
-from .scene import Scene, require_times
+from .scene import Scene, require_times, require_told_apart
 from .strip import strips_at
 from .wiggly.engine import integrate_cells
 from .wiggly.own_methods import is_ours
@@ -98,6 +98,7 @@ def sweep(
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
     require_reach(scene.potential, eps)
+    require_told_apart(scene, eps)
     solver = None if is_ours(method) else _general(method)
     limit = solve_limit(scene, ts)
     balanced, wanted = bool(dissipation), float(as_real(accuracy))

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.loads.steep import steep_times
+from frictionjax.wiggly.path import path_of
 
 T = jnp.linspace(0, 3, 301)
 TABLE = fx.loads.PiecewiseLinear([0.5, 1.0, 2.0], [1.0, 3.0, -1.0])
@@ -103,3 +105,67 @@ def test_a_custom_load_must_list_its_turning_points():
 def test_wrong_parameters_are_named(make, message):
     with pytest.raises(ValueError, match=message):
         make()
+
+
+def fastest(load, start, end):
+    times = np.asarray(steep_times(load, start, end))
+    assert np.all((times > start) & (times < end))
+    return np.max(np.abs(jax.vmap(load.slope)(times)))
+
+
+def with_ramp(center, width, rise=0.4):
+    """A slow rise with a steep one of `2 rise` N inside it, C^1 and monotone."""
+    return fx.loads.Custom(lambda t: 0.2 * t + rise * jnp.tanh((t - center) / width))
+
+
+@pytest.mark.parametrize("center", [0.7, 1.5, 1.523])
+@pytest.mark.parametrize(("width", "rise"), [(1e-2, 0.4), (1e-3, 0.4), (1e-6, 1e-3)])
+def test_ramps_between_samples_are_found(center, width, rise):
+    load = with_ramp(center, width, rise)
+    assert fastest(load, 0.0, 3.0) == pytest.approx(0.2 + rise / width, rel=1e-2)
+
+
+def test_steepest_places_of_plain_loads():
+    assert fastest(fx.loads.Sine(1.5, 0.7), 0.175, 0.525) == pytest.approx(
+        1.5 * 2 * np.pi / 0.7, rel=1e-6
+    )
+    assert fastest(fx.loads.Ramp(-2.0), 0.0, 3.0) == pytest.approx(2.0, rel=1e-12)
+    assert fastest(TABLE, 1.0, 2.0) == pytest.approx(4.0, rel=1e-9)
+
+
+def test_slides_over_a_ramp_between_samples():
+    """Tolerances come from the fastest slide: values were 0.032 eps off, status OK."""
+    scene = fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        fx.supports.Spring(1.0),
+        with_ramp(1.5, 1e-3),
+        3.0,
+    )
+    assert path_of(scene).speed == pytest.approx(400.2, rel=1e-3)
+    eps, ts = 3e-4, 1.5 + np.array([0.004, 0.01, 0.03, 0.1])
+    found = fx.solve(scene, eps, 0.5, ts, dissipation=False)
+    truth = fx.solve(scene, eps, 0.5, ts, 1e-6, dissipation=False)
+    assert found.ok
+    assert truth.ok
+    assert np.max(np.abs(np.asarray(found.z - truth.z))) < 1e-3 * eps
+
+
+@pytest.mark.parametrize("listed", [(), (1.0,)])
+@pytest.mark.parametrize("size", [1.0, -1e-3])
+def test_a_load_that_jumps_is_refused(listed, size):
+    load = fx.loads.Custom(lambda t: jnp.where(t < 1, 0.3, 0.3 + size), listed)
+    with pytest.raises(ValueError, match=r"load\.fn = .jumps by .* at t = 1"):
+        load.turning_count(3.0)
+    assert with_ramp(1.0, 1e-9).turning_count(3.0) == 0  # steep, but no jump
+
+
+def test_more_turns_than_there_is_room_for_are_refused():
+    with pytest.raises(ValueError, match=r"load: turning points = 6e\+09: needs at most"):
+        fx.Scene(
+            fx.profiles.Sine(0.1),
+            fx.bristles.Homothetic(1.0),
+            fx.supports.Spring(1.0),
+            fx.loads.Sine(1.0, 1e-9),
+            3.0,
+        )

@@ -19,6 +19,9 @@ from ..arguments import (
 from .load import AbstractLoad, listed_turning_points
 
 _SAMPLES = 4096  # per piece between two turning points: finds a sign change that lasts
+# What a load may change by within a few spacings of floats, of its largest value; and into
+# how many parts, how often, the stretch of the largest change is cut to look there.
+_JUMP, _PARTS, _ZOOMS = 1e-6, 64, 8
 
 
 class Custom(AbstractLoad):
@@ -28,7 +31,7 @@ class Custom(AbstractLoad):
     at which `l'` changes sign or jumps, shape (n,), n = 0 allowed.
 
     Raises `ValueError` for times that are not finite and increasing. A scene checks on
-    its duration that no turning point is missing.
+    its duration that no turning point is missing and that nothing jumps.
     """
 
     fn: Callable[[Real], Real]
@@ -51,23 +54,44 @@ class Custom(AbstractLoad):
         return jnp.asarray(self.fn(t))
 
     def turning_count(self, duration: float) -> int:
-        self._require_monotone(duration)
+        for start, end in self._pieces(duration):
+            self._require_monotone(start, end)
+            self._require_no_jump(start, end)
         return int(self.listed.shape[0])
 
     def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
         return listed_turning_points(self.listed, duration, count)
 
-    def _require_monotone(self, duration: float) -> None:
+    def _pieces(self, duration: float):
         times = np.asarray(self.listed)
         inside = times[(times > 0) & (times < duration)]
-        edges = np.concatenate([[0.0], inside, [duration]])
-        for start, end in itertools.pairwise(edges):
-            t = np.linspace(start, end, _SAMPLES)
-            values = np.asarray(jax.vmap(self)(jnp.asarray(t)))
-            require(np.all(np.isfinite(values)), "load.fn", "not finite", "finite values")
-            steps = np.diff(values)
-            noise = 1e-12 * (1e-300 + np.max(np.abs(values)))
-            up, down = np.any(steps > noise), np.any(steps < -noise)
-            missing = f"turns between {start:.6g} and {end:.6g}"
-            allowed = "every time at which l' changes sign in turning_points"
-            require(not (up and down), "load.turning_points", missing, allowed)
+        return itertools.pairwise(np.concatenate([[0.0], inside, [duration]]))
+
+    def _values(self, start: float, end: float, count: int):
+        t = np.linspace(start, end, count)
+        return t, np.asarray(jax.vmap(self)(jnp.asarray(t)))
+
+    def _require_monotone(self, start: float, end: float) -> None:
+        _, values = self._values(start, end, _SAMPLES)
+        require(np.all(np.isfinite(values)), "load.fn", "not finite", "finite values")
+        steps = np.diff(values)
+        noise = 1e-12 * (1e-300 + np.max(np.abs(values)))
+        up, down = np.any(steps > noise), np.any(steps < -noise)
+        missing = f"turns between {start:.6g} and {end:.6g}"
+        allowed = "every time at which l' changes sign in turning_points"
+        require(not (up and down), "load.turning_points", missing, allowed)
+
+    def _require_no_jump(self, start: float, end: float) -> None:
+        """Where the load changes most, down to the spacing of floats."""
+        low, high, count = start, end, _SAMPLES
+        for _ in range(_ZOOMS):
+            t, values = self._values(low, high, count)
+            steps = np.abs(np.diff(values))
+            at, count = int(np.argmax(steps)), _PARTS + 1
+            if low == start and high == end:
+                largest = 1e-300 + np.max(np.abs(values))
+            low, high, change = t[at], t[at + 1], steps[at]
+            if change <= _JUMP * largest or high - low <= 8 * np.spacing(end):
+                break
+        jump = f"jumps by {change:.6g} at t = {high:.6g}"
+        require(change <= _JUMP * largest, "load.fn", jump, "a continuous function")

@@ -27,6 +27,7 @@ class SeriesFit(NamedTuple):
 
 
 _MOST = 16  # harmonics that decide on the period
+_ROUNDING = 1e-12  # of the largest height: what varies less is rounding
 _LONGEST = 2.9  # periods in the trace that a multiple of the strongest wave needs
 
 
@@ -106,7 +107,8 @@ def fit_heights(x: Any, heights: Any, period: float | None, harmonics: int) -> S
         f"harmonics <= {most}, of {x.size} samples",
     )
     variance = _detrended_variance(x, heights)
-    require(variance > 0, "heights", "a straight line", "heights that vary")
+    noise = _ROUNDING * np.max(np.abs(heights))
+    require(variance > noise**2, "heights", "a straight line", "heights that vary")
     span, spacing = float(np.ptp(x)), float(np.ptp(x)) / (x.size - 1)
     if period is None:
         period = find_period(x, heights, harmonics)

@@ -72,7 +72,8 @@ def surveys_of(
     scaled = 2 * (middle - low[:, None]) / (high - low)[:, None] - 1
     count = scaled.shape[1]
     matrix = chebyshev.chebvander(scaled, count - 1)
-    columns = np.concatenate([sums / length[:, None], extremes], axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):  # slips shorter than floats: NaN
+        columns = np.concatenate([sums / length[:, None], extremes], axis=1)
     series = np.linalg.solve(matrix, columns.swapaxes(1, 2)).swapaxes(1, 2)
     half = 0.5 * (high - low)
     primitives = half[:, None, None] * chebyshev.chebint(series[:, :3], lbnd=-1, axis=2)

@@ -1,0 +1,85 @@
+"""What every entry point refuses, by the argument's name, value and what is allowed."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import frictionjax as fx
+
+SURFACE, BRISTLE = fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0)
+
+
+def scene_of(support=None, load=None, z0=0.0, potential=None):
+    parts = support or fx.supports.Spring(1.0), load or fx.loads.Sine(1.0, 3.0), 3.0, z0
+    if potential is not None:
+        return fx.Scene(None, None, *parts, potential=potential)
+    return fx.Scene(SURFACE, BRISTLE, *parts)
+
+
+SCENE = scene_of()
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: fx.solve(SCENE, 1e-2, ts="abc"), r"ts = 'abc': needs times"),
+        (lambda: fx.solve(SCENE, 1e-2, ts=[0j, 1]), r"ts = .*: needs times"),
+        (lambda: fx.solve(SCENE, 1e-2, ts=[[0.0], [1.0, 2.0]]), r"ts = .*: needs times"),
+        (lambda: fx.solve(SCENE, 1e-2, max_steps=0), r"max_steps = 0: needs a whole"),
+        (lambda: fx.solve(SCENE, 1e-2, max_steps=10.5), r"max_steps = 10\.5: needs a who"),
+        (lambda: fx.solve(SCENE, 1e-2, max_steps="a"), r"max_steps = 'a': needs a whole"),
+        (lambda: fx.solve(SCENE, 1e-2, adjoint=3), r"adjoint = 'int': needs None or an"),
+        (lambda: fx.solve(SCENE, None), r"eps = None: needs one number eps > 0"),
+        (lambda: fx.study(None), r"dataset = 'NoneType': needs a data set"),
+        (lambda: fx.study({}), r"dataset = 'dict': needs a data set"),
+        (
+            lambda: fx.study(fx.sweep(SCENE, [1e-2], 1.0, suprema=False)),
+            r"dataset = 'one without strip_excess, sup_error': needs .* suprema=True",
+        ),
+        (
+            lambda: fx.profiles.Custom(lambda y: 0.01 * np.sin(2 * np.pi * y)),
+            r"profile\.fn = .*: needs .*, written with jax\.numpy",
+        ),
+        (
+            lambda: fx.GivenPotential(lambda Y: jnp.sin(2 * jnp.pi * Y), lambda Y: Y),
+            r"potential\.Q = .*: needs a function of \(eps, Y\)",
+        ),
+        (
+            lambda: scene_of(fx.supports.Convex(lambda z: -(z**2))),
+            r"support = .*: needs Phi uniformly convex and Phi' to reach",
+        ),
+        (
+            lambda: fx.friction(fx.profiles.Sine(jnp.float32(0.1)), BRISTLE),
+            r"dtype = float32: needs float64 leaves; build the parts from Python numbers",
+        ),
+        (
+            lambda: fx.profiles.Fourier.from_heights(np.arange(100.0), np.full(100, 1.1)),
+            r"heights = 'a straight line': needs heights that vary",
+        ),
+    ],
+)
+def test_wrong_arguments_are_named(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda scene, eps: fx.solve(scene, eps, 1.0, [0.0, 3.0]),
+        lambda scene, eps: fx.sweep(scene, [1e-2, eps], 1.0, [0.0, 3.0]),
+        lambda scene, eps: fx.predict_cost(scene, eps, 1.0, measure=False),
+    ],
+)
+def test_wells_that_floats_cannot_tell_apart_are_refused(call):
+    """At eps = 1e-20 a run did not end; at 1e-15 all was NaN, after 20 s."""
+    with pytest.raises(ValueError, match=r"eps = 1e-20: needs eps >= 1e-13: wells at 1 m"):
+        call(SCENE, 1e-20)
+    with pytest.raises(ValueError, match=r"eps = 1e-07: needs eps >= 1e-06"):
+        call(scene_of(fx.supports.Spring(1e-7)), 1e-7)
+
+
+def test_eps_of_1e_minus_12():
+    found = fx.solve(SCENE, 1e-12, 1.0, [0.0, 1.0, 3.0])
+    assert found.ok
+    assert np.all(np.isfinite(found.z))
