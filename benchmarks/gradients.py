@@ -32,7 +32,7 @@ NAMES = ("slope", "stiffness", "angle", "support", "rate", "z0", "eps", "gamma")
 POINT = jnp.array([0.1, 1.0, 0.4, 1.0, 1.0, 0.0, EPS, 1.0])
 # Steps of the differences. A slip is 1e-3 of load: steps that shift slips by more than a
 # hundredth of that have errors of their own.
-STEPS = (1e-6, 1e-5, 1e-5, 1e-6, 2e-5, 1e-6, 1e-9, 1e-5)
+STEPS = (1e-6, 1e-5, 1e-5, 1e-5, 2e-5, 1e-6, 1e-9, 1e-5)
 
 
 def central(run, numbers, index, step):

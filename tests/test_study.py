@@ -71,7 +71,7 @@ def test_orders_survive_a_file(tmp_path):
 
 
 def test_missing_variables_are_named():
-    with pytest.raises(ValueError, match="dataset = 'strip_excess'"):
+    with pytest.raises(ValueError, match="dataset = 'one without strip_excess'"):
         fx.study(synthetic().drop_vars("strip_excess"))
 
 
