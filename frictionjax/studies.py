@@ -47,7 +47,7 @@ def study(dataset: xr.Dataset) -> Study:
     given = getattr(dataset, "variables", None)
     allowed = "a data set that `sweep` has made"
     require(given is not None, "dataset", type(dataset).__name__, allowed)
-    missing = ", ".join(sorted(needed - set(given)))
+    missing = ", ".join(sorted(needed - set(given or ())))
     allowed = "one that `sweep` has made, with suprema=True"
     require(not missing, "dataset", f"one without {missing}", allowed)
     gammas = dataset.gamma.values
