@@ -125,7 +125,8 @@ def require_x64(*trees: Any) -> None:
         raise ValueError(f"jax_enable_x64 = False: needs 64-bit floats; {mend}")
     for leaf in jax.tree_util.tree_leaves(trees):
         if eqx.is_inexact_array(leaf) and leaf.dtype != np.float64:
-            mend = "build the parts from Python numbers or float64 arrays, in 64 bits"
+            numbers = "build the parts from Python numbers or float64 arrays"
+            mend = f'{numbers}, after `jax.config.update("jax_enable_x64", True)`'
             raise ValueError(f"dtype = {leaf.dtype}: needs float64 leaves; {mend}")
 
 
