@@ -104,6 +104,12 @@ def require_real(name: str, value: Any, allowed: str, test: Any = None) -> None:
         require(test(float(array)), name, value, allowed)
 
 
+def require_whole(name: str, value: Any) -> None:
+    """Check a count: a whole number >= 1."""
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    require(whole and value >= 1, name, value, "a whole number >= 1")
+
+
 def require_function(name: str, fn: Any, what: str) -> None:
     """Check that `fn` takes one number to one number."""
     require(callable(fn), name, fn, what)

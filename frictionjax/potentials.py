@@ -200,8 +200,8 @@ def _takes_two(fn: Callable) -> bool:
         inspect.signature(fn).bind(None, None)
     except TypeError:
         return False
-    except ValueError:  # no signature to be had
-        return True
+    except ValueError:
+        pass  # no signature to be had
     return True
 
 

@@ -27,7 +27,7 @@ from .programs import Program
 from .supports import AbstractSupport
 
 _TRACED_TURNS = 64  # turning points allowed for where the load's numbers are traced
-_TOLD_APART = 1e-13  # of the largest |z|: at half of it z itself is off by 1e-3 eps
+_TOLD_APART = 1e-13  # of the largest |z|: rounding of z itself is 1e-3 eps there
 _MOST_TURNS = 2**20  # in a scene: 8 MB a copy of their times
 
 

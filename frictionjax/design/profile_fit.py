@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import require, require_real
+from ..arguments import require, require_real, require_whole
 from ..programs import room
 from .bending import free_energy
 from .constraints import Layout
@@ -73,8 +73,8 @@ def fit_profile(
     """
     asked = require_targets(targets)
     for name, value in (("harmonics", harmonics), ("starts", starts)):
-        _require_whole(name, value)
-    _require_whole("max_steps", max_steps)
+        require_whole(name, value)
+    require_whole("max_steps", max_steps)
     problem = problem_of(asked, harmonics, free, bounds, smallest_radius, largest_amplitude)
     apart: Any = np.array(places(problem.layout, starts))
     runs = least_bent(problem.layout, problem.task, starts)
@@ -92,11 +92,6 @@ def _descended(problem: Problem, apart: Any, seed: int, max_steps: int) -> Runs:
         shares[0] = np.clip(np.asarray(law.shares()), *SHARES)
     kept = room(max_steps, _KEPT)
     return descended(layout, problem.task, apart, keys, shares, kept, max_steps)
-
-
-def _require_whole(name: str, value: Any) -> None:
-    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    require(whole and value >= 1, name, value, "a whole number >= 1")
 
 
 def problem_of(

@@ -55,8 +55,9 @@ class Custom(AbstractLoad):
 
     def turning_count(self, duration: float) -> int:
         for start, end in self._pieces(duration):
-            self._require_monotone(start, end)
-            self._require_no_jump(start, end)
+            times, values = self._values(start, end, _SAMPLES)
+            _require_monotone(times, values)
+            self._require_no_jump(times, values)
         return int(self.listed.shape[0])
 
     def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
@@ -71,27 +72,25 @@ class Custom(AbstractLoad):
         t = np.linspace(start, end, count)
         return t, np.asarray(jax.vmap(self)(jnp.asarray(t)))
 
-    def _require_monotone(self, start: float, end: float) -> None:
-        _, values = self._values(start, end, _SAMPLES)
-        require(np.all(np.isfinite(values)), "load.fn", "not finite", "finite values")
-        steps = np.diff(values)
-        noise = 1e-12 * (1e-300 + np.max(np.abs(values)))
-        up, down = np.any(steps > noise), np.any(steps < -noise)
-        missing = f"turns between {start:.6g} and {end:.6g}"
-        allowed = "every time at which l' changes sign in turning_points"
-        require(not (up and down), "load.turning_points", missing, allowed)
-
-    def _require_no_jump(self, start: float, end: float) -> None:
-        """Where the load changes most, down to the spacing of floats."""
-        low, high, count = start, end, _SAMPLES
+    def _require_no_jump(self, times: np.ndarray, values: np.ndarray) -> None:
+        """Looked into where the load changes most, down to the spacing of floats."""
+        allowed, end = _JUMP * (1e-300 + np.max(np.abs(values))), times[-1]
         for _ in range(_ZOOMS):
-            t, values = self._values(low, high, count)
             steps = np.abs(np.diff(values))
-            at, count = int(np.argmax(steps)), _PARTS + 1
-            if low == start and high == end:
-                largest = 1e-300 + np.max(np.abs(values))
-            low, high, change = t[at], t[at + 1], steps[at]
-            if change <= _JUMP * largest or high - low <= 8 * np.spacing(end):
+            at = int(np.argmax(steps))
+            low, high, change = times[at], times[at + 1], steps[at]
+            if change <= allowed or high - low <= 8 * np.spacing(end):
                 break
+            times, values = self._values(low, high, _PARTS + 1)
         jump = f"jumps by {change:.6g} at t = {high:.6g}"
-        require(change <= _JUMP * largest, "load.fn", jump, "a continuous function")
+        require(change <= allowed, "load.fn", jump, "a continuous function")
+
+
+def _require_monotone(times: np.ndarray, values: np.ndarray) -> None:
+    require(np.all(np.isfinite(values)), "load.fn", "not finite", "finite values")
+    steps = np.diff(values)
+    noise = 1e-12 * (1e-300 + np.max(np.abs(values)))
+    up, down = np.any(steps > noise), np.any(steps < -noise)
+    missing = f"turns between {times[0]:.6g} and {times[-1]:.6g}"
+    allowed = "every time at which l' changes sign in turning_points"
+    require(not (up and down), "load.turning_points", missing, allowed)

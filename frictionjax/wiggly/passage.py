@@ -291,12 +291,12 @@ def passages(
     `times` (C, n, M): a guess, from which one sweep is made; None where the pull stays the
     same, and it takes `sweeps`. `viscosity` (C,): eps^gamma.
     """
-    if times is not None:
-        sweeps = _AGAIN
-    else:
+    if times is None:
         rate = pull.load[..., 1]  # where it is 0, nothing passes
         steady = pull.support[..., 1] / np.where(rate == 0, np.nan, rate)
         times = track.way[:, None, :] * steady[..., None]
+    else:
+        sweeps = _AGAIN
     columns = *track, pull.load, pull.support, viscosity, times
     return Passage(*in_chunks(_passages, _TRACKS, (sweeps,), columns))
 

@@ -9,7 +9,14 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..admissibility import require_reach
-from ..arguments import as_real, is_concrete, require, require_numbers, require_x64
+from ..arguments import (
+    as_real,
+    is_concrete,
+    require,
+    require_numbers,
+    require_whole,
+    require_x64,
+)
 from ..scene import Scene, require_times, require_told_apart
 from .engine import integrate_cells
 from .integration import MAX_STEPS, integrate
@@ -173,8 +180,7 @@ def solve(
     allowed = "one number gamma > 0"
     require_numbers("gamma", gamma, allowed, lambda g: (g > 0) & (g.ndim == 0))
     require_accuracy(accuracy)
-    whole = isinstance(max_steps, int | np.integer) and not isinstance(max_steps, bool)
-    require(whole and max_steps >= 1, "max_steps", max_steps, "a whole number >= 1")
+    require_whole("max_steps", max_steps)
     known = adjoint is None or isinstance(adjoint, diffrax.AbstractAdjoint)
     require(known, "adjoint", type(adjoint).__name__, "None or an adjoint of diffrax")
     ts = require_times(scene, ts)
