@@ -35,6 +35,7 @@ from frictionjax.design.starts import start
 jax.config.update("jax_enable_x64", True)
 
 HARMONICS, STARTS, REPEATS = 16, 8, 5
+LEAST = 4.0  # seconds of rounds: five of 40 ms say little on a shared machine
 HOMOTHETIC = fx.bristles.Homothetic(1.0)
 CASES = {
     "ratio 1.5": (0.3, 0.2, None),
@@ -264,9 +265,10 @@ def beside(ours, peer, rounds):
     """What the peer found, its median seconds and the median of its ratios to ours.
 
     One after the other in each round: the speed of the machine changes within a run.
+    More than `rounds` of them where all take less than `LEAST` seconds.
     """
     clocks, found = [], None
-    for _ in range(rounds):
+    while len(clocks) < rounds or np.sum(clocks) < LEAST:
         start = time.perf_counter()
         ours()
         middle = time.perf_counter()

@@ -19,7 +19,7 @@ _CLOSURES = 4  # functions inside functions that are looked into for traced numb
 
 def in_64_bits() -> bool:
     """Whether JAX keeps 64-bit floats."""
-    return jnp.result_type(float) == np.float64
+    return bool(jax.config.jax_enable_x64)  # type: ignore[attr-defined]
 
 
 def as_real(value: Any) -> Any:
@@ -80,6 +80,8 @@ def is_concrete(*trees: Any) -> bool:
         if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
             return False
         held = [_captured(leaf) for leaf in leaves if callable(leaf)]
+        if not held:
+            break
         leaves = jax.tree_util.tree_leaves(held)
     return True
 

@@ -71,7 +71,8 @@ def _summits(
     right, left = jnp.roll(values, -1, axis=1), jnp.roll(values, 1, axis=1)
     bump = (values >= left) & (values >= right)
     heights, best = _highest(jnp.where(bump, values, -jnp.inf))
-    scanned, width = grid[best], 1 / grid.shape[0]
+    # What is no bump has no root to be found: 45 halvings that all others wait for.
+    scanned, width = grid[best], jnp.where(jnp.isfinite(heights), 1 / grid.shape[0], 0.0)
     side = jnp.array([[1.0], [-1.0]])
     every = jax.vmap(jax.vmap(fn))
     slope = slope_of(every)

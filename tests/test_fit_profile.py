@@ -15,7 +15,7 @@ from frictionjax.design.constraints import heights_of
 from frictionjax.design.profile_fit import problem_of
 from frictionjax.design.profile_program import run
 from frictionjax.design.profile_status import ProfileStatus
-from frictionjax.design.targets import known_geometry
+from frictionjax.design.targets import geometry
 
 HOMOTHETIC = fx.bristles.Homothetic(1.0)
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
@@ -66,7 +66,7 @@ def quadratic_program(plus, minus, harmonics, bend=np.inf, points=1501):
 def reachable_target(kind, rng):
     """A bristle of this kind and coefficients of slopes that it can follow."""
     part = bristle(kind, rng, rng.choice([-1, 1]))
-    known = known_geometry(part)
+    known = geometry(part)
     share, ratio = rng.uniform(0.02, 0.95), np.exp(rng.uniform(-2.3, 2.3))
     plus, minus = np.sqrt(ratio), np.sqrt(1 / ratio)
     widest = min(float(known.upper) / plus, -float(known.lower) / minus, 2.0)
@@ -84,7 +84,7 @@ def check_met(fit, target):
     assert abs(found.rho_minus / target.rho_minus - 1) < 1e-9
     assert fit.largest_error < 1e-9
     # Admissible at every iterate: 1 + a omega > 0 and the bristle's own bounds.
-    known = known_geometry(target.bristle)
+    known = geometry(target.bristle)
     slopes = slopes_of(fit.history, points=512)
     assert np.nanmax(slopes) < float(known.upper)
     assert np.nanmin(slopes) > float(known.lower)
@@ -120,7 +120,7 @@ def test_many_random_targets_of_every_bristle_at_once(count):
     cos, sin = heights_of(waves)
     slopes = slopes_of(Rows(cos, sin))
     for index, target in enumerate(targets):
-        known = known_geometry(target.bristle)
+        known = geometry(target.bristle)
         plus, minus = slopes[index].max(), slopes[index].min()
         mu = plus / (1 + known.a * plus), minus / (1 + known.a * minus)
         rho = sorted(float(known.alpha * value) for value in mu)
@@ -189,7 +189,7 @@ def test_bounds_hold_at_every_iterate():
     target, radius, height = fx.Target(SLANTED, 0.3, -0.2), 0.25, 0.04
     fit = fx.fit_profile(target, starts=2, smallest_radius=radius, largest_amplitude=height)
     assert fit.success
-    known, history = known_geometry(SLANTED), fit.history
+    known, history = geometry(SLANTED), fit.history
     slopes = slopes_of(history)
     assert np.nanmax(slopes) < known.upper
     assert np.nanmin(slopes) > known.lower
@@ -279,7 +279,7 @@ def test_compromises_of_other_bristles_are_stationary():
     targets = [fx.Target(SLANTED, 0.3, -0.2), fx.Target(ANGULAR, 0.1, -0.1)]
     fit = fx.fit_profile(targets, starts=2)
     assert fit.status is ProfileStatus.CONTRADICTORY
-    known = [known_geometry(target.bristle) for target in targets]
+    known = [geometry(target.bristle) for target in targets]
 
     def chi2(plus, minus):
         total = 0.0

@@ -11,7 +11,6 @@ from frictionjax.design.constraints import Layout, heights_of
 from frictionjax.design.extreme_slopes import reach
 from frictionjax.design.least_bent import _waves, has_closed_form, least_bent
 from frictionjax.design.profile_fit import problem_of
-from frictionjax.design.targets import require_targets
 
 HOMOTHETIC = fx.bristles.Homothetic(1.0)
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.6)
@@ -19,14 +18,14 @@ SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.6)
 
 def found(targets, harmonics=16, **bounds):
     """The row of one start of two, or None."""
-    problem = problem_of(require_targets(targets), harmonics, **bounds)
+    problem = problem_of(targets, harmonics, **bounds)
     runs = least_bent(problem.layout, problem.task, 2)
     return None if runs is None else jax.tree_util.tree_map(lambda row: row[1], runs)
 
 
 def waves_of(targets, *args, **bounds):
     """Waves of v = w' themselves."""
-    problem = problem_of(require_targets(targets), *args, **bounds)
+    problem = problem_of(targets, *args, **bounds)
     return problem.task.slope * found(targets, *args, **bounds).settled.waves
 
 
@@ -76,7 +75,7 @@ def test_bounds_have_to_hold_with_their_margin():
     high = float(steep.slope_bounds().upper)
     law = fx.friction(fx.profiles.Sine(0.5 * high), steep)
     target = fx.Target(steep, law.rho_plus, law.rho_minus)
-    slope = problem_of(require_targets(target)).task.slope
+    slope = problem_of(target).task.slope
     row = found(target)
     assert slope * row.settled.wanted[0] == pytest.approx(0.5 * high)
     low = -float(steep.slope_bounds().lower)

@@ -20,11 +20,13 @@ Bounds on |w''| leave d = 1/2 best as N grows (symmetric decreasing rearrangemen
 the range and the mean and raises no slope); bounds on the height of w do not.
 """
 
+from functools import cache
 from typing import Any
 
 import numpy as np
 
 
+@cache
 def kernel_ratio(harmonics: int) -> float:
     """`k(0)/|k(1/2)|`: up to this ratio of extreme slopes nothing is flattened."""
     squares = 1 / np.arange(1, harmonics + 1) ** 2.0
@@ -38,10 +40,15 @@ def free_energy(plus: Any, minus: Any, harmonics: int) -> Any:
     Exact where the ratio of `plus` and `minus` = -omega_minus is within `kernel_ratio`,
     and a lower bound beyond.
     """
-    n = np.arange(1, harmonics + 1)
-    odd = np.sum(1 / n[n % 2 == 1] ** 2.0)
-    even = np.sum(1 / n[n % 2 == 0] ** 2.0) if harmonics > 1 else np.inf
+    odd, even = _odd_and_even(harmonics)
     return 0.5 * np.pi**2 * ((plus + minus) ** 2 / odd + (plus - minus) ** 2 / even)
+
+
+@cache
+def _odd_and_even(harmonics: int) -> tuple[float, float]:
+    n = np.arange(1, harmonics + 1)
+    odd = float(np.sum(1 / n[n % 2 == 1] ** 2.0))
+    return odd, float(np.sum(1 / n[n % 2 == 0] ** 2.0)) if harmonics > 1 else np.inf
 
 
 def bending_energy(cos: Any, sin: Any) -> float:

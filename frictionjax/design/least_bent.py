@@ -3,6 +3,7 @@
 In NumPy: nothing to compile, so that a first fit of this kind takes no seconds.
 """
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -61,13 +62,19 @@ def _ends(task: Task, law: Geometry) -> np.ndarray:
 
 def _waves(harmonics: int, plus: Any, minus: Any) -> np.ndarray:
     """The combination of both kernels with `v(0) = plus`, `v(1/2) = -minus`."""
-    n = np.arange(1, harmonics + 1)
-    sizes, signs = np.sqrt(2.0) / (2 * np.pi * n), (-1.0) ** n
-    own, cross = np.sum(sizes**2), np.sum(signs * sizes**2)
+    sizes, signs, own, cross = _kernel(harmonics)
     determinant = own**2 - cross**2
     first = (own * plus + cross * minus) / determinant
     second = -(own * minus + cross * plus) / determinant
     return np.concatenate([sizes * (first + signs * second), np.zeros(harmonics)])
+
+
+@cache
+def _kernel(harmonics: int) -> tuple[np.ndarray, np.ndarray, float, float]:
+    """`k(y)` by its waves, their signs at half a period, `k(0)` and `k(1/2)`."""
+    n = np.arange(1, harmonics + 1)
+    sizes, signs = np.sqrt(2.0) / (2 * np.pi * n), (-1.0) ** n
+    return sizes, signs, float(np.sum(sizes**2)), float(np.sum(signs * sizes**2))
 
 
 def _curvature(layout: Layout, waves: np.ndarray) -> float:

@@ -19,7 +19,7 @@ from .profile_program import Runs, descended
 from .profile_report import report
 from .profile_result import ProfileFit
 from .starts import SHARES, places
-from .targets import Geometry, Target, extreme_slopes, known_geometry, require_targets
+from .targets import Geometry, Target, extreme_slopes, require_targets
 
 _KEPT = 200  # steps that there is room for: other budgets compile nothing new
 _FIRM = 50.0  # above every multiplier of the extreme slopes, which their ratio raises
@@ -71,11 +71,12 @@ def fit_profile(
     uncertainties that are not positive, bristles that press on nothing, and names and
     bounds of free parameters that do not fit together.
     """
-    asked = require_targets(targets)
-    for name, value in (("harmonics", harmonics), ("starts", starts)):
+    counts = ("harmonics", harmonics), ("starts", starts), ("max_steps", max_steps)
+    for name, value in counts:
         require_whole(name, value)
-    require_whole("max_steps", max_steps)
-    problem = problem_of(asked, harmonics, free, bounds, smallest_radius, largest_amplitude)
+    problem = problem_of(
+        targets, harmonics, free, bounds, smallest_radius, largest_amplitude
+    )
     apart: Any = np.array(places(problem.layout, starts))
     runs = least_bent(problem.layout, problem.task, starts)
     if runs is None:
@@ -95,25 +96,26 @@ def _descended(problem: Problem, apart: Any, seed: int, max_steps: int) -> Runs:
 
 
 def problem_of(
-    targets: list[Target],
+    targets: Any,
     harmonics: int = 16,
     free: Sequence[str] = (),
     bounds: Mapping[str, Any] | None = None,
     radius: float | None = None,
     amplitude: float | None = None,
 ) -> Problem:
-    """The problem of checked targets; see `fit_profile`."""
+    """The problem, checked, in the units of its targets; see `fit_profile`."""
+    asked, known = require_targets(targets)
     for name, value in (("smallest_radius", radius), ("largest_amplitude", amplitude)):
         if value is not None:
             require_real(name, value, f"{name} > 0 in periods", lambda v: v > 0)
-    law = _law(targets, free, bounds)
+    law = _law(asked, known, free, bounds)
     count = len(law.free) if isinstance(law, FreeLaw) else 0
     layout = Layout(int(harmonics), radius is not None, amplitude is not None, count)
-    wanted = np.array([[float(t.rho_plus), float(t.rho_minus)] for t in targets])
+    wanted = np.array([[float(t.rho_plus), float(t.rho_minus)] for t in asked])
     sizes = np.abs(wanted)
-    if targets[0].uncertainty is not None:
-        sizes = np.array([np.broadcast_to(t.uncertainty, 2) for t in targets], dtype=float)
-    weights = np.array([[float(t.weight)] for t in targets])
+    if asked[0].uncertainty is not None:
+        sizes = np.array([np.broadcast_to(t.uncertainty, 2) for t in asked], dtype=float)
+    weights = np.array([[float(t.weight)] for t in asked])
     factors = np.sqrt(weights) / sizes
     scale = float(np.max(factors * np.abs(wanted)))
     plus, minus = _expected(wanted, _own_geometry(law))
@@ -138,7 +140,7 @@ def problem_of(
         "smallest_radius": None if radius is None else float(radius),
         "largest_amplitude": None if amplitude is None else float(amplitude),
     }
-    return Problem(targets, law, layout, task, scale, given)
+    return Problem(asked, law, layout, task, scale, given)
 
 
 def _expected(wanted: np.ndarray, known: Geometry) -> tuple[float, float]:
@@ -155,15 +157,17 @@ def _expected(wanted: np.ndarray, known: Geometry) -> tuple[float, float]:
 
 
 def _law(
-    targets: list[Target], free: Sequence[str], bounds: Mapping[str, Any] | None
+    targets: list[Target],
+    known: list[Geometry],
+    free: Sequence[str],
+    bounds: Mapping[str, Any] | None,
 ) -> FixedLaw | FreeLaw:
     names = [free] if isinstance(free, str) else list(free)
     given = dict(bounds or {})
     for name in given:
         require(name in names, "bounds", name, f"names in free = {names}")
     if not names:
-        known = [known_geometry(target.bristle) for target in targets]
-        return FixedLaw(jax.tree_util.tree_map(lambda *one: np.stack(one), *known))
+        return FixedLaw(Geometry(*(np.stack(one) for one in zip(*known, strict=True))))
     distinct: list[Any] = []
     which = [_index_of(target.bristle, distinct) for target in targets]
     bristles = tuple(with_arrays(bristle) for bristle in distinct)

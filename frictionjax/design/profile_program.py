@@ -35,7 +35,7 @@ class Runs(NamedTuple):
 
 def repeated(starts: int, row: Any) -> Any:
     """`Runs` of one start, without the axis of starts, for each of them."""
-    return jax.tree_util.tree_map(lambda v: np.repeat(np.asarray(v)[None], starts, 0), row)
+    return jax.tree_util.tree_map(lambda v: np.asarray(v)[None].repeat(starts, 0), row)
 
 
 def descended(

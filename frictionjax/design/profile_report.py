@@ -9,6 +9,7 @@ from ..arguments import as_text
 from ..coefficients import coefficients_jit
 from ..potentials import potential
 from ..profiles import Fourier
+from ..programs import Program
 from .bending import bending_energy
 from .constraints import MARGIN, heights_of
 from .law import FreeLaw
@@ -33,12 +34,11 @@ def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
     energies = slope**2 * np.sum(np.asarray(runs.settled.waves) ** 2, axis=1)
     order = _sorted(losses, energies)
     best = int(order[0])
-    waves: Any = runs.settled.waves[best]
-    cos, sin = (slope * np.asarray(c) for c in heights_of(waves))
+    profile = Fourier(*_series(runs.settled.waves[best], np.asarray(task.slope)))
+    cos: Any = np.asarray(profile.cos)
+    sin: Any = np.asarray(profile.sin)
     free = runs.settled.free[best]
     bristles = _bristles(problem, free)
-    series: Any = cos, sin
-    profile = Fourier(*series)
     # They are computed while the starts are listed.
     found = tuple(coefficients_jit(potential(profile, bristle)) for bristle in bristles)
     wanted = np.asarray(task.coefficients)
@@ -68,10 +68,17 @@ def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
         message=_message(problem, runs, best, status, reached, losses[best]),
         starts=starts,
         history=history,
-        identify=partial(identifiability, task.law, series[0], series[1], free),
+        identify=partial(identifiability, task.law, cos, sin, free),
         free=_free_values(problem, free),
         bounds=problem.bounds,
     )
+
+
+@Program
+def _series(waves: Any, slope: Any) -> tuple[Any, Any]:
+    """Compiled: NumPy arrays become JAX arrays in 30 us so, by `asarray` in 70."""
+    cos, sin = heights_of(waves)
+    return slope * cos, slope * sin
 
 
 def _sorted(losses: np.ndarray, energies: np.ndarray) -> np.ndarray:

@@ -54,13 +54,13 @@ def geometry(bristle: AbstractBristle) -> Geometry:
     return Geometry(a, bare.alpha(), lower, upper)
 
 
-known_geometry = Program(geometry)
-
-
 @Program
-def _alone(bristle: AbstractBristle) -> tuple[Geometry, Any]:
-    """One call in place of the coefficients on a surface: 0.1 ms for 1."""
-    return geometry(bristle), rounding_of_alpha(bristle)
+def _alone(bristle: AbstractBristle) -> Any:
+    """Its geometry, and what alpha is rounded by, as one array: a fetch takes 20 us.
+
+    In place of the coefficients on a surface: 0.1 ms for 1.
+    """
+    return jnp.stack([*geometry(bristle), rounding_of_alpha(bristle)])
 
 
 def extreme_slopes(rho_plus: Any, rho_minus: Any, a: Any, alpha: Any) -> tuple[Any, Any]:
@@ -84,27 +84,29 @@ def coefficients_of(known: Geometry, plus: Any, minus: Any, xp: Any = jnp) -> An
     return xp.stack(both, axis=-1)
 
 
-def require_targets(targets: Any) -> list[Target]:
-    """The targets as a list, checked one by one.
+def require_targets(targets: Any) -> tuple[list[Target], list[Geometry]]:
+    """The targets as a list, checked one by one, and the geometry of their bristles.
 
     Raises `ValueError` naming the target and the argument: no targets, none of a target,
     a bristle that presses on nothing, coefficients of the wrong sign, shape or not finite,
     a weight or an uncertainty that is not positive, uncertainties for some targets only.
     """
     single = isinstance(targets, Target)
-    known = single or isinstance(targets, list | tuple)
-    require(known, "targets", type(targets).__name__, "a Target or a list of them")
+    listed = single or isinstance(targets, list | tuple)
+    require(listed, "targets", type(targets).__name__, "a Target or a list of them")
     many = [targets] if single else list(targets)
     require(many, "targets", "[]", "at least one Target")
-    for index, target in enumerate(many):
+    known = [
         _require_target("target" if single else f"targets[{index}]", target)
+        for index, target in enumerate(many)
+    ]
     given = [target.uncertainty is not None for target in many]
     allowed = "one for every target or for none"
     require(all(given) or not any(given), "uncertainty", None, allowed)
-    return many
+    return many, known
 
 
-def _require_target(name: str, target: Any) -> None:
+def _require_target(name: str, target: Any) -> Geometry:
     known = isinstance(target, Target)
     require(known, name, type(target).__name__, "a frictionjax.Target")
     bristle = target.bristle
@@ -121,20 +123,20 @@ def _require_target(name: str, target: Any) -> None:
     require_real(f"{name}.weight", target.weight, "weight > 0", _positive)
     if target.uncertainty is not None:
         _require_uncertainty(f"{name}.uncertainty", target.uncertainty)
-    _require_pressing(name, bristle)
+    return _require_pressing(name, bristle)
 
 
-def _require_pressing(name: str, bristle: AbstractBristle) -> None:
+def _require_pressing(name: str, bristle: AbstractBristle) -> Geometry:
     """The bristle is admissible on a surface that is hardly wavy."""
-    known, noise = _alone(bristle)
-    alpha = float(known.alpha)
-    presses = np.isfinite(alpha) and abs(alpha) > float(noise)
-    if presses and float(known.lower) < -_GENTLE and float(known.upper) > _GENTLE:
-        return
-    try:
-        require_admissible(_on_nearly_flat(bristle))
-    except ValueError as problem:
-        raise ValueError(f"{name}.{problem}") from None
+    *found, noise = np.asarray(_alone(bristle))
+    known = Geometry(*found)
+    presses = np.isfinite(known.alpha) and abs(known.alpha) > noise
+    if not (presses and known.lower < -_GENTLE and known.upper > _GENTLE):
+        try:
+            require_admissible(_on_nearly_flat(bristle))
+        except ValueError as problem:
+            raise ValueError(f"{name}.{problem}") from None
+    return known
 
 
 def _positive(value: float) -> bool:
