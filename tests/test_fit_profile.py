@@ -92,6 +92,13 @@ def check_met(fit, target):
     assert fit.bending_energy <= 1.01 * fit.bending_bound
 
 
+def test_a_plateau_of_bumps_that_hardly_bend():
+    """Newton's steps alone left 4e-9 of the coefficient there, with status MET."""
+    part = fx.bristles.SlantedSpring(1.79937389623384, 0.562861595867061, 1.0, 0.2835998986)
+    target = fx.Target(part, 0.6710843956660764, -5.435253666816398)
+    check_met(fx.fit_profile(target), target)
+
+
 @pytest.mark.parametrize("kind", BRISTLES)
 def test_random_reachable_targets(kind):
     rng = np.random.default_rng(7)

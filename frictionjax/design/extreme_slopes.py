@@ -7,9 +7,9 @@ import jax.numpy as jnp
 from jaxtyping import Array
 
 from ..arguments import Real
+from ..roots import find_root
 from .constraints import POINTS, at, basis, derivatives
 
-_NEWTON = 6
 _STEPS = 64
 _EXACT = 2e-15  # of the range of slopes
 
@@ -46,14 +46,10 @@ def _peak(waves: Array, side: Real, values: Array) -> Peaks:
     bump = (values >= jnp.roll(values, 1)) & (values >= jnp.roll(values, -1))
     # A series of N waves has at most N maxima; at a flat stretch nearly all tie.
     heights, best = jax.lax.top_k(jnp.where(bump, values, -jnp.inf), waves.size // 2)
-    scanned, width = best.astype(float) / values.size, 1 / values.size
-
-    def newton(_, y):
-        slope, bend = at(waves, y, 1), at(waves, y, 2)
-        step = jnp.where(side * bend < 0, slope / jnp.where(bend == 0, 1.0, bend), 0.0)
-        return jnp.clip(y - step, scanned - width, scanned + width)
-
-    places = jax.lax.fori_loop(0, _NEWTON, newton, scanned)
+    scanned = best.astype(float) / values.size
+    # Brackets: on a flat stretch six of Newton's steps alone left 5e-9 of the slope.
+    width = jnp.where(jnp.isfinite(heights), 1 / values.size, 0.0)
+    places = find_root(lambda y: -side * at(waves, y, 1), scanned - width, scanned + width)
     polished = side * at(waves, places)
     better = polished >= heights
     found = jnp.where(better, polished, heights)
