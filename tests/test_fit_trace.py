@@ -282,7 +282,9 @@ def test_samples_so_coarse_that_slips_alias():
     ts = 0.1 + 0.3217 * np.arange(30)
     fit = fx.fit_trace(trace_of(scene_of(), ts=ts), scene_of(), 0.05, harmonics=4)
     assert fit.status != TraceStatus.NO_SLIDE
-    assert np.max(pulls(fit), initial=0.0) < 4
+    # sqrt(chi2) of 8 coefficients at 99.8%: the largest pull of a whole curve. Seeds 0 to 9
+    # gave 4.3, 3.5, 3.4 and seven below 1.7.
+    assert np.max(pulls(fit), initial=0.0) < 4.93
 
 
 @pytest.mark.slow
