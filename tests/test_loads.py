@@ -134,18 +134,18 @@ def test_steepest_places_of_plain_loads():
 
 
 def test_slides_over_a_ramp_between_samples():
-    """Tolerances come from the fastest slide: values were 0.0045 eps off, status OK."""
+    """Tolerances come from the fastest slide: values were 0.0076 eps off, status OK."""
     scene = fx.Scene(
         fx.profiles.Sine(0.1),
         fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
         fx.supports.Spring(1.0),
-        with_ramp(1.5, 1e-3),
+        with_ramp(1.5, 1e-3, 0.2),
         3.0,
     )
-    assert path_of(scene).speed == pytest.approx(400.2, rel=1e-3)
+    assert path_of(scene).speed == pytest.approx(200.2, rel=1e-3)
     eps, ts = 3e-4, 1.5 + np.array([0.004, 0.01, 0.03, 0.1])
     found = fx.solve(scene, eps, 0.5, ts, dissipation=False)
-    truth = fx.solve(scene, eps, 0.5, ts, 1e-6, dissipation=False)
+    truth = fx.solve(scene, eps, 0.5, ts, 1e-4, dissipation=False)
     assert found.ok
     assert truth.ok
     assert np.max(np.abs(np.asarray(found.z - truth.z))) < 1e-3 * eps
