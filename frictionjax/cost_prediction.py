@@ -53,7 +53,7 @@ class CostPrediction(NamedTuple):
 
     def __str__(self) -> str:
         if not np.isfinite(self.seconds):
-            return "unknown: the load turns too often for lanes"
+            return "unknown: the load turns too often, or floats do not hold eps^gamma"
         where = "" if self.measured else " (another machine; this one is not measured)"
         return (
             f"{_seconds(self.low)} to {_seconds(self.high)} s of computation, up to "

@@ -17,6 +17,7 @@ from .progress import progress_bar
 from .provenance import describe
 from .scene import Scene, require_times, require_told_apart
 from .strip import strips_at
+from .viscosity import viscosity_of
 from .wiggly.engine import integrate_cells
 from .wiggly.own_methods import is_ours
 from .wiggly.status import Status
@@ -119,7 +120,7 @@ def sweep(
         key: (_DIMS[: value.ndim + 1], value.reshape(*shape, *value.shape[1:]))
         for key, value in values.items()
     }
-    columns["viscosity"] = (_DIMS[:2], eps ** gamma[:, None])
+    columns["viscosity"] = (_DIMS[:2], viscosity_of(eps, gamma[:, None]))
     columns |= {key: (_DIMS[2:], v) for key, v in _limit_values(scene, limit).items()}
     import xarray as xr  # 0.4 s, which another thread may spend while cells run
 

@@ -7,6 +7,7 @@ import jax
 import numpy as np
 
 from ..scene import Scene
+from ..viscosity import quiet_where_extreme, viscosity_of
 from .evaluation import Answers, evaluate
 from .lane import Cells, LaneScene, Sums
 from .lanes import Room, prepare
@@ -105,6 +106,7 @@ class _Sweep(NamedTuple):
         return rough
 
 
+@quiet_where_extreme
 def integrate_cells(
     scene: Scene,
     eps: np.ndarray,
@@ -137,7 +139,7 @@ def integrate_cells(
     plan = planned(scene, lanes, path, eps, gamma, ts.size, accuracy, method)
     control, ground, needs, ridden = plan
     steering = control.tolerance, control.loosest, control.pace, control.reach
-    cells = Cells(eps, eps**gamma, control.first_step, *steering)
+    cells = Cells(eps, viscosity_of(eps, gamma), control.first_step, *steering)
     parts = _Cellwise(eps, ground, cells, np.asarray(control.brief), needs)
     every = method == "resolved"
     sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, wanted, every, report)

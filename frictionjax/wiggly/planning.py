@@ -13,6 +13,7 @@ from ..potentials import AbstractPotential, BristlePotential
 from ..profiles import AbstractProfile
 from ..programs import Program, in_chunks
 from ..scene import Scene
+from ..viscosity import viscosity_of
 from .forgetting import lag_forces
 from .landscape import Folds
 from .lane import LaneScene
@@ -81,7 +82,7 @@ def ground_of(
     scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray, folds: Folds
 ) -> Ground:
     """What windows need to know of each cell."""
-    lags = lag_forces(scene.potential, eps, folds, path.speed * eps**gamma)
+    lags = lag_forces(scene.potential, eps, folds, path.speed * viscosity_of(eps, gamma))
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
     well, tip = in_chunks(_tips, _CELLS, (scene.potential, scene.z0), (eps,))
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
@@ -103,7 +104,7 @@ def _relaxation(scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray):
     """Time in s until z0 is within a thousandth of a well of the strip (Lemma 7)."""
     far = abs(float(scene.z0) - path.states[0])
     efolds = np.log(np.maximum(far / (_NEAR_STRIP * eps), 1.0))
-    return efolds * eps**gamma / path.stiffness
+    return efolds * viscosity_of(eps, gamma) / path.stiffness
 
 
 def _no_rides(count: int) -> np.ndarray:

@@ -7,6 +7,7 @@ import numpy as np
 from ..potentials import BristlePotential
 from ..profiles import Fourier
 from ..scene import Scene
+from ..viscosity import quiet_where_extreme, viscosity_of
 from .lane import LaneScene
 from .needs import Needs, cost_of, longest_lane, wells_a_leg, wells_of
 from .path import Path, path_of
@@ -47,6 +48,7 @@ class Workload(NamedTuple):
     weight: float
 
 
+@quiet_where_extreme
 def workload(
     scene: Scene,
     eps: np.ndarray,
@@ -64,7 +66,7 @@ def workload(
     plan = planned(scene, lanes, path, eps, gamma, times, accuracy, method)
     control, ground, needs, ridden = plan
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
-    drag = eps**gamma * path.speed / (path.rho_plus - path.rho_minus)
+    drag = viscosity_of(eps, gamma) * path.speed / (path.rho_plus - path.rho_minus)
     steps = _steps_a_well(control, lag, np.asarray(drag))
     total = steps * cost_of(path, eps, needs, times)
     chain = steps * longest_lane(path, eps, needs)

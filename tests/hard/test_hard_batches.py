@@ -45,6 +45,16 @@ def test_alone_in_a_batch_and_beside_a_failing_lane(name):
     assert np.array_equal(same.z, alone.z)
 
 
+def test_a_viscosity_that_no_float_holds_is_a_status():
+    """In wells of 10 m; NumPy warned of an overflow, which here is an error."""
+    bristle, load = fx.bristles.Homothetic(1e4), fx.loads.Sine(3000.0, 3.0)
+    scene = fx.Scene(fx.profiles.Sine(0.1), bristle, fx.supports.Spring(1.0), load, 3.0)
+    found = fx.sweep(scene, [10.0], [400.0, 1.0])
+    assert np.isinf(found.viscosity.sel(gamma=400.0)).all()
+    assert int(found.status.sel(gamma=400.0).item()) != 0
+    assert int(found.status.sel(gamma=1.0).item()) == 0
+
+
 def test_a_failing_lane_disturbs_no_other_cell_of_a_sweep():
     scene, ts = HARD["kinks and plateaus"].build(), np.linspace(0.0, 3.0, 61)
     alone = fx.sweep(scene, [0.05, 0.02], [1.0], ts)

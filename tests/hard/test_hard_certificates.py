@@ -7,7 +7,7 @@ from catalogue import HARD
 
 import frictionjax as fx
 
-_COUNT = 12001  # of all curves: a kind of scene compiles once
+_COUNT = 16001  # of all curves: a kind of scene compiles once
 _FINE = 0.08  # of eps between two samples
 # Slips of 1e-15 s and less at times near 1 s: no two floats in one.
 _TOO_SHORT = ("eps 1e-8", "slips shorter than floats")
