@@ -75,7 +75,9 @@ def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
 
     `eps` in m, `gamma` > 0; `ts` in s, increasing, in [0, duration]; `z` in m; shapes
     (n,), n >= 2, NumPy or JAX. The curve's start is not compared with the scene's `z0`.
-    Needs slips sampled at eps/4 or finer; a tenth of eps is comfortable.
+    Needs slips sampled at eps/4 or finer; a tenth of eps is comfortable, and as much finer
+    as the wells have flanks narrower than a sine's: a rod that hardly keeps its contact
+    needs eps/500, and true curves are told `VISCOSITY` or `OFF` before.
 
     `ok` accepts a curve within eps/100 of a solution, whatever the deviation, and rejects
     one that skips a well, is shifted by eps/10 or has another gamma. The residual of the
