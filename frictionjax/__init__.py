@@ -33,6 +33,7 @@ _HOME = {
     "fit_budget": "cost_prediction",
     "fit_angle": "design.angle",
     "fit_slide": "design.slide_fit",
+    "fit_slide_profile": "design.slide_profile",
     "steady_slide": "design.steady_slide",
     "check_design": "design.design_check",
     "tolerance": "design.tolerance",
@@ -67,6 +68,7 @@ if TYPE_CHECKING:
     from .design.maps import design_map as design_map
     from .design.profile_fit import fit_profile as fit_profile
     from .design.slide_fit import fit_slide as fit_slide
+    from .design.slide_profile import fit_slide_profile as fit_slide_profile
     from .design.steady_slide import steady_slide as steady_slide
     from .design.targets import Target as Target
     from .design.tolerance import tolerance as tolerance
