@@ -31,7 +31,7 @@ class Peaks(NamedTuple):
 
 
 def peaks(waves: Array) -> Peaks:
-    """Maximum and minimum of `v`: a scan on the rows, then Newton.
+    """Maximum and minimum of `v`: a scan on the rows, then Newton in brackets.
 
     As `periodic_extrema`, which takes 3 s to compile each time it is used on a series of
     16 waves; here nobody differentiates.

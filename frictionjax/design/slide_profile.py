@@ -96,7 +96,7 @@ def fit_slide_profile(
     "peak". `gamma`, `rate` (N/s), `support`: as in `steady_slide`. `options`: of
     `fit_profile`. Coefficients that a limit design is asked for are moved until its slide
     shows the forces (Broyden's method in logarithms: forces tend to coefficients, so the
-    first step assumes that they are): 4 to 8 designs to 1e-6.
+    first step assumes that they are): 2 to 6 designs to 1e-6 where it was tried.
 
     Raises `ValueError` as `fit_profile` and `steady_slide` do, and for several targets.
     """

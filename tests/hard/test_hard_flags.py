@@ -23,7 +23,6 @@ from test_hard_flags import values_of
 path, *names = sys.argv[1:]
 np.savez(path, **{name.replace("/", "|"): values_of(name) for name in names})
 """
-_QUICK = "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false"
 
 
 def values_of(name):
@@ -50,7 +49,8 @@ def test_values_are_those_that_users_get(tmp_path):
 
 @pytest.mark.slow
 def test_compiler_flags_do_not_matter_in_any_scene(tmp_path):
-    flags = {"plain": "", "fast": FAST_CPU_FLAGS, "quick": _QUICK}
+    of_suite = os.environ["XLA_FLAGS"]  # see conftest.py
+    flags = {"plain": "", "fast": FAST_CPU_FLAGS, "quick": of_suite}
     found = {
         name: values_with(value, list(HARD), tmp_path / f"{name}.npz")
         for name, value in flags.items()
