@@ -6,6 +6,7 @@ import pytest
 import frictionjax as fx
 from frictionjax.design import slide_fit
 from frictionjax.design.fit_status import FitStatus
+from frictionjax.design.slide_fit import SlideFit
 from frictionjax.design.steady_slide import SteadySlide
 
 WAVES = fx.profiles.Fourier(cos=[0.004, 0.002], sin=[0.015, -0.003])
@@ -13,25 +14,35 @@ SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
 EPS = 1e-2
 
 
+def ratio_of(slide, force):
+    return float(-getattr(slide, f"{force}_plus") / getattr(slide, f"{force}_minus"))
+
+
 @pytest.mark.slow
-def test_the_slide_has_the_ratio_that_the_limit_misses():
-    found = fx.fit_slide(WAVES, SLANTED, EPS, ratio=1.25)
+@pytest.mark.parametrize("force", ["mean", "peak"])
+def test_the_slide_has_the_ratio_that_the_limit_misses(force):
+    found = fx.fit_slide(WAVES, SLANTED, EPS, ratio=1.25, force=force)
     assert found.success
     assert found.status == FitStatus.OK
     slide = fx.steady_slide(WAVES, found.bristle, EPS)
-    assert float(slide.ratio) == pytest.approx(1.25, rel=1e-9)
+    assert ratio_of(slide, force) == pytest.approx(1.25, rel=1e-9)
     assert float(found.achieved) == pytest.approx(1.25, rel=1e-9)
     assert np.min(np.abs(found.solutions - found.value)) == 0
     limit = fx.fit_angle(WAVES, SLANTED, ratio=1.25)
     assert found.limit.value == limit.value
-    missed = fx.steady_slide(WAVES, limit.bristle, EPS).ratio
-    assert abs(float(missed) / 1.25 - 1) > 1e-3
-    near = fx.fit_slide(WAVES, SLANTED, EPS, ratio=1.26)
+    missed = fx.steady_slide(WAVES, limit.bristle, EPS)
+    assert abs(ratio_of(missed, force) / 1.25 - 1) > 1e-3
+    near = fx.fit_slide(WAVES, SLANTED, EPS, ratio=1.26, force=force)
     slope = (near.value - found.value) / 0.01
     mean = 0.5 * (near.by_target + found.by_target)
     assert float(slope) == pytest.approx(float(mean), rel=1e-2)
-    assert "ratio = 1.25 at eps = 0.01: found, angle = " in found.message
-    far = fx.fit_slide(WAVES, SLANTED, EPS, ratio=1.6, bounds=(0.2, 1.1))
+    asked = f"ratio = 1.25 of {force} forces at eps = 0.01: found, angle = "
+    assert asked in found.message
+    again = SlideFit.from_json(found.to_json())
+    assert repr(again) == repr(found)
+    assert again.by_target == found.by_target
+    assert np.array_equal(again.solutions, found.solutions)
+    far = fx.fit_slide(WAVES, SLANTED, EPS, ratio=1.6, bounds=(0.2, 1.1), force=force)
     assert far.status == FitStatus.UNREACHABLE
     assert not far.success
     assert "cannot be reached by angle: steady slides show (" in far.message
@@ -40,6 +51,8 @@ def test_the_slide_has_the_ratio_that_the_limit_misses():
 def test_wrong_arguments_are_named():
     with pytest.raises(ValueError, match="eps = 0: needs eps > 0"):
         fx.fit_slide(WAVES, SLANTED, 0.0, ratio=1.2)
+    with pytest.raises(ValueError, match="force = 'last': needs 'mean' or 'peak'"):
+        fx.fit_slide(WAVES, SLANTED, EPS, force="last", ratio=1.2)
     with pytest.raises(ValueError, match="support = 'float': needs"):
         fx.fit_slide(WAVES, SLANTED, EPS, support=1.0, ratio=1.2)
     with pytest.raises(ValueError, match="targets = 'none'"):
@@ -79,6 +92,12 @@ def test_slides_that_were_not_computed_are_not_unreachable(monkeypatch):
     assert fit(0, 1.6).status == FitStatus.UNREACHABLE
     assert fit(0, 1.6).failed.size == 0
     assert fit(1, 1.1).status == FitStatus.OK  # found on what is known
+    again = SlideFit.from_json(fit(1, 1.6).to_json())
+    assert again.status == FitStatus.UNKNOWN
+    assert again.message == found.message
+    assert again.limit.message == found.limit.message
+    exact = 1.0 + 0.3 * float(found.failed[0])
+    assert fit(0, exact).status == FitStatus.OK  # a value of the scan itself
     nothing = fit(9, 1.6)
     assert nothing.status == FitStatus.UNKNOWN
     assert nothing.reachable.shape == (0, 2)

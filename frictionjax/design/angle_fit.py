@@ -11,6 +11,8 @@ from ..arguments import Real, as_text, is_concrete, require
 from ..bristles import AbstractBristle
 from ..profiles import AbstractProfile
 from ..programs import Program
+from .angle_json import dump, fields
+from .fit_json import written
 from .fit_status import GOOD, FitStatus, status_of
 from .free_parameter import FreeParameter, free_parameter
 from .quantities import QUANTITIES, Slopes, on_slopes, quantity_of
@@ -101,6 +103,19 @@ class AngleFit(eqx.Module):
     def sensitivities(self) -> Sensitivities:
         """Derivatives of `value`, by the implicit function theorem."""
         return sensitivities_of(self)
+
+    def to_json(self, path: Any = None) -> str:
+        """Everything as JSON; written to `path` where given."""
+        return written(dump(self), path)
+
+    @classmethod
+    def from_json(cls, source: Any) -> "AngleFit":
+        """The result again, from the text or the path of its JSON.
+
+        A bristle or a surface given as functions is None. Raises `ValueError` for what is
+        no such JSON.
+        """
+        return cls(**fields(source))
 
     def __repr__(self) -> str:
         if not is_concrete(self) or self.code.ndim:

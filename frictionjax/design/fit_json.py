@@ -4,6 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..arguments import require
 
 
@@ -34,3 +36,21 @@ def written(text: str, path: Any) -> str:
     if path is not None:
         Path(path).write_text(text, encoding="utf-8")
     return text
+
+
+def plain(value: Any) -> Any:
+    """Lists in place of arrays; JSON has neither NaN, null here, nor infinity, a text."""
+    if isinstance(value, dict):
+        return {name: plain(entry) for name, entry in value.items()}
+    if hasattr(value, "shape"):
+        return plain(np.asarray(value).tolist())
+    if isinstance(value, list):
+        return [plain(entry) for entry in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None if np.isnan(value) else ("inf" if value > 0 else "-inf")
+    return value
+
+
+def numbers_of(rows: Any) -> np.ndarray:
+    """The array that `plain` made lists of."""
+    return np.array(rows, dtype=float)  # null becomes NaN

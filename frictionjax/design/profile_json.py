@@ -1,24 +1,21 @@
 """Fits of profiles as JSON, and back."""
 
-import dataclasses
 import json
 from functools import partial
 from typing import Any
 
-import equinox as eqx
 import numpy as np
 
-from .. import bristles
 from ..coefficients import Coefficients
 from ..profiles import Fourier
 from .fit_json import document_of
 from .open_directions import Identifiability
+from .part_json import part_entry, part_of
 from .profile_history import History, Start
 from .profile_status import ProfileStatus
 
 _KIND = "frictionjax.ProfileFit"
 _SHAPES = ("cos", "sin", "free")  # of iterates: most of the numbers, left out
-_KINDS = ("Homothetic", "VerticalSpring", "SlantedSpring", "AngularSpring")
 _PLAIN = (
     "bending_energy",
     "bending_bound",
@@ -48,7 +45,7 @@ def dump(fit: Any) -> str:
     document: dict[str, Any] = {"kind": _KIND, "status": fit.status.name}
     document |= {name: getattr(fit, name) for name in _PLAIN}
     document["profile"] = {"cos": _rows(fit.profile.cos), "sin": _rows(fit.profile.sin)}
-    document["bristles"] = [_bristle(bristle) for bristle in fit.bristles]
+    document["bristles"] = [part_entry(bristle) for bristle in fit.bristles]
     document["coefficients"] = [
         {name: float(value) for name, value in vars(found).items()}
         for found in fit.coefficients
@@ -80,7 +77,7 @@ def _fields(document: dict[str, Any]) -> dict[str, Any]:
     seen = {k: v if k == "rank" else _array(v) for k, v in seen.items()}
     return {name: _number(document[name]) for name in _PLAIN} | {
         "profile": Fourier(**profile),
-        "bristles": tuple(_built(entry) for entry in document["bristles"]),
+        "bristles": tuple(part_of(entry) for entry in document["bristles"]),
         "coefficients": tuple(Coefficients(**found) for found in document["coefficients"]),
         "targets": _array(document["targets"]),
         "residuals": _array(document["residuals"]),
@@ -101,20 +98,6 @@ def _history(entry: dict[str, Any]) -> History:
     columns = {name: _array(rows) for name, rows in entry.items()}
     empty = np.zeros((*columns["loss"].shape, 0))
     return History(**columns, **dict.fromkeys(_SHAPES, empty))
-
-
-def _bristle(bristle: Any) -> dict[str, Any]:
-    kind = type(bristle).__name__
-    if kind not in _KINDS or type(bristle) is not getattr(bristles, kind):
-        return {"kind": kind}  # functions cannot be saved
-    names = [field.name for field in dataclasses.fields(bristle)]
-    return {"kind": kind} | {name: float(getattr(bristle, name)) for name in names}
-
-
-def _built(entry: dict[str, Any]) -> eqx.Module | None:
-    numbers = dict(entry)
-    kind = numbers.pop("kind")
-    return getattr(bristles, kind)(**numbers) if numbers else None
 
 
 def _rows(values: Any) -> Any:

@@ -16,6 +16,8 @@ class ProfileStatus(Outcome):
     OUT_OF_BOUNDS = 7, "not reachable with free parameters inside their bounds"
     MAX_STEPS = 8, "the step budget ran out before the optimum; raise max_steps"
     NOT_FINITE = 9, "the fit left the range of finite numbers"
+    NO_SLIDE = 10, "a design whose steady slide was not found"
+    NOT_SETTLED = 11, "designs and their slides did not settle"
 
 
 MET = (ProfileStatus.MET, ProfileStatus.WITHIN_UNCERTAINTY)

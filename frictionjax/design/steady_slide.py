@@ -26,6 +26,7 @@ from ..supports import Spring
 from ..wiggly.status import Status, status_of
 from .slide_period import STEPS, Period, Slide, least_pull, slide_forces
 
+FORCES = ("mean", "peak")  # of a slide, that designs may ask for
 _LANES = 4  # eps at least that are solved at once: one program for a few of them
 _OPEN = 1e-7  # of log D over a period: mean forces right to that
 
@@ -77,8 +78,8 @@ class _Sides(NamedTuple):
     code: Real
 
 
-class MeanForces(NamedTuple):
-    """Mean forces of slides to the right and to the left, and whether both are known."""
+class SlideForces(NamedTuple):
+    """Forces of slides to the right and to the left, and whether both are known."""
 
     rho_plus: Real
     rho_minus: Real
@@ -94,11 +95,23 @@ def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) 
     return jax.vmap(one)(jnp.array([1.0, -1.0]))
 
 
-def mean_forces(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real):
-    """Mean forces at one eps, without checks; traceable."""
+def forces_at(potential, peak: Any, eps: Real, gamma: Real, rate: Real, stiffness: Real):
+    """Mean forces at one eps, or where `peak` the largest; without checks, traceable."""
     found = _both_sides(potential, eps, gamma, rate, stiffness)
     good = jnp.all(found.code == int(Status.OK))
-    return MeanForces(found.mean[0], found.mean[1], good)
+    force = jnp.where(peak, found.peak, found.mean)
+    return SlideForces(force[0], force[1], good)
+
+
+def require_force(force: str) -> None:
+    """Raise `ValueError` unless designs know this force."""
+    require(force in FORCES, "force", force, "'mean' or 'peak'")
+
+
+def forces_of(slide: SteadySlide, force: str) -> SlideForces:
+    """Its mean or its peak forces."""
+    plus, minus = getattr(slide, f"{force}_plus"), getattr(slide, f"{force}_minus")
+    return SlideForces(plus, minus, slide.ok)
 
 
 @Program

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..profiles import Fourier
-from .fit_json import document_of
+from .fit_json import document_of, plain
 from .trace import Trace
 from .trace_seen import Identifiability
 from .trace_status import TraceStatus
@@ -30,20 +30,7 @@ def dump(fit: Any) -> str:
         document["trace"]["uncertainty"] = trace.uncertainty
     document["history"] = fit.history._asdict()
     document["identifiability"] = fit.identifiability._asdict()
-    return json.dumps(_plain(document), indent=1)
-
-
-def _plain(value: Any) -> Any:
-    """JSON has no arrays and no NaN."""
-    if isinstance(value, dict):
-        return {name: _plain(entry) for name, entry in value.items()}
-    if hasattr(value, "shape"):
-        return _plain(np.asarray(value).tolist())
-    if isinstance(value, list):
-        return [_plain(entry) for entry in value]
-    if isinstance(value, float) and not np.isfinite(value):
-        return None if np.isnan(value) else ("inf" if value > 0 else "-inf")
-    return value
+    return json.dumps(plain(document), indent=1)
 
 
 def fields(source: Any) -> dict[str, Any]:

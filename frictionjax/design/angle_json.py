@@ -1,0 +1,47 @@
+"""Designs of bristles as JSON, and back."""
+
+import json
+from typing import Any
+
+import jax.numpy as jnp
+
+from .fit_json import document_of, numbers_of, plain
+from .part_json import part_entry, part_of
+from .quantities import Slopes
+
+_KIND = "frictionjax.AngleFit"
+_ARRAYS = ("value", "achieved", "target", "roots", "admissible", "reachable")
+_NAMES = ("free", "quantity")
+_PARTS = ("kind", "bristle", "profile", "code", "slopes")
+
+
+def entry_of(fit: Any) -> dict[str, Any]:
+    """An `AngleFit` as a document; one made of functions loses them."""
+    document: dict[str, Any] = {"kind": _KIND, "message": fit.message}
+    document |= {name: getattr(fit, name) for name in (*_ARRAYS, *_NAMES, "code")}
+    document |= {"bristle": part_entry(fit.bristle), "profile": part_entry(fit.profile)}
+    return plain(document | {"slopes": fit.slopes._asdict()})
+
+
+def fields_of(document: dict[str, Any]) -> dict[str, Any]:
+    """The fields of an `AngleFit`, of such a document."""
+    found = {name: jnp.asarray(numbers_of(document[name])) for name in _ARRAYS}
+    slopes = {k: jnp.asarray(numbers_of(v)) for k, v in document["slopes"].items()}
+    return found | {
+        "bristle": part_of(document["bristle"]),
+        "profile": part_of(document["profile"]),
+        "code": jnp.asarray(document["code"]),
+        "slopes": Slopes(**slopes),
+        "free": document["free"],
+        "quantity": document["quantity"],
+    }
+
+
+def dump(fit: Any) -> str:
+    """The JSON text of an `AngleFit`."""
+    return json.dumps(entry_of(fit), indent=1)
+
+
+def fields(source: Any) -> dict[str, Any]:
+    """The fields of an `AngleFit`, of a JSON text or file."""
+    return fields_of(document_of(source, _KIND, {*_ARRAYS, *_NAMES, *_PARTS}))

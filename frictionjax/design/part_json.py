@@ -1,0 +1,43 @@
+"""Bristles and surfaces as entries of JSON documents, and back."""
+
+import dataclasses
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+
+from .. import bristles, profiles
+
+_BRISTLES = ("Homothetic", "VerticalSpring", "SlantedSpring", "AngularSpring")
+_PROFILES = ("Sine", "Fourier", "Spline")
+_PARTS: dict[str, Any] = {name: getattr(bristles, name) for name in _BRISTLES}
+_PARTS |= {name: getattr(profiles, name) for name in _PROFILES}
+
+
+def part_entry(part: Any) -> dict[str, Any]:
+    """Kind and numbers of a part; the kind alone of one made of functions.
+
+    Of a batch of bristles each number is a list.
+    """
+    kind = type(part).__name__
+    if _PARTS.get(kind) is not type(part):
+        return {"kind": kind}
+    if kind == "Spline":
+        count = np.size(part.coefficients)
+        return {"kind": kind, "heights": [float(part(k / count)) for k in range(count)]}
+    names = [field.name for field in dataclasses.fields(part)]
+    return {"kind": kind} | {k: np.asarray(getattr(part, k)).tolist() for k in names}
+
+
+def part_of(entry: dict[str, Any]) -> Any:
+    """The part again; None for one made of functions."""
+    numbers = {name: value for name, value in entry.items() if name != "kind"}
+    if not numbers:
+        return None
+    kind = entry["kind"]
+    if kind in _PROFILES or np.ndim(next(iter(numbers.values()))) == 0:
+        return _PARTS[kind](**numbers)
+    first = _PARTS[kind](**{name: rows[0] for name, rows in numbers.items()})
+    # The constructor takes one bristle.
+    leaves = [np.array(rows) for rows in numbers.values()]
+    return eqx.tree_at(lambda b: [getattr(b, k) for k in numbers], first, leaves)
