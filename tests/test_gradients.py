@@ -11,6 +11,8 @@ import frictionjax as fx
 
 EPS = 0.05
 TIMES = np.linspace(0.1, 1.4, 9)
+# Where the load turns, but for a rounding, states have a derivative on either side.
+SMOOTH = np.abs(TIMES - 0.75) > 1e-9
 
 
 def scene_of(p):
@@ -18,20 +20,21 @@ def scene_of(p):
         fx.profiles.Sine(p[0]),
         fx.bristles.SlantedSpring(p[1], 2.2, 1.0, p[2]),
         fx.supports.Spring(p[3]),
-        fx.loads.Sine(p[4], 3.0),
+        fx.loads.Triangle(p[4], p[8]),
         1.5,
         p[5],
     )
 
 
-POINT = jnp.array([0.1, 1.0, 0.4, 1.0, 1.0488, 0.01, EPS, 0.8])
 NAMES = ["slope", "stiffness", "angle", "support", "amplitude", "z0", "eps", "gamma"]
+NAMES += ["period"]
+POINT = jnp.array([0.1, 1.0, 0.4, 1.0, 1.0488, 0.01, EPS, 0.8, 3.0])
 
 
 @eqx.filter_jit
 def states(p):
     found = fx.solve(scene_of(p), p[6], p[7], TIMES, accuracy=1e-9)
-    return jnp.concatenate([found.z, found.dissipation[-1:]])
+    return jnp.concatenate([found.z[SMOOTH], found.dissipation[-1:]])
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +44,11 @@ def jacobian():
 
 @pytest.mark.parametrize("i", range(len(NAMES)), ids=NAMES)
 def test_reverse_mode_agrees_with_central_differences(jacobian, i):
-    """About 15 slips, through Rosenbrock steps and the energy balance."""
+    """About 15 slips, through Rosenbrock steps and the energy balance.
+
+    The load turns at one of the times asked for, or a rounding from it: the dissipation
+    from there on must know when.
+    """
     width = 3e-5 * max(0.1, abs(float(POINT[i])))
     shift = jnp.zeros_like(POINT).at[i].set(width)
     ends = [states(POINT + share * shift) for share in (1, -1, 2, -2)]
@@ -58,7 +65,7 @@ def test_forward_mode_with_the_adjoint_for_it(jacobian):
     def run(p):
         adjoint = diffrax.ForwardMode()
         found = fx.solve(scene_of(p), p[6], p[7], TIMES, accuracy=1e-9, adjoint=adjoint)
-        return found.z
+        return found.z[SMOOTH]
 
     _, tangent = jax.jit(lambda p: jax.jvp(run, (p,), (direction,)))(POINT)
     expected = jacobian[:-1, 3]
@@ -67,7 +74,7 @@ def test_forward_mode_with_the_adjoint_for_it(jacobian):
 
 @pytest.mark.slow
 def test_gradient_with_respect_to_a_whole_scene():
-    scene = scene_of([0.1, 1.0, 0.4, 1.0, 1.0488, 0.01])
+    scene = scene_of([0.1, 1.0, 0.4, 1.0, 1.0488, 0.01, EPS, 0.8, 3.0])
 
     @eqx.filter_jit
     @eqx.filter_grad

@@ -188,7 +188,7 @@ def count_work(
     if hasattr(finding, "root_finder"):
         counting = _CountingFinder(finding.root_finder)
         finding = eqx.tree_at(lambda s: s.root_finder, finding, counting)
-    stops, _ = stops_of(ts, scene.turning_points(), ts[-1])
+    stops, _ = stops_of(ts, scene.turning_points(), ts[-1], plan.shortest_step)
     tally = _Tally(controller_of(plan))
     parts = _Counted(finding, field), tally, max_steps
     advance = advancing(field, plan, *parts, tally=lambda state: state[1])

@@ -65,13 +65,16 @@ def integrate(
     start_energy = field.energy(jnp.zeros_like(until), tip)
     recorder = Recorder(field, start_energy, balanced, watch)
     turns = scene.turning_points()
-    stops, wanted = stops_of(ts, turns, until)
+    stops, wanted = stops_of(ts, turns, until, plan.shortest_step)
     observed = Observed(with_tolerance(solver, plan.tolerance), recorder)
     advance = advancing(field, plan, observed, controller_of(plan), max_steps, adjoint)
     state = front_at_start((tip, *recorder.start(scene.z0)), plan)
     last, fronts = jax.lax.scan(lambda f, stop: (advance(f, stop),) * 2, state, stops)
     fronts = jax.tree_util.tree_map(lambda leaf: leaf[wanted], fronts)
     tips, *memories = fronts.y
+    # Where a turning point is the time asked for, it has been stepped to: derivatives by
+    # the turning point are those at a time that moves with it.
+    tips = tips + (ts - fronts.t) * jax.vmap(field.velocity)(fronts.t, tips)
     blank = jnp.where(fronts.code == Status.OK, 0.0, jnp.nan)
     z = jax.vmap(field.state)(tips) + blank
     dissipation, residual, final, gap = None, None, None, None

@@ -26,8 +26,8 @@ def weighed(numbers, static, ts, weights):
 
 
 @eqx.filter_jit
-def value_and_gradient(numbers, static, ts, weights):
-    return jax.value_and_grad(lambda n: weighed(n, static, ts, weights))(numbers)
+def value_and_gradient(numbers, static, *asked):
+    return jax.value_and_grad(lambda n: weighed(n, static, *asked))(numbers)
 
 
 def question(one, expected):
@@ -41,13 +41,28 @@ def question(one, expected):
     return numbers, static, jnp.asarray(one.ts[picked]), jnp.asarray(weights)
 
 
-def along(numbers, share, seed):
-    """Numbers moved by a share of themselves, each by another factor."""
+def rates_of(numbers, width, seed):
+    """A random direction: every number by up to itself.
+
+    Lengths of a spring by up to what it is pressed by: alpha is the difference of two, and
+    a share of either may be many times it. `width` of them is a multiple of their rounding.
+    """
     leaves, tree = jax.tree_util.tree_flatten(numbers)
     factors = np.random.default_rng(seed).uniform(-1, 1, len(leaves))
-    moved = [leaf * (1 + share * f) for leaf, f in zip(leaves, factors, strict=True)]
-    rates = [leaf * f for leaf, f in zip(leaves, factors, strict=True)]
-    return tree.unflatten(moved), rates
+    rates = tree.unflatten([v * f for v, f in zip(leaves, factors, strict=True)])
+    spring = numbers[0].potential.bristle
+    if not isinstance(spring, fx.bristles.VerticalSpring):
+        return rates
+    pressed = float(spring.rest_length - spring.height)
+    grain = 2 * np.spacing(float(spring.rest_length))
+    steps = np.random.default_rng(seed + 1).uniform(-1, 1, 2) * pressed * width / grain
+    exact = [jnp.asarray(v) for v in np.round(steps) * grain / width]
+
+    def lengths(tree):
+        bristle = tree[0].potential.bristle
+        return bristle.rest_length, bristle.height
+
+    return eqx.tree_at(lengths, rates, tuple(exact))
 
 
 def check(one, width, seed=0):
@@ -58,11 +73,14 @@ def check(one, width, seed=0):
     slopes = jax.tree_util.tree_leaves(gradient)
     assert np.isfinite(value)
     assert all(bool(jnp.all(jnp.isfinite(slope))) for slope in slopes)
-    rates = along(numbers, 0, seed)[1]
-    terms = [float(jnp.vdot(s, r)) for s, r in zip(slopes, rates, strict=True)]
-    ends = [
-        float(weighed(along(numbers, s * width, seed)[0], *rest)) for s in (-2, -1, 1, 2)
-    ]
+    rates = rates_of(numbers, width, seed)
+    pairs = zip(slopes, jax.tree_util.tree_leaves(rates), strict=True)
+    terms = [float(jnp.vdot(slope, rate)) for slope, rate in pairs]
+
+    def moved(share):
+        return jax.tree_util.tree_map(lambda v, r: v + share * r, numbers, rates)
+
+    ends = [float(weighed(moved(s * width), *rest)) for s in (-2, -1, 1, 2)]
     central = (8 * (ends[2] - ends[1]) - (ends[3] - ends[0])) / (12 * width)
     assert abs(sum(terms) - central) < 1e-5 * max(abs(central), *map(abs, terms))
 
