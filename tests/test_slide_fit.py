@@ -18,6 +18,10 @@ def ratio_of(slide, force):
     return float(-getattr(slide, f"{force}_plus") / getattr(slide, f"{force}_minus"))
 
 
+def leaning(angle):
+    return fx.bristles.SlantedSpring(1.0, 2.4, 1.0, float(angle))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("force", ["mean", "peak"])
 def test_the_slide_has_the_ratio_that_the_limit_misses(force):
@@ -32,10 +36,12 @@ def test_the_slide_has_the_ratio_that_the_limit_misses(force):
     assert found.limit.value == limit.value
     missed = fx.steady_slide(WAVES, limit.bristle, EPS)
     assert abs(ratio_of(missed, force) / 1.25 - 1) > 1e-3
-    near = fx.fit_slide(WAVES, SLANTED, EPS, ratio=1.26, force=force)
-    slope = (near.value - found.value) / 0.01
-    mean = 0.5 * (near.by_target + found.by_target)
-    assert float(slope) == pytest.approx(float(mean), rel=1e-2)
+    shown = [
+        ratio_of(fx.steady_slide(WAVES, leaning(found.value + s * 1e-3), EPS), force)
+        for s in (1, -1, 2, -2)
+    ]
+    slope = (8 * (shown[0] - shown[1]) - (shown[2] - shown[3])) / (12 * 1e-3)
+    assert float(found.by_target) == pytest.approx(1 / slope, rel=1e-5)
     asked = f"ratio = 1.25 of {force} forces at eps = 0.01: found, angle = "
     assert asked in found.message
     again = SlideFit.from_json(found.to_json())
