@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.wiggly import fronts
 
 EPS = 0.05
 TIMES = np.linspace(0.1, 1.4, 9)
@@ -32,8 +33,8 @@ POINT = jnp.array([0.1, 1.0, 0.4, 1.0, 1.0488, 0.01, EPS, 0.8, 3.0])
 
 
 @eqx.filter_jit
-def states(p):
-    found = fx.solve(scene_of(p), p[6], p[7], TIMES, accuracy=1e-9)
+def states(p, **options):
+    found = fx.solve(scene_of(p), p[6], p[7], TIMES, accuracy=1e-9, **options)
     return jnp.concatenate([found.z[SMOOTH], found.dissipation[-1:]])
 
 
@@ -56,6 +57,14 @@ def test_reverse_mode_agrees_with_central_differences(jacobian, i):
     differences = (8 * (ends[0] - ends[1]) - (ends[2] - ends[3])) / (12 * width)
     error = jnp.max(jnp.abs(jacobian[:, i] - differences))
     assert error < 1e-5 * jnp.max(jnp.abs(differences))
+
+
+def test_stretches_of_many_pieces(jacobian, monkeypatch):
+    """Steps that are not kept would be made again, and would be others."""
+    monkeypatch.setattr(fronts, "_STEPS", 100)
+    traced_again = {"max_steps": 2**29}
+    found = jax.jit(jax.grad(lambda p: states(p, **traced_again)[-1]))(POINT)
+    assert jnp.max(jnp.abs(found - jacobian[-1])) < 1e-6 * jnp.max(jnp.abs(found))
 
 
 @pytest.mark.slow

@@ -20,7 +20,7 @@ from jaxtyping import Array, Float
 from ..arguments import Real
 from ..scene import Scene
 from .field import TipField
-from .fronts import advancing, controller_of, front_at_start, stops_of
+from .fronts import controller_of, front_at_start, fronts_at, stops_of
 from .integration import field_of
 from .methods import with_tolerance
 from .tolerance import plan_steps
@@ -190,8 +190,8 @@ def count_work(
         finding = eqx.tree_at(lambda s: s.root_finder, finding, counting)
     stops, _ = stops_of(ts, scene.turning_points(), ts[-1], plan.shortest_step)
     tally = _Tally(controller_of(plan))
-    parts = _Counted(finding, field), tally, max_steps
-    advance = advancing(field, plan, *parts, tally=lambda state: state[1])
     start = front_at_start((field.start(scene.z0), _nothing()), plan, _nothing())
-    last, _ = jax.lax.scan(lambda f, stop: (advance(f, stop), None), start, stops)
+    parts = stops, start, field, plan, _Counted(finding, field), tally
+    fronts = fronts_at(*parts, max_steps, tally=lambda state: state[1])
+    last = jax.tree_util.tree_map(lambda leaf: leaf[-1], fronts)
     return Counts(last.steps, last.rejected, last.tally)

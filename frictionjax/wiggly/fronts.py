@@ -1,12 +1,13 @@
 """Fronts of an integration: stretches between stops, each a `diffeqsolve` of its own."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import diffrax
+import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float, Int, PyTree
 
 from ..arguments import Real
@@ -16,15 +17,12 @@ from .observed import observed_field
 from .rounded import RoundedSteps
 from .status import Status
 from .tolerance import Plan
+from .travel import travel
 
-# Steps of a stretch whose states are kept for derivatives in reverse mode. Those of longer
-# stretches are made again from some of them, in a loop that rounds differently: step
-# control is chaotic, so these are other steps, and derivatives of the dissipation were up
-# to 4e-3 off, with no sign of it (230000 steps of a support of 1e4 N/m, 1449 kept).
-# Stops beside those asked for keep stretches short: 26000 slips of 40 steps. (Golden
-# section: none is a rounding away from a kink. 64 of 2^14 steps took 1.3 to 2.3 times as
-# long, as much memory is cleared for each.)
-_KEPT, _BETWEEN, _GOLDEN = 2**12, 256, 0.6180339887498949
+# Steps of a piece, all of which are kept for derivatives in reverse mode, and how many more
+# there is room for when it is made again, with other roundings. Memory of all is cleared
+# for each piece: 2^14 took 1.3 to 2.3 times as long.
+_STEPS, _MORE = 3840, 256
 
 
 class Front(NamedTuple):
@@ -61,11 +59,9 @@ def stops_of(
     """
     turns = jnp.sort(jnp.where(jnp.isnan(turns), until, jnp.minimum(turns, until)))
     ends = jnp.append(turns, until)
-    between = until * (np.arange(_BETWEEN) + _GOLDEN) / _BETWEEN
-    times = jnp.concatenate([ends, _beside(ts, ends, rounding), between])
+    times = jnp.concatenate([ends, _beside(ts, ends, rounding)])
     order = jnp.argsort(times)
-    first, count = ends.shape[0], ts.shape[0]
-    return times[order], jnp.argsort(order)[first : first + count]
+    return times[order], jnp.argsort(order)[ends.shape[0] :]
 
 
 def _beside(ts, ends, rounding):
@@ -92,7 +88,9 @@ def controller_of(plan: Plan) -> RoundedSteps:
     return RoundedSteps(WellGuard(controller, plan.reach))
 
 
-def advancing(
+def fronts_at(
+    stops: Float[Array, " m"],
+    start: Front,
     field: TipField,
     plan: Plan,
     solver: diffrax.AbstractSolver,
@@ -100,52 +98,77 @@ def advancing(
     max_steps: int,
     adjoint: diffrax.AbstractAdjoint | None = None,
     tally: Callable[[PyTree], PyTree] | None = None,
-) -> Callable[[Front, Real], Front]:
-    """The map from a front to the front at the next stop; `solver` is of (y, ..., step).
+) -> Front:
+    """Fronts at the stops, stacked; `solver` is of (y, ..., step).
 
-    `tally`: what the controller's state has added up. One `diffeqsolve` for each interval,
-    not one for all with `SaveAt(ts)`: XLA compiles the loop as a single function only while
-    its state is small, 11 us a step against 2.6.
+    `tally`: what the controller's state has added up. One `diffeqsolve` for each piece, not
+    one for all with `SaveAt(ts)`: XLA compiles the loop as a single function only while its
+    state is small, 11 us a step against 2.6. With an `adjoint` of the caller's, all between
+    two stops is one piece.
     """
-    terms, kept = diffrax.ODETerm(observed_field(field)), min(max_steps, _KEPT)
-
-    # In reverse mode one stretch at a time keeps its steps.
-    @jax.checkpoint
-    def advance(front: Front, stop: Real) -> Front:
-        # A front that failed, or is a rounding away from the stop (a time asked for and a
-        # kink, written differently), stays where it is: no length, no step.
-        ahead = stop - front.t > plan.shortest_step
-        spent = ahead & (front.steps >= max_steps) & (front.code == Status.OK)
-        go_on = (front.code == Status.OK) & ahead & ~spent
-        stop = jnp.where(go_on, stop, front.t)
-        found = diffrax.diffeqsolve(
-            terms,
-            solver,
-            front.t,
-            stop,
-            front.step,
-            (*front.y, front.step),
-            stepsize_controller=controller,
-            saveat=diffrax.SaveAt(t1=True, controller_state=tally is not None),
-            max_steps=max_steps,
-            adjoint=adjoint or diffrax.RecursiveCheckpointAdjoint(checkpoints=kept),
-            throw=False,
+    parts = field, plan, solver, controller, tally, max_steps
+    if adjoint:
+        piece = partial(_piece, *parts, max_steps, adjoint)
+        return jax.lax.scan(lambda f, stop: (piece(f, stop),) * 2, start, stops)[1]
+    forth, again = (
+        eqx.filter_closure_convert(partial(_piece, *parts, *options), start, stops[0])
+        for options in (
+            (min(max_steps, _STEPS), diffrax.RecursiveCheckpointAdjoint(1)),
+            (_STEPS + _MORE, diffrax.RecursiveCheckpointAdjoint(_STEPS + _MORE)),
         )
-        ended = jax.tree_util.tree_map(lambda leaf: leaf[0], found.ys)
-        *y, step = ended
-        code = jnp.where(front.code == Status.OK, _code(found.result), front.code)
-        more = () if tally is None else tally(found.controller_state)
-        return Front(
-            t=stop,
-            y=tuple(y),
-            step=jax.lax.stop_gradient(step),
-            code=jnp.where(spent, int(Status.MAX_STEPS), code),
-            steps=front.steps + found.stats["num_steps"],
-            rejected=front.rejected + found.stats["num_rejected_steps"],
-            tally=jax.tree_util.tree_map(jnp.add, front.tally, more),
-        )
+    )
+    goes_on = jax.tree_util.Partial(_goes_on, plan.shortest_step)
+    return travel((forth, again, start, stops), goes_on)
 
-    return advance
+
+def _goes_on(rounding: Real, front: Front, stop: Real) -> Array:
+    """Not where it failed, or is a rounding away from the stop (written differently)."""
+    return (front.code == Status.OK) & (stop - front.t > rounding)
+
+
+def _piece(
+    field: TipField,
+    plan: Plan,
+    solver: diffrax.AbstractSolver,
+    controller: diffrax.AbstractAdaptiveStepSizeController,
+    tally: Callable[[PyTree], PyTree] | None,
+    max_steps: int,
+    steps: int,
+    adjoint: diffrax.AbstractAdjoint,
+    front: Front,
+    stop: Real,
+) -> Front:
+    """At most so many steps towards the stop; none where the front does not go on."""
+    stop = jnp.where(_goes_on(plan.shortest_step, front, stop), stop, front.t)
+    found = diffrax.diffeqsolve(
+        diffrax.ODETerm(observed_field(field)),
+        solver,
+        front.t,
+        stop,
+        front.step,
+        (*front.y, front.step),
+        stepsize_controller=controller,
+        saveat=diffrax.SaveAt(t1=True, controller_state=tally is not None),
+        max_steps=steps,
+        adjoint=adjoint,
+        throw=False,
+    )
+    ended = jax.tree_util.tree_map(lambda leaf: leaf[0], (found.ts, *found.ys))
+    reached, *y, step = ended
+    taken = front.steps + found.stats["num_steps"]
+    unfinished = found.result == diffrax.RESULTS.max_steps_reached
+    goes_on = unfinished & (taken < max_steps)
+    code = jnp.where(goes_on, int(Status.OK), _code(found.result))
+    more = () if tally is None else tally(found.controller_state)
+    return Front(
+        t=jnp.where(unfinished, reached, stop),
+        y=tuple(y),
+        step=jax.lax.stop_gradient(step),
+        code=jnp.where(front.code == Status.OK, code, front.code),
+        steps=taken,
+        rejected=front.rejected + found.stats["num_rejected_steps"],
+        tally=jax.tree_util.tree_map(jnp.add, front.tally, more),
+    )
 
 
 def _tip_norm(scaled: PyTree) -> Real:

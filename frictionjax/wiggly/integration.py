@@ -12,7 +12,7 @@ from ..coefficients import coefficients
 from ..scene import Scene
 from .balance import Balance, dissipated
 from .field import TipField
-from .fronts import advancing, controller_of, first_of, front_at_start, stops_of
+from .fronts import controller_of, first_of, front_at_start, fronts_at, stops_of
 from .methods import with_tolerance
 from .observed import AbstractWatch, Observed, Recorder
 from .status import Status
@@ -67,9 +67,10 @@ def integrate(
     turns = scene.turning_points()
     stops, wanted = stops_of(ts, turns, until, plan.shortest_step)
     observed = Observed(with_tolerance(solver, plan.tolerance), recorder)
-    advance = advancing(field, plan, observed, controller_of(plan), max_steps, adjoint)
-    state = front_at_start((tip, *recorder.start(scene.z0)), plan)
-    last, fronts = jax.lax.scan(lambda f, stop: (advance(f, stop),) * 2, state, stops)
+    start = front_at_start((tip, *recorder.start(scene.z0)), plan)
+    parts = stops, start, field, plan, observed, controller_of(plan)
+    fronts = fronts_at(*parts, max_steps, adjoint)
+    last = jax.tree_util.tree_map(lambda leaf: leaf[-1], fronts)
     fronts = jax.tree_util.tree_map(lambda leaf: leaf[wanted], fronts)
     tips, *memories = fronts.y
     # Where a turning point is the time asked for, it has been stepped to: derivatives by

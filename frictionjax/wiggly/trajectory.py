@@ -169,8 +169,8 @@ def solve(
 
     Differentiable with respect to the leaves of the scene, eps and gamma: traced values go
     through `diffeqsolve`, every slip one after the other. `adjoint`: how diffrax
-    differentiates (`diffrax.ForwardMode()` for `jax.jvp`; in reverse mode up to 4096 steps
-    in each 256th of the time are kept, and more are made again, slightly differently).
+    differentiates (`diffrax.ForwardMode()` for `jax.jvp`; by default derivatives in reverse
+    mode are those of the steps taken, and NaN through more than 15 million of them).
     `max_steps`: of such a solve.
     Failure is a `status`, not an exception.
 

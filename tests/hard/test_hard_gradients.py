@@ -21,7 +21,7 @@ _EVERY = [
 def weighed(numbers, static, ts, weights):
     """One number of a trajectory: states at times and the energy dissipated, weighed."""
     scene, eps, gamma = eqx.combine(numbers, static)
-    found = fx.solve(scene, eps, gamma, ts, accuracy=1e-9, max_steps=2**20)
+    found = fx.solve(scene, eps, gamma, ts, accuracy=1e-9, max_steps=2**22)
     return jnp.sum(weights[:-1] * found.z) + weights[-1] * found.dissipation[-1]
 
 
