@@ -11,6 +11,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int, PyTree
 
 from ..arguments import Real
+from .along import KnownSteps
 from .field import TipField
 from .guard import WellGuard
 from .observed import observed_field
@@ -106,19 +107,18 @@ def fronts_at(
     state is small, 11 us a step against 2.6. With an `adjoint` of the caller's, all between
     two stops is one piece.
     """
-    parts = field, plan, solver, controller, tally, max_steps
+    parts = field, plan, solver, controller
     if adjoint:
-        piece = partial(_piece, *parts, max_steps, adjoint)
+        piece = partial(_piece, *parts, tally, max_steps, max_steps, adjoint)
         return jax.lax.scan(lambda f, stop: (piece(f, stop),) * 2, start, stops)[1]
-    forth, again = (
-        eqx.filter_closure_convert(partial(_piece, *parts, *options), start, stops[0])
-        for options in (
-            (min(max_steps, _STEPS), diffrax.RecursiveCheckpointAdjoint(1)),
-            (_STEPS + _MORE, diffrax.RecursiveCheckpointAdjoint(_STEPS + _MORE)),
-        )
+    steps = max_steps, min(max_steps, _STEPS)
+    forth = partial(_piece, *parts, tally, *steps, diffrax.RecursiveCheckpointAdjoint(1))
+    pieces = (
+        eqx.filter_closure_convert(piece, start, stops[0])
+        for piece in (forth, partial(_again, *parts))
     )
     goes_on = jax.tree_util.Partial(_goes_on, plan.shortest_step)
-    return travel((forth, again, start, stops), goes_on)
+    return travel((*pieces, start, stops), goes_on)
 
 
 def _goes_on(rounding: Real, front: Front, stop: Real) -> Array:
@@ -140,19 +140,8 @@ def _piece(
 ) -> Front:
     """At most so many steps towards the stop; none where the front does not go on."""
     stop = jnp.where(_goes_on(plan.shortest_step, front, stop), stop, front.t)
-    found = diffrax.diffeqsolve(
-        diffrax.ODETerm(observed_field(field)),
-        solver,
-        front.t,
-        stop,
-        front.step,
-        (*front.y, front.step),
-        stepsize_controller=controller,
-        saveat=diffrax.SaveAt(t1=True, controller_state=tally is not None),
-        max_steps=steps,
-        adjoint=adjoint,
-        throw=False,
-    )
+    saveat = diffrax.SaveAt(t1=True, controller_state=tally is not None)
+    found = _solved(steps, adjoint, saveat, field, solver, controller, front, stop)
     ended = jax.tree_util.tree_map(lambda leaf: leaf[0], (found.ts, *found.ys))
     reached, *y, step = ended
     taken = front.steps + found.stats["num_steps"]
@@ -168,6 +157,60 @@ def _piece(
         steps=taken,
         rejected=front.rejected + found.stats["num_rejected_steps"],
         tally=jax.tree_util.tree_map(jnp.add, front.tally, more),
+    )
+
+
+def _again(
+    field: TipField,
+    plan: Plan,
+    solver: diffrax.AbstractSolver,
+    controller: diffrax.AbstractAdaptiveStepSizeController,
+    front: Front,
+    end: Real,
+) -> Front:
+    """All the way to where a piece has ended, for derivatives: steps are chosen, then made.
+
+    Where there is no room for them all, `t` is NaN.
+    """
+    room = _STEPS + _MORE
+    every = diffrax.RecursiveCheckpointAdjoint(checkpoints=room)
+    still = jax.tree_util.tree_map(
+        lambda leaf: jax.lax.stop_gradient(leaf) if eqx.is_inexact_array(leaf) else leaf,
+        (field, solver, controller, front, end),
+    )
+    times_alone = diffrax.SaveAt(steps=True, fn=lambda t, y, args: t)
+    chosen = _solved(room, every, times_alone, *still)
+    assert chosen.ts is not None
+    known = KnownSteps(controller, chosen.ts)
+    last = diffrax.SaveAt(t1=True)
+    found = _solved(room, every, last, field, solver, known, front, end)
+    *y, _ = jax.tree_util.tree_map(lambda leaf: leaf[0], found.ys)
+    fits = chosen.result == diffrax.RESULTS.successful
+    return front._replace(t=jnp.where(fits, end, jnp.nan), y=tuple(y))
+
+
+def _solved(
+    steps: int,
+    adjoint: diffrax.AbstractAdjoint,
+    saveat: diffrax.SaveAt,
+    field: TipField,
+    solver: diffrax.AbstractSolver,
+    controller: diffrax.AbstractAdaptiveStepSizeController,
+    front: Front,
+    stop: Real,
+) -> diffrax.Solution:
+    return diffrax.diffeqsolve(
+        diffrax.ODETerm(observed_field(field)),
+        solver,
+        front.t,
+        stop,
+        front.step,
+        (*front.y, front.step),
+        stepsize_controller=controller,
+        saveat=saveat,
+        max_steps=steps,
+        adjoint=adjoint,
+        throw=False,
     )
 
 

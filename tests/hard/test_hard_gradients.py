@@ -96,7 +96,8 @@ def check(one, width, seed=0):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", named(_EVERY, slow=[n for n in HARD if n not in _QUICK]))
 def test_derivatives_by_every_number_are_central_differences(name):
-    check(HARD[name], 1e-5)
+    # Energies of 2 kJ, of which 0.2 J are dissipated: differences need a wider way.
+    check(HARD[name], 1e-4 if name == "no folds" else 1e-5)
 
 
 @pytest.mark.slow
