@@ -115,7 +115,7 @@ def fronts_at(
     forth = partial(_piece, *parts, tally, *steps, diffrax.RecursiveCheckpointAdjoint(1))
     pieces = (
         eqx.filter_closure_convert(piece, start, stops[0])
-        for piece in (forth, partial(_again, *parts))
+        for piece in (forth, partial(_again, field, solver, controller))
     )
     goes_on = jax.tree_util.Partial(_goes_on, plan.shortest_step)
     return travel((*pieces, start, stops), goes_on)
@@ -162,7 +162,6 @@ def _piece(
 
 def _again(
     field: TipField,
-    plan: Plan,
     solver: diffrax.AbstractSolver,
     controller: diffrax.AbstractAdaptiveStepSizeController,
     front: Front,

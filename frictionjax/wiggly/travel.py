@@ -18,7 +18,6 @@ from jaxtyping import Array, Float, Int, PyTree
 from ..arguments import Real
 
 PIECES = 2**12  # kept for derivatives; through more than that they are NaN
-_Piece = Callable[[PyTree, Real], PyTree]
 
 
 class Log(NamedTuple):
