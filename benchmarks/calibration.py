@@ -114,7 +114,7 @@ def main():
                     rows.append((eps, gamma, accuracy, ratio, known, status))
                     if status or not ratio < 1:
                         cell = f"{name} {load} eps={eps:.2g} gamma={gamma:g}"
-                        word = fx.Status(int(status)).name
+                        word = fx.Status(int(status)).name  # type: ignore[call-arg]
                         asked = f"accuracy={accuracy:.0e}: {ratio:.3g} of it"
                         print(cell, asked, f"truth {known:.1g} {word}", flush=True)
     report(np.array(rows, dtype=float))

@@ -222,7 +222,7 @@ def compare(name, plus, minus, radius, slow):
     waves = np.asarray(waves_of(fit.profile.cos, fit.profile.sin))
     proof = f"{max(s.steps for s in fit.starts)} steps; first call {cold:.1f} s"
     proof += f"; proven within {fit.bending_energy / fit.bending_bound - 1:.1e}"
-    row("fit_profile", ours, 1.0, *quality(waves, plus, minus, best), proof)
+    row("fit_profile", ours, 1.0, *quality(waves, plus, minus, best), note=proof)
     problem = problem_of([target], radius=radius)
     first, slope = starts_of(problem), float(problem.task.slope)
     cold, seconds, (found, steps) = timed(quasi_newton(problem, first), 1)
@@ -233,7 +233,7 @@ def compare(name, plus, minus, radius, slow):
         seconds,
         seconds / ours,
         *quality(chosen, plus, minus, best),
-        note,
+        note=note,
     )
     rows, begin = Rows(plus, minus, radius), slope * np.asarray(first.waves)
     cold, seconds, found = timed(augmented_lagrangian(rows, jnp.asarray(begin)), 1)
@@ -243,7 +243,7 @@ def compare(name, plus, minus, radius, slow):
         seconds,
         seconds / ours,
         *quality(np.asarray(found[0]), plus, minus, best),
-        note,
+        note=note,
     )
     peers = [("SciPy SLSQP", by_slsqp, STARTS)]
     if slow:
@@ -258,7 +258,7 @@ def compare(name, plus, minus, radius, slow):
         note = f"{ends[0].nit} iterations"
         note += "" if count == STARTS else f"; {count} start measured, times {STARTS}"
         note += "" if ends[0].success or ends[0].status in (1, 2) else "; not converged"
-        row(label, seconds, ratio, *quality(ends[0].x, plus, minus, best), note)
+        row(label, seconds, ratio, *quality(ends[0].x, plus, minus, best), note=note)
 
 
 def beside(ours, peer, rounds):

@@ -40,23 +40,23 @@ def draws(kind, rng):
     k, every = rng.uniform(0.5, 2.0), ("rho_plus", "rho_minus", "ratio", "difference")
     side = rng.choice([-1, 1])
     if kind == "homothetic":
-        one = fx.bristles.Homothetic
-        return one(side * k), one(3.0 * side * k), "alpha", (*every[:2], every[3])
+        rods = [fx.bristles.Homothetic(scale * side * k) for scale in (1.0, 3.0)]
+        return *rods, "alpha", (*every[:2], every[3])
     if kind == "vertical":
         rest = 1 + side * rng.uniform(0.1, 0.6)
-        one = fx.bristles.VerticalSpring
-        return one(k, rest, 1.0), one(k, rest, 0.8), "height", (*every[:2], every[3])
+        rods = [fx.bristles.VerticalSpring(k, rest, height) for height in (1.0, 0.8)]
+        return *rods, "height", (*every[:2], every[3])
     if kind == "slanted":
         angle = rng.uniform(-0.8, 0.8)
         rest = (1 + side * rng.uniform(0.1, 0.5)) / np.cos(angle)
-        one = fx.bristles.SlantedSpring
-        return one(k, rest, 1.0, angle), one(k, rest, 1.0, 0.5 * angle), "angle", every
+        rods = [fx.bristles.SlantedSpring(k, rest, 1.0, a) for a in (angle, 0.5 * angle)]
+        return *rods, "angle", every
     limit = rng.uniform(0.8, 1.0)
     rest, other = limit - rng.uniform(0.2, 1.2), 1.2 * limit
-    one = fx.bristles.AngularSpring
     length = 1 / np.cos(limit)
-    start = one(k, length, length * np.cos(other), rest)
-    return one(k, length, 1.0, rest), start, "angle", every
+    heights = 1.0, length * np.cos(other)
+    rods = [fx.bristles.AngularSpring(k, length, height, rest) for height in heights]
+    return *rods, "angle", every
 
 
 def value_of(name, law):
@@ -104,8 +104,10 @@ def scipy_row(name, solve, targets):
 
 def speed():
     targets = np.linspace(0.65, 1.55, 1000)
-    cold, warm, found = timed(lambda: fx.fit_angle(SINE, SLANTED, ratio=targets).value)
-    _, alone, _ = timed(lambda: fx.fit_angle(SINE, SLANTED, ratio=1.3).value)
+    cold, warm, found = timed(
+        lambda: fx.fit_angle(SINE, SLANTED, ratio=targets).value, REPEATS
+    )
+    _, alone, _ = timed(lambda: fx.fit_angle(SINE, SLANTED, ratio=1.3).value, REPEATS)
     error = max(abs(by_hand(float(v)) / t - 1) for v, t in zip(found, targets, strict=True))
     slopes = Slopes(jnp.asarray(0.1), jnp.asarray(-0.1))
 
