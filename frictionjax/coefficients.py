@@ -5,7 +5,7 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 
-from .arguments import Real, as_text, is_concrete
+from .arguments import Real, as_text, is_known
 from .extrema import periodic_extrema, slope_of
 from .potentials import AbstractPotential, BristlePotential
 from .programs import Program
@@ -33,7 +33,7 @@ class Coefficients(eqx.Module):
     mu_minus: OfBristle = None
 
     def __repr__(self) -> str:
-        if not is_concrete(self):
+        if not is_known(self):
             return super().__repr__()
         known = [(k, v) for k, v in vars(self).items() if v is not None]
         return f"Coefficients({', '.join(f'{k}={as_text(v)}' for k, v in known)})"

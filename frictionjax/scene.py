@@ -15,6 +15,7 @@ from .arguments import (
     as_text,
     in_64_bits,
     is_concrete,
+    is_known,
     known_numbers,
     require,
     require_real,
@@ -187,12 +188,12 @@ def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " 
     duration = jnp.asarray(scene.duration)
     if ts is None:
         return duration * jnp.linspace(0.0, 1.0, fallback)
-    if is_concrete(ts):
+    if is_known(ts):
         numbers = known_numbers(ts)
         require(numbers.dtype != object, "ts", ts, "times, shape (n,), n > 0")
         ts = numbers
     ts = jnp.asarray(ts, dtype=float)
-    if not is_concrete(ts, scene.duration):
+    if not is_known(ts, scene.duration):
         return ts
     known = np.asarray(ts)
     require(known.ndim == 1 and known.size > 0, "ts", known, "times, shape (n,), n > 0")

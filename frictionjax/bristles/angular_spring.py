@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, as_real, is_concrete, require, require_real
+from ..arguments import Real, as_real, is_known, require, require_real
 from .bristle import AbstractBristle, SlopeBounds
 
 
@@ -28,7 +28,7 @@ class AngularSpring(AbstractBristle):
             value = getattr(self, name)
             require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
         require_real("bristle.rest_angle", self.rest_angle, "rest_angle > -pi/2")
-        if not is_concrete(self):
+        if not is_known(self):
             return
         length, height = float(self.length), float(self.height)
         rest = float(self.rest_angle)

@@ -10,6 +10,7 @@ from ..arguments import (
     Real,
     as_text,
     is_concrete,
+    is_known,
     known_numbers,
     require,
     require_x64,
@@ -140,7 +141,7 @@ def _asked(given: tuple) -> tuple[str, Any]:
     allowed = f"exactly one of {', '.join(QUANTITIES)}"
     require(len(named) == 1, "targets", ", ".join(named) or "none", allowed)
     ((name, value),) = named.items()
-    if not is_concrete(value):
+    if not is_known(value):
         return name, jnp.asarray(value, dtype=float)
     array = known_numbers(value)
     meaning = f"{name} ({MEANING[name]})"

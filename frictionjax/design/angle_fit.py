@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, as_text, is_concrete, require
+from ..arguments import Real, as_text, is_concrete, is_known, require
 from ..bristles import AbstractBristle
 from ..profiles import AbstractProfile
 from ..programs import Program
@@ -55,7 +55,7 @@ class AngleFit(eqx.Module):
     def success(self) -> Any:
         """Whether the bristle gives what was asked for: one bool, or one a target."""
         good = jnp.isin(self.code, np.array([int(s) for s in GOOD]))
-        return bool(good) if is_concrete(good) and good.ndim == 0 else good
+        return bool(good) if is_known(good) and good.ndim == 0 else good
 
     @property
     def status(self) -> Any:
@@ -118,7 +118,7 @@ class AngleFit(eqx.Module):
         return cls(**fields(source))
 
     def __repr__(self) -> str:
-        if not is_concrete(self) or self.code.ndim:
+        if not is_known(self) or self.code.ndim:
             return super().__repr__()
         return f"AngleFit({self.free}={as_text(self.value)}: {self.message})"
 

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, as_text, is_concrete, known_numbers, require
+from ..arguments import Real, as_text, is_known, known_numbers, require
 from ..bristles import (
     AbstractBristle,
     AngularSpring,
@@ -184,7 +184,7 @@ def _numbers_of(bristle: Any) -> dict[str, tuple[int, int | None]]:
 
 def require_bounds(free: FreeParameter, bounds: Any) -> None:
     """Check bounds of a free number: None, or (low, high) that its range meets."""
-    if bounds is None or not is_concrete(bounds):
+    if bounds is None or not is_known(bounds):
         return
     known = known_numbers(bounds)
     allowed = f"a pair (low, high) of finite numbers, low < high, of {free.name}"

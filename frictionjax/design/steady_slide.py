@@ -12,7 +12,7 @@ from ..arguments import (
     Real,
     as_real,
     as_text,
-    is_concrete,
+    is_known,
     require,
     require_numbers,
     require_real,
@@ -56,7 +56,7 @@ class SteadySlide(eqx.Module):
     def ok(self) -> Any:
         """Whether the numbers can be trusted: one bool, or one an eps."""
         good = (self.code_plus == 0) & (self.code_minus == 0)
-        return bool(good) if is_concrete(good) and good.ndim == 0 else good
+        return bool(good) if is_known(good) and good.ndim == 0 else good
 
     @property
     def status(self) -> Any:
@@ -65,7 +65,7 @@ class SteadySlide(eqx.Module):
         return np.vectorize(status_of, otypes=[object])(worse)[()]
 
     def __repr__(self) -> str:
-        if not is_concrete(self):
+        if not is_known(self):
             return super().__repr__()
         names = ("eps", "mean_plus", "mean_minus", "peak_plus", "peak_minus")
         known = ", ".join(f"{name}={as_text(getattr(self, name))}" for name in names)

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from ..arguments import (
     Real,
     as_real,
-    is_concrete,
+    is_known,
     known_numbers,
     require,
     require_function,
@@ -43,7 +43,7 @@ class Custom(AbstractLoad):
 
     def __check_init__(self):
         require_function("load.fn", self.fn, "a function of t")
-        if not is_concrete(self.listed):
+        if not is_known(self.listed):
             return
         times = known_numbers(self.listed)
         require(times.ndim == 1, "load.turning_points", self.listed, "times, shape (n,)")

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_concrete, known_numbers, require
+from ..arguments import Real, as_real, is_known, known_numbers, require
 from .load import AbstractLoad, listed_turning_points
 
 
@@ -22,7 +22,7 @@ class PiecewiseLinear(AbstractLoad):
     values: Float[Array, " n"] = eqx.field(converter=as_real)
 
     def __check_init__(self):
-        if not is_concrete(self.times, self.values):
+        if not is_known(self.times, self.values):
             return
         times, values = known_numbers(self.times), known_numbers(self.values)
         flat = times.ndim == 1 and times.size >= 1

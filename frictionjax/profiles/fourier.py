@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_concrete, known_numbers, require
+from ..arguments import Real, as_real, is_known, known_numbers, require
 from ..trigonometry import fourier_sum
 from .heights import HeightsFit, fit_heights
 from .profile import AbstractProfile
@@ -25,7 +25,7 @@ class Fourier(AbstractProfile):
     sin: Float[Array, " harmonics"] = eqx.field(converter=as_real)
 
     def __check_init__(self):
-        if not is_concrete(self.cos, self.sin):
+        if not is_known(self.cos, self.sin):
             return
         cos, sin = known_numbers(self.cos), known_numbers(self.sin)
         flat = cos.ndim == 1 and cos.size > 0

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_concrete, known_numbers, require
+from ..arguments import Real, as_real, is_known, known_numbers, require
 from .profile import AbstractProfile
 
 
@@ -27,7 +27,7 @@ class Spline(AbstractProfile):
 
     def __init__(self, heights: Any):
         heights = as_real(heights)
-        if is_concrete(heights):
+        if is_known(heights):
             _require_heights(heights)
         # c_{k-1} + 4 c_k + c_{k+1} = 6 h_k is circulant: diagonal after an FFT.
         count = heights.shape[0]

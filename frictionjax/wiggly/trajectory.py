@@ -12,6 +12,7 @@ from ..admissibility import require_reach
 from ..arguments import (
     as_real,
     is_concrete,
+    is_known,
     require,
     require_numbers,
     require_whole,
@@ -55,7 +56,7 @@ class Solution(eqx.Module):
         return {**self.counts, "values": self.how}
 
     def __repr__(self) -> str:
-        if not is_concrete(self):
+        if not is_known(self):
             return super().__repr__()
         end = f"z({float(self.ts[-1]):.6g} s) = {float(self.z[-1]):.9g} m"
         steps = f"{int(self.stats['steps'])} steps"
@@ -65,13 +66,13 @@ class Solution(eqx.Module):
     def ok(self) -> Any:
         """One bool (an array where traced)."""
         good = self.status_code == Status.OK
-        return bool(good) if is_concrete(good) else good
+        return bool(good) if is_known(good) else good
 
     @property
     def status(self) -> Any:
         """A `Status` with `.message` (an integer array where traced)."""
         code = self.status_code
-        return status_of(int(code)) if is_concrete(code) else code
+        return status_of(int(code)) if is_known(code) else code
 
 
 @eqx.filter_jit

@@ -1,0 +1,50 @@
+"""Numbers that a traced function holds, arrays of JAX too, are as good as traced ones."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import frictionjax as fx
+
+_PROFILE, _BRISTLE = fx.profiles.Sine(0.1), fx.bristles.SlantedSpring(1.0, 2.2, 1.0, 0.4)
+_SCENE = fx.Scene(
+    _PROFILE, _BRISTLE, fx.supports.Spring(1.0), fx.loads.Triangle(1.0, 3.0), 0.4, 0.05
+)
+_TIMES = np.linspace(0.1, 0.4, 3)
+_EPS, _GAMMA = jnp.asarray(0.05), jnp.asarray(1.0)
+
+
+def _end(eps=_EPS, gamma=_GAMMA, ts=_TIMES, accuracy=1e-3):
+    return fx.solve(_SCENE, eps, gamma, ts, accuracy=accuracy).z[-1]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("gamma", 1.0), ("accuracy", 1e-3), ("ts", _TIMES), (None, 1.0)]
+)
+def test_solve_where_some_arguments_are_traced(name, value):
+    """One of them, or none: all the others are arrays from outside."""
+    run = jax.jit(lambda x: _end(**{name: x}) if name else x * _end())
+    assert abs(float(run(value)) - float(_end())) < 1e-3 * 0.05
+
+
+def test_friction_of_known_parts():
+    run = jax.jit(lambda x: x * fx.friction(_PROFILE, _BRISTLE).rho_plus)
+    assert float(run(1.0)) == pytest.approx(float(fx.friction(_PROFILE, _BRISTLE).rho_plus))
+
+
+def test_steady_slide_of_known_parts():
+    def mean(x):
+        return fx.steady_slide(_PROFILE, _BRISTLE, 0.01, x, 1.0).mean_plus
+
+    assert float(jax.jit(mean)(1.0)) == pytest.approx(float(mean(1.0)), rel=1e-9)
+
+
+def test_the_limit_of_a_known_scene():
+    run = jax.jit(lambda x: x * fx.solve_limit(_SCENE, _TIMES).z[-1])
+    assert float(run(1.0)) == pytest.approx(float(fx.solve_limit(_SCENE, _TIMES).z[-1]))
+
+
+def test_numbers_known_inside_are_still_checked():
+    with pytest.raises(ValueError, match=r"eps = -0\.05"):
+        jax.jit(lambda x: x * _end(eps=-0.05))(1.0)
