@@ -41,6 +41,26 @@ def test_what_no_limit_design_leads_to_says_so():
     assert np.max(np.abs(found.residuals)) > 1e-3
 
 
+def test_the_picture_has_both_surfaces_and_every_design(tmp_path):
+    found = fx.fit_slide_profile(TARGET, EPS)
+    figure = found.plot()
+    figure.savefig(tmp_path / "slide.png")
+    heights, slopes, history, forces = figure.axes
+    ours, limit = slopes.get_lines()
+    assert np.max(ours.get_ydata()) == pytest.approx(
+        float(found.fit.coefficients[0].omega_plus), rel=1e-4
+    )
+    assert np.max(limit.get_ydata()) == pytest.approx(
+        float(found.limit.coefficients[0].omega_plus), rel=1e-4
+    )
+    assert np.array_equal(history.get_lines()[0].get_ydata(), found.history)
+    right, left, _ = forces.get_lines()
+    assert right.get_ydata()[0] == pytest.approx(0.03, rel=1e-6)
+    assert left.get_ydata()[0] == pytest.approx(0.025, rel=1e-6)
+    assert len(heights.get_lines()) == 2
+    assert "eps = 0.01 m" in figure.get_suptitle()
+
+
 def two_targets():
     """What two bristles on one surface show, and the same with one force too large."""
     known = fx.fit_profile(TARGET).profile

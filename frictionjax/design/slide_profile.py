@@ -94,6 +94,12 @@ class SlideProfileFit:
         """
         return cls(**profile_fields(source))
 
+    def plot(self):
+        """The surface, beside the limit's, and how it was found."""
+        from ..plot.slide_profile import draw_slide_profile_fit
+
+        return draw_slide_profile_fit(self)
+
     def __repr__(self) -> str:
         return f"SlideProfileFit({self.status.name}: {self.message})"
 

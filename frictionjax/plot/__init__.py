@@ -7,6 +7,7 @@ from .design_maps import draw as draw_design_map
 from .dissipation import draw as draw_dissipation
 from .loop import draw as draw_loop
 from .paper import draw_mu_angular, draw_mu_slanted, draw_nap
+from .slide_profile import draw_slide_profile_fit
 from .trace_fit import draw_trace_fit
 from .trajectories import draw as draw_trajectories
 from .work_precision import draw as draw_work_precision
@@ -21,6 +22,7 @@ __all__ = [
     "draw_mu_slanted",
     "draw_nap",
     "draw_profile_fit",
+    "draw_slide_profile_fit",
     "draw_trace_fit",
     "draw_trajectories",
     "draw_work_precision",

@@ -1,0 +1,63 @@
+"""A surface designed on the dynamics, beside the one that its limit alone would give."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from .design import series
+from .style import GUIDE, LIMIT, colour, marker, new_figure, styled
+
+
+@styled
+def draw_slide_profile_fit(fit: Any) -> Figure:
+    """Draw the result of `fit_slide_profile`.
+
+    Heights and slopes of the surface, and dashed those of the limit design for the same
+    targets, whose slides miss them; how far each design's slides were from the forces
+    that it was made for; forces of the slides against the targets.
+    """
+    figure, grid = new_figure(2, 2, 10.0, 7.2)
+    _surfaces(grid[0, 0], fit, 0, "height w (periods)", "Surface")
+    _surfaces(grid[0, 1], fit, 1, "slope w' (1)", "Slopes")
+    _history(grid[1, 0], fit)
+    _forces(grid[1, 1], fit)
+    eps = float(fit.slides[0].eps)
+    sentence = fit.status.name.replace("_", " ").lower()
+    sentence += f"; {fit.force} forces of steady slides at eps = {eps:.4g} m"
+    figure.suptitle(sentence, x=0.01, ha="left", fontsize=11)
+    return figure
+
+
+def _surfaces(axes: Any, fit: Any, order: int, label: str, title: str) -> None:
+    axes.plot(*series(fit.profile, order), color=colour(0), linewidth=2, label="its slides")
+    limit = {"color": LIMIT, "linestyle": "--", "linewidth": 1}
+    axes.plot(*series(fit.limit.profile, order), **limit, label="limit only")
+    axes.set(xlabel="y (periods)", ylabel=label)
+    axes.set_title(title)
+    axes.margins(x=0)
+    if order == 0:
+        axes.legend(loc="upper left", title="made for the targets by")
+
+
+def _history(axes: Any, fit: Any) -> None:
+    designs = np.arange(1, fit.history.size + 1)
+    axes.semilogy(designs, fit.history, color=colour(0), marker=marker(0))
+    axes.set(xlabel="design", ylabel="largest relative gap (1)")
+    axes.set_xticks(designs[:: 1 + designs.size // 12])
+    axes.set_title("Forces of slides against those designed for")
+
+
+def _forces(axes: Any, fit: Any) -> None:
+    targets, achieved = np.abs(fit.targets), np.abs(fit.achieved)
+    for index, name in enumerate(("to the right", "to the left")):
+        look = {"color": colour(index), "marker": marker(index), "linestyle": "none"}
+        worst = np.max(np.abs(fit.residuals[:, index]))
+        label = f"{name}, worst {worst:.1g} off"
+        axes.plot(targets[:, index], achieved[:, index], **look, label=label)
+    high = 1.15 * max(float(np.max(targets)), float(np.nanmax(achieved, initial=0.0)))
+    axes.plot([0, high], [0, high], color=GUIDE, linewidth=1, zorder=1)
+    axes.set(xlim=(0, high), ylim=(0, high))
+    axes.set(xlabel="|force| wanted (N)", ylabel="|force| of the slide (N)")
+    axes.set_title("Forces")
+    axes.legend(loc="upper left")
