@@ -36,8 +36,9 @@ _LARGEST = 0.02  # of the period: a step must not look over a fold
 _NEWTON, _AGAIN = 30, 12
 _ROUGH, _CLOSED = 1e-2, 1e-12  # of log D over a period
 # Of the steepest wiggle, squared: a smaller c is replaced by it. Narrower landings than
-# floats near 1 resolve do not replay; forces move by about (1e-15/eps)^(2/3) of themselves.
+# floats near 1 resolve do not replay. What that moves forces by: `added_force`.
 _LEAST = 2e-15
+_FOLD = 2.338  # first zero of Ai(-x): how late a fold is left, in its own scale
 _X, _W = np.polynomial.legendre.leggauss(4)
 _SHARES = 0.5 * (_X + 1)
 
@@ -85,6 +86,20 @@ def least_pull(slide: Slide) -> Slide:
     """The slide with a viscosity that floats resolve."""
     steepest = jax.lax.stop_gradient(survey_ground(slide)[1])
     return slide._replace(pull=jnp.maximum(slide.pull, _LEAST * steepest**2))
+
+
+def added_force(slide: Slide, replaced: Slide) -> Real:
+    """About how much of the force (N) is of the pull that `least_pull` added.
+
+    A fold of curvature K is left late by `2.338 K^(-1/3) (c G)^(2/3)`, and away from
+    wiggles a tip is dragged along with `c/(k_h eps)`.
+    """
+    start = survey_ground(slide)[0]
+    (stretch, _), (_, bend) = jax.jvp(slide.terrain, (start,), (jnp.ones_like(start),))
+    sharp = jnp.maximum(-bend, 1e-300) ** (-1 / 3)
+    late, before = ((c * stretch) ** (2 / 3) for c in (replaced.pull, slide.pull))
+    dragged = (replaced.pull - slide.pull) / slide.give
+    return jax.lax.stop_gradient(_FOLD * sharp * (late - before) + dragged)
 
 
 def survey_ground(slide: Slide) -> tuple[Real, Real, Real]:

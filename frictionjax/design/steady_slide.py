@@ -24,11 +24,12 @@ from ..profiles import AbstractProfile
 from ..programs import Program, room
 from ..supports import Spring
 from ..wiggly.status import Status, status_of
-from .slide_period import STEPS, Period, Slide, least_pull, slide_forces
+from .slide_period import STEPS, Period, Slide, added_force, least_pull, slide_forces
 
 FORCES = ("mean", "peak")  # of a slide, that designs may ask for
 _LANES = 4  # eps at least that are solved at once: one program for a few of them
 _OPEN = 1e-7  # of log D over a period: mean forces right to that
+_ADDED = 1e-5  # of the force: more than that by a viscosity that floats resolve is told
 
 
 class SteadySlide(eqx.Module):
@@ -89,8 +90,10 @@ class SlideForces(NamedTuple):
 def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> _Sides:
     def one(sign: Real):
         slide = Slide(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
-        mean, peak, period = slide_forces(least_pull(slide))
-        return _Sides(sign * mean, sign * peak, _code(period, mean))
+        resolved = least_pull(slide)
+        mean, peak, period = slide_forces(resolved)
+        added = added_force(slide, resolved) / jnp.abs(jax.lax.stop_gradient(mean))
+        return _Sides(sign * mean, sign * peak, _code(period, mean, added))
 
     return jax.vmap(one)(jnp.array([1.0, -1.0]))
 
@@ -119,9 +122,10 @@ def _forces(potential, eps, gamma, rate, stiffness):
     return jax.vmap(lambda e: _both_sides(potential, e, gamma, rate, stiffness))(eps)
 
 
-def _code(period: Period, mean: Real) -> Real:
+def _code(period: Period, mean: Real, added: Real) -> Real:
     closed = period.closed <= _OPEN
-    code = jnp.where(closed, int(Status.OK), int(Status.SOLVER_FAILED))
+    known = jnp.where(added <= _ADDED, int(Status.OK), int(Status.STEP_TOO_SMALL))
+    code = jnp.where(closed, known, int(Status.SOLVER_FAILED))
     code = jnp.where(~closed & (period.used >= STEPS), int(Status.MAX_STEPS), code)
     return jnp.where(jnp.isfinite(mean), code, int(Status.NOT_FINITE))
 
@@ -152,8 +156,9 @@ def steady_slide(
     One period is integrated, to its fixed point: see `slide_period`. No transient and no
     number of slips enters, and derivatives (first ones, in every number of the parts and
     in eps, gamma, rate) are those of the fixed point. Where rate eps^(gamma+1) is below
-    2e-15 of the steepest wiggle, squared, that takes its place: forces move by about
-    (1e-15/eps)^(2/3) of themselves, 1e-6 at eps = 1e-6.
+    2e-15 of the steepest wiggle, squared, that takes its place. Where that adds more than
+    1e-5 of a force, as on wiggles 10^4 times steeper one way than the other, the status is
+    `STEP_TOO_SMALL`.
 
     Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, and for
     numbers that are not positive. A slide that is not found has its `status`.
