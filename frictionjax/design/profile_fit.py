@@ -162,7 +162,9 @@ def _law(
     free: Sequence[str],
     bounds: Mapping[str, Any] | None,
 ) -> FixedLaw | FreeLaw:
-    names = [free] if isinstance(free, str) else list(free)
+    names = _names_of(free)
+    meant = "a mapping from names to pairs (low, high)"
+    require(bounds is None or isinstance(bounds, Mapping), "bounds", bounds, meant)
     given = dict(bounds or {})
     for name in given:
         require(name in names, "bounds", name, f"names in free = {names}")
@@ -184,6 +186,14 @@ def _law(
     )
     _require_geometry(law, names)
     return law
+
+
+def _names_of(free: Any) -> list[str]:
+    names = [free] if isinstance(free, str) else free
+    words = isinstance(names, list | tuple) and all(isinstance(n, str) for n in names)
+    require(words, "free", str(free), "a name or a list of names")
+    require(len(set(names)) == len(names), "free", str(free), "every name once")
+    return list(names)
 
 
 def _own_geometry(law: FixedLaw | FreeLaw) -> Geometry:
@@ -217,6 +227,9 @@ def _bounds_of(name: str, number: Any, bristle: Any, given: Any) -> tuple[float,
     require(given is not None, f"bounds of {name!r}", None, "a pair (low, high)")
     require_bounds(number, given)
     low, high = (float(end) for end in given)
+    least, most = number.own_range
+    legal = f"numbers from {least:.6g} to {most:.6g}, where {number.name} can be"
+    require(least <= low and high <= most, f"bounds of {name!r}", (low, high), legal)
     own = float(number.now(bristle))
     inside = low <= own <= high
     require(inside, f"bounds of {name!r}", (low, high), f"low <= {own:.6g} <= high")
