@@ -21,7 +21,7 @@ from .profile_result import ProfileFit
 from .starts import SHARES, places
 from .targets import Geometry, Target, extreme_slopes, require_targets
 
-_KEPT = 200  # steps that there is room for: other budgets compile nothing new
+_KEPT = 1000  # steps that there is room for: other budgets compile nothing new
 _FIRM = 50.0  # above every multiplier of the extreme slopes, which their ratio raises
 
 
@@ -48,7 +48,7 @@ def fit_profile(
     smallest_radius: float | None = None,
     largest_amplitude: float | None = None,
     seed: int = 0,
-    max_steps: int = 200,
+    max_steps: int = 1000,
 ) -> ProfileFit:
     """The least bent surface whose friction coefficients are the targets.
 
