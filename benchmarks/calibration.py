@@ -17,6 +17,7 @@ import numpy as np
 
 import frictionjax as fx
 from frictionjax.instants import instants
+from frictionjax.wiggly.status import status_of
 
 fx.use_fast_cpu()
 jax.config.update("jax_enable_x64", True)
@@ -114,7 +115,7 @@ def main():
                     rows.append((eps, gamma, accuracy, ratio, known, status))
                     if status or not ratio < 1:
                         cell = f"{name} {load} eps={eps:.2g} gamma={gamma:g}"
-                        word = fx.Status(int(status)).name  # type: ignore[call-arg]
+                        word = status_of(int(status)).name
                         asked = f"accuracy={accuracy:.0e}: {ratio:.3g} of it"
                         print(cell, asked, f"truth {known:.1g} {word}", flush=True)
     report(np.array(rows, dtype=float))

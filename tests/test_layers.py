@@ -1,6 +1,7 @@
 """Imports go down only: the floors of the library, from the bottom."""
 
 import ast
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -124,3 +125,12 @@ def test_public_names_are_where_the_package_says():
     for name, home in frictionjax._HOME.items():
         if home in MODULES:
             assert getattr(frictionjax, name) is not None
+
+
+def test_types_of_every_benchmark_are_checked():
+    """Scripts that are not listed would be taken for code without a body."""
+    home = Path(__file__).parent.parent
+    with (home / "pyproject.toml").open("rb") as file:
+        (scripts,) = tomllib.load(file)["tool"]["mypy"]["overrides"]
+    assert scripts["check_untyped_defs"]
+    assert scripts["module"] == sorted(p.stem for p in (home / "benchmarks").glob("*.py"))

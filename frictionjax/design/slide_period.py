@@ -36,7 +36,7 @@ _LARGEST = 0.02  # of the period: a step must not look over a fold
 _NEWTON, _AGAIN = 30, 12
 _ROUGH, _CLOSED = 1e-2, 1e-12  # of log D over a period
 # Of the steepest wiggle, squared: a smaller c is replaced by it. Narrower landings than
-# floats near 1 resolve do not replay. What that moves forces by: `added_force`.
+# floats near 1 resolve do not replay. `least_pull` tells what that adds to forces.
 _LEAST = 2e-15
 _FOLD = 2.338  # first zero of Ai(-x): how late a fold is left, in its own scale
 _X, _W = np.polynomial.legendre.leggauss(4)
@@ -82,24 +82,21 @@ class Period(NamedTuple):
     used: Int[Array, ""]
 
 
-def least_pull(slide: Slide) -> Slide:
-    """The slide with a viscosity that floats resolve."""
-    steepest = jax.lax.stop_gradient(survey_ground(slide)[1])
-    return slide._replace(pull=jnp.maximum(slide.pull, _LEAST * steepest**2))
-
-
-def added_force(slide: Slide, replaced: Slide) -> Real:
-    """About how much of the force (N) is of the pull that `least_pull` added.
+def least_pull(slide: Slide) -> tuple[Slide, Real]:
+    """The slide with a viscosity that floats resolve, and about what that adds to f (N).
 
     A fold of curvature K is left late by `2.338 K^(-1/3) (c G)^(2/3)`, and away from
     wiggles a tip is dragged along with `c/(k_h eps)`.
     """
-    start = survey_ground(slide)[0]
-    (stretch, _), (_, bend) = jax.jvp(slide.terrain, (start,), (jnp.ones_like(start),))
+    still = jax.lax.stop_gradient(slide)
+    start, steepest, _ = survey_ground(still)
+    least = _LEAST * steepest**2
+    resolved = jnp.maximum(still.pull, least)
+    (stretch, _), (_, bend) = jax.jvp(still.terrain, (start,), (jnp.ones_like(start),))
     sharp = jnp.maximum(-bend, 1e-300) ** (-1 / 3)
-    late, before = ((c * stretch) ** (2 / 3) for c in (replaced.pull, slide.pull))
-    dragged = (replaced.pull - slide.pull) / slide.give
-    return jax.lax.stop_gradient(_FOLD * sharp * (late - before) + dragged)
+    late, before = ((c * stretch) ** (2 / 3) for c in (resolved, still.pull))
+    added = _FOLD * sharp * (late - before) + (resolved - still.pull) / still.give
+    return slide._replace(pull=jnp.maximum(slide.pull, least)), added
 
 
 def survey_ground(slide: Slide) -> tuple[Real, Real, Real]:

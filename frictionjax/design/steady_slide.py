@@ -24,7 +24,7 @@ from ..profiles import AbstractProfile
 from ..programs import Program, room
 from ..supports import Spring
 from ..wiggly.status import Status, status_of
-from .slide_period import STEPS, Period, Slide, added_force, least_pull, slide_forces
+from .slide_period import STEPS, Period, Slide, least_pull, slide_forces
 
 FORCES = ("mean", "peak")  # of a slide, that designs may ask for
 _LANES = 4  # eps at least that are solved at once: one program for a few of them
@@ -90,9 +90,8 @@ class SlideForces(NamedTuple):
 def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> _Sides:
     def one(sign: Real):
         slide = Slide(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
-        resolved = least_pull(slide)
+        resolved, added = least_pull(slide)
         mean, peak, period = slide_forces(resolved)
-        added = added_force(slide, resolved) / jnp.abs(jax.lax.stop_gradient(mean))
         return _Sides(sign * mean, sign * peak, _code(period, mean, added))
 
     return jax.vmap(one)(jnp.array([1.0, -1.0]))
@@ -124,7 +123,9 @@ def _forces(potential, eps, gamma, rate, stiffness):
 
 def _code(period: Period, mean: Real, added: Real) -> Real:
     closed = period.closed <= _OPEN
-    known = jnp.where(added <= _ADDED, int(Status.OK), int(Status.STEP_TOO_SMALL))
+    known = jnp.where(
+        added <= _ADDED * jnp.abs(mean), int(Status.OK), int(Status.STEP_TOO_SMALL)
+    )
     code = jnp.where(closed, known, int(Status.SOLVER_FAILED))
     code = jnp.where(~closed & (period.used >= STEPS), int(Status.MAX_STEPS), code)
     return jnp.where(jnp.isfinite(mean), code, int(Status.NOT_FINITE))
@@ -157,7 +158,7 @@ def steady_slide(
     number of slips enters, and derivatives (first ones, in every number of the parts and
     in eps, gamma, rate) are those of the fixed point. Where rate eps^(gamma+1) is below
     2e-15 of the steepest wiggle, squared, that takes its place. Where that adds more than
-    1e-5 of a force, as on wiggles 10^4 times steeper one way than the other, the status is
+    1e-5 of a force, as on bristles with ratios in the hundreds, the status is
     `STEP_TOO_SMALL`.
 
     Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, and for

@@ -104,20 +104,22 @@ def _waterfall(axes: Any, fit: Any) -> None:
 
 def _targets(axes: Any, fit: Any) -> None:
     targets = np.asarray(fit.targets)
-    achieved = targets + np.asarray(fit.residuals)
-    names = ("$\\rho_+$", "$\\rho_-$")
-    for index, name in enumerate(names):
-        look = {"color": colour(index), "marker": marker(index), "linestyle": "none"}
-        axes.plot(
-            np.abs(targets[:, index]),
-            np.abs(achieved[:, index]),
-            **look,
-            markersize=8 - 3 * index,
-            label=f"|{name}|, worst {np.max(np.abs(fit.residuals[:, index])):.1g} N",
-        )
-    high = 1.15 * max(float(np.max(np.abs(targets))), float(np.max(np.abs(achieved))))
-    axes.plot([0, high], [0, high], color=LIMIT, linewidth=1, zorder=1)
-    axes.set(xlim=(0, high), ylim=(0, high))
+    worst = np.max(np.abs(fit.residuals), axis=0)
+    names = ("|$\\rho_+$|", "|$\\rho_-$|")
+    labels = [f"{n}, worst {w:.1g} N" for n, w in zip(names, worst, strict=True)]
+    against(axes, targets, targets + np.asarray(fit.residuals), labels)
     axes.set(xlabel="target (N)", ylabel="achieved (N)")
     axes.set_title(f"Coefficients: largest relative error {fit.largest_error:.1g}")
     axes.legend(loc="upper left")
+
+
+def against(axes: Any, targets: np.ndarray, achieved: np.ndarray, labels: list) -> None:
+    """Sizes achieved over those wanted, (targets, 2), and the line on which they agree."""
+    wanted, found = np.abs(targets), np.abs(achieved)
+    for index, label in enumerate(labels):
+        look = {"color": colour(index), "marker": marker(index), "linestyle": "none"}
+        pairs = wanted[:, index], found[:, index]
+        axes.plot(*pairs, **look, markersize=8 - 3 * index, label=label)
+    high = 1.15 * max(float(np.max(wanted)), float(np.nanmax(found, initial=0.0)))
+    axes.plot([0, high], [0, high], color=LIMIT, linewidth=1, zorder=1)
+    axes.set(xlim=(0, high), ylim=(0, high))

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from .design import series
-from .style import GUIDE, LIMIT, colour, marker, new_figure, styled
+from .design import against, series
+from .style import LIMIT, colour, marker, new_figure, styled
 
 
 @styled
@@ -49,15 +49,10 @@ def _history(axes: Any, fit: Any) -> None:
 
 
 def _forces(axes: Any, fit: Any) -> None:
-    targets, achieved = np.abs(fit.targets), np.abs(fit.achieved)
-    for index, name in enumerate(("to the right", "to the left")):
-        look = {"color": colour(index), "marker": marker(index), "linestyle": "none"}
-        worst = np.max(np.abs(fit.residuals[:, index]))
-        label = f"{name}, worst {worst:.1g} off"
-        axes.plot(targets[:, index], achieved[:, index], **look, label=label)
-    high = 1.15 * max(float(np.max(targets)), float(np.nanmax(achieved, initial=0.0)))
-    axes.plot([0, high], [0, high], color=GUIDE, linewidth=1, zorder=1)
-    axes.set(xlim=(0, high), ylim=(0, high))
+    worst = np.max(np.abs(fit.residuals), axis=0)
+    sides = zip(("to the right", "to the left"), worst, strict=True)
+    labels = [f"{side}, worst {off:.1g} off" for side, off in sides]
+    against(axes, fit.targets, fit.achieved, labels)
     axes.set(xlabel="|force| wanted (N)", ylabel="|force| of the slide (N)")
     axes.set_title("Forces")
     axes.legend(loc="upper left")
