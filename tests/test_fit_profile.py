@@ -341,7 +341,7 @@ def test_a_closed_form_is_taken_and_told():
     assert fit.success
     assert fit.largest_error < 1e-13
     assert fit.bending_energy == pytest.approx(fit.bending_bound, rel=1e-12)
-    assert [start.steps for start in fit.starts] == [1, 1]
+    assert [(start.steps, start.ran) for start in fit.starts] == [(1, True), (0, False)]
     # With bounds on heights, not felt, the same problem goes through the barrier.
     unfelt = {"largest_amplitude": 10.0, "smallest_radius": 1e-3}
     other = fx.fit_profile(target, starts=2, **unfelt)
@@ -356,11 +356,16 @@ def test_one_proven_start_stands_for_all_and_no_other_does():
     assert flattened.bending_energy <= flattened.bending_bound * (1 + 5e-3)
     assert len({start.bending_energy for start in flattened.starts}) == 1
     assert [start.number for start in flattened.starts] == [0, 1, 2]
-    np.testing.assert_array_equal(flattened.history.loss[0], flattened.history.loss[2])
+    assert [start.ran for start in flattened.starts] == [True, False, False]
+    assert [start.steps > 0 for start in flattened.starts] == [True, False, False]
+    assert np.isfinite(flattened.history.loss[0, 0])
+    assert np.all(np.isnan(flattened.history.loss[1:]))
+    assert np.all(np.isnan(flattened.history.cos[1:]))
     torn = [fx.Target(HOMOTHETIC, 0.3, -0.1), fx.Target(HOMOTHETIC, 0.36, -0.1)]
     fit = fx.fit_profile(torn, starts=3)
     assert fit.status.name == "CONTRADICTORY"
     assert len({start.bending_energy for start in fit.starts}) == 3
+    assert all(start.ran for start in fit.starts)
     energies = [start.bending_energy for start in fit.starts]
     assert max(energies) < min(energies) * 1.001
 
@@ -374,3 +379,15 @@ def test_a_free_angle_is_followed_to_the_least_bending():
     assert fit.success
     assert fit.status == ProfileStatus.MET
     assert fit.bending_energy == pytest.approx(0.427, rel=2e-3)
+
+
+@pytest.mark.slow
+def test_a_free_rod_may_end_where_it_hardly_follows():
+    """The least bending is at the open end of the slopes allowed: the fit keeps off it."""
+    rod = fx.bristles.AngularSpring(1.0, 1.414, 1.0, 0.3)
+    target = fx.Target(rod, 0.12, -0.05)
+    fit = fx.fit_profile(target, starts=1, free="angle", bounds={"angle": (0.1, 1.5)})
+    assert fit.status is ProfileStatus.MET
+    assert fit.largest_error < 1e-9
+    upper = float(geometry(fit.bristles[0]).upper)
+    assert 1e-4 < 1 - float(fit.coefficients[0].omega_plus) / upper < 2e-3

@@ -54,6 +54,21 @@ def test_unreachable_targets_say_what_is_reachable(part, plus, minus, bounds, st
         assert np.ptp(heights) <= bounds["largest_amplitude"]
 
 
+STEEP = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
+
+
+def test_slopes_no_bristle_follows_are_told_from_too_few_harmonics():
+    """rho_minus below its limit at any number of harmonics; a ratio that more meet."""
+    beyond = fx.fit_profile(fx.Target(STEEP, 0.12, -0.7), starts=1)
+    assert beyond.status is ProfileStatus.INADMISSIBLE
+    assert "rho_minus > -0.652648 N" in beyond.message
+    assert "asked for" not in beyond.message  # no slope gives it
+    uneven = fx.Target(STEEP, 5.0, -0.01)
+    few = fx.fit_profile(uneven, starts=1)
+    assert few.status is ProfileStatus.TOO_FEW_HARMONICS
+    assert "asked for: 56.8449" in few.message
+
+
 @pytest.mark.slow
 def test_the_reachable_share_is_reached_and_no_more():
     said = 0.275492
@@ -69,6 +84,16 @@ def test_a_ratio_of_the_number_of_harmonics_is_the_limit():
     assert near.success
     beyond = fx.fit_profile(fx.Target(HOMOTHETIC, 1.03 * 16, -1.0), starts=2)
     assert beyond.status is ProfileStatus.TOO_FEW_HARMONICS
+
+
+@pytest.mark.slow
+def test_reach_with_free_numbers_is_that_of_all_bristles_in_the_bounds():
+    """sin cos theta_lim alpha(theta_lim) is largest at 0.9 there, not where it ended."""
+    rod = fx.bristles.AngularSpring(1.0, 1.414, 1.0, 0.3)
+    target, bounds = fx.Target(rod, 0.3, -0.05), {"angle": (0.4, 0.9)}
+    fit = fx.fit_profile(target, starts=2, free="angle", bounds=bounds)
+    assert fit.status is ProfileStatus.INADMISSIBLE
+    assert "rho_plus < 0.263767 N" in fit.message
 
 
 BAD = [

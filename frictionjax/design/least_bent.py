@@ -21,7 +21,7 @@ _EXACT = 1e-12  # of the targets, weighted: rounding of coefficients
 
 
 def least_bent(layout: Layout, task: Task, starts: int) -> Runs | None:
-    """The optimum, found by every start in a step; None where no theorem gives it.
+    """The optimum, by one start in a step, for all; None where no theorem gives it.
 
     It is (see `bending`) where the ratio of the extreme slopes flattens nothing, all
     targets agree on them, and the bounds hold with the margin of the rows.
@@ -104,4 +104,5 @@ def _found(task: Task, waves: Any, ends: Any, left: Any, room: Any, sharpest: An
         room=room,
         bound=free_energy(plus, minus, waves.size // 2),
         misfit=np.sum(left**2, keepdims=True),
+        ran=true,
     )

@@ -61,8 +61,8 @@ def fit_profile(
     Coefficients see only the extreme slopes (Lemmas 2 and 3), so infinitely many surfaces
     fit: this is the one with the least `int_0^1 w''^2`; `.bending_bound` proves how near.
     `.identifiability` and `.family` say what is left open. Where nothing is flattened and
-    no bound is felt it has a closed form, which every start takes in one step; where the
-    problem is convex, a start whose optimum is proven stands for all. Every other iterate
+    no bound is felt it has a closed form, taken in one step; where the problem is convex,
+    a start whose optimum is proven stands for the others, which do not run. Every iterate
     is admissible (`1 + a omega > 0`, the bristles' own bounds) and keeps the other bounds
     with a margin of 0.5%. Targets that no surface meets come back with the best weighted
     compromise and a `.status` and `.message` that say why.
@@ -193,7 +193,7 @@ def _names_of(free: Any) -> list[str]:
     words = isinstance(names, list | tuple) and all(isinstance(n, str) for n in names)
     require(words, "free", str(free), "a name or a list of names")
     require(len(set(names)) == len(names), "free", str(free), "every name once")
-    return list(names)
+    return [str(name) for name in names]
 
 
 def _own_geometry(law: FixedLaw | FreeLaw) -> Geometry:

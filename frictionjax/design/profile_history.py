@@ -12,6 +12,8 @@ class Start(NamedTuple):
 
     `loss`: squared residuals, weighted. `place`: of the lowest slope from the highest,
     in periods. `steps` of Newton. `number`: of the start, 0 with the bristles' own values.
+    `ran`: False where the optimum of another one, which is proven, stands for it: then the
+    rest is of that one, and `steps` is 0.
     """
 
     number: int
@@ -21,10 +23,13 @@ class Start(NamedTuple):
     place: float
     steps: int
     free: tuple[float, ...]
+    ran: bool = True
 
 
 class History(NamedTuple):
     """Every iterate of every start: arrays (starts, steps), NaN after a start's end.
+
+    And everywhere for starts that were not run.
 
     Starts in the order in which they were drawn. `loss`: weighted squared residuals.
     `barrier`: its weight. `decrement`: Newton's. `omega_plus`, `omega_minus`: bounds of the

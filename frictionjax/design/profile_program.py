@@ -23,7 +23,8 @@ class Runs(NamedTuple):
     """How all starts ended, a row for each.
 
     `room`: of each bound, in shares of itself; `bound`: of the energy; `misfit`: squared
-    residuals (scaled, starts by steps); the rest as named there.
+    residuals (scaled, starts by steps); `ran`: False where another start's optimum, which
+    is proven, stands for one that was not run; the rest as named there.
     """
 
     settled: Settled
@@ -31,11 +32,13 @@ class Runs(NamedTuple):
     room: dict[str, Array]
     bound: Array
     misfit: Array
+    ran: Array
 
 
-def repeated(starts: int, row: Any) -> Any:
-    """`Runs` of one start, without the axis of starts, for each of them."""
-    return jax.tree_util.tree_map(lambda v: np.asarray(v)[None].repeat(starts, 0), row)
+def repeated(starts: int, row: Runs) -> Runs:
+    """`Runs` of one start, without the axis of starts, that stands for the others too."""
+    rows = jax.tree_util.tree_map(lambda v: np.asarray(v)[None].repeat(starts, 0), row)
+    return rows._replace(ran=np.arange(starts) == 0)
 
 
 def descended(
@@ -58,7 +61,8 @@ def descended(
         rows.append(jax.device_get(run(layout, kept, steps, task, *one)))
         if _proven(task, rows[-1]):
             row = jax.tree_util.tree_map(lambda value: value[0], rows[-1])
-            return repeated(places.size, row)
+            rows[-1] = repeated(places.size - index, row)
+            break
     return jax.tree_util.tree_map(lambda *some: np.concatenate(some), *rows)
 
 
@@ -108,4 +112,4 @@ def _one(layout, kept, most, task, own, place, key, share) -> Runs:
         return jnp.sum(residuals(task, point.plus[1], point.minus[1], point.free) ** 2)
 
     room = rooms(layout, task, settled.reach, settled.free)
-    return Runs(settled, path, room, bound, jax.vmap(misfit)(path.x))
+    return Runs(settled, path, room, bound, jax.vmap(misfit)(path.x), jnp.asarray(True))

@@ -12,13 +12,21 @@ from ..profiles import Fourier
 from ..programs import Program
 from .bending import bending_energy
 from .constraints import MARGIN, heights_of
+from .interior import EDGE
 from .law import FreeLaw
 from .open_directions import identifiability
 from .profile_history import History, Start
 from .profile_program import TARGET_MET, Runs, targets_met
 from .profile_result import ProfileFit
 from .profile_status import MET, ProfileStatus
-from .reachable import reachable_share, reachable_text
+from .reachable import (
+    followed,
+    limits_of,
+    reachable_share,
+    reachable_text,
+    share_text,
+    slopes_asked,
+)
 from .targets import Geometry
 
 _SURE = 0.99  # of random targets that agree with one surface have a smaller chi2
@@ -137,7 +145,10 @@ def _likely(freedom: int) -> float:
 
 def _bound_reached(problem: Any, runs: Runs, index: int) -> ProfileStatus:
     room = {name: float(values[index]) for name, values in runs.room.items()}
-    if room["slopes"] < _NEAR:
+    fixed = not problem.layout.free
+    if fixed and not followed(problem.law.known, _asked(problem, runs, index)):
+        return ProfileStatus.INADMISSIBLE
+    if room["slopes"] < _NEAR + EDGE:
         return ProfileStatus.INADMISSIBLE
     margin = 1 - MARGIN + _NEAR
     if room.get("curvature", 1.0) < margin:
@@ -145,7 +156,7 @@ def _bound_reached(problem: Any, runs: Runs, index: int) -> ProfileStatus:
     if room.get("height", 1.0) < margin:
         return ProfileStatus.TOO_HIGH
     wanted = np.asarray(runs.settled.wanted[index])
-    if problem.layout.free and _within(wanted, problem.layout.harmonics):
+    if not fixed and _within(wanted, problem.layout.harmonics):
         return ProfileStatus.OUT_OF_BOUNDS
     return ProfileStatus.TOO_FEW_HARMONICS
 
@@ -172,19 +183,25 @@ def _message(
     return f"{status.message}; {_reachable(problem, runs, best)}; nearest: {nearest}"
 
 
+def _asked(problem: Any, runs: Runs, index: int) -> np.ndarray:
+    """Slopes that the targets ask of their bristles as a start found them."""
+    known = Geometry(*map(np.asarray, problem.law.at(runs.settled.free[index])))
+    return slopes_asked(known, np.asarray(problem.task.coefficients))
+
+
 def _reachable(problem: Any, runs: Runs, best: int) -> str:
     task, layout = problem.task, problem.layout
-    known = Geometry(*map(np.asarray, task.law.at(runs.settled.free[best])))
-    count = len(problem.targets)
-    names = [f"targets[{i}]: " if count > 1 else "" for i in range(count)]
-    geometries = [Geometry(*(float(value[i]) for value in known)) for i in range(count)]
-    wanted = np.asarray(runs.settled.wanted[best])
-    share = None
-    if (layout.sharp or layout.high) and np.all(wanted > 0):
+    asked = _asked(problem, runs, best)
+    within = ""
+    if (layout.sharp or layout.high) and np.all(np.isfinite(asked)):
+        # The best compromise, which lies between the targets.
+        wanted = np.asarray(runs.settled.wanted[best]) * float(task.slope)
+        slopes = np.clip(wanted, np.min(asked, axis=0), np.max(asked, axis=0))
         bounds = float(task.curvature), float(task.height)
-        share = reachable_share(layout, float(wanted[0]), float(wanted[1]), *bounds)
-    slopes = wanted * float(task.slope)
-    return reachable_text(names, geometries, layout.harmonics, slopes, share)
+        share = reachable_share(layout, *(slopes / float(task.slope)), *bounds)
+        within = share_text(share, slopes)
+    limits = limits_of(task.law, runs.settled.free[best])
+    return reachable_text(limits, layout.harmonics, asked, within)
 
 
 def _start(
@@ -197,14 +214,16 @@ def _start(
     place: float,
 ) -> Start:
     values = _free_values(problem, runs.settled.free[index])
+    ran = bool(runs.ran[index])
     return Start(
         number=index,
         status=status,
         loss=float(loss),
         bending_energy=float(energy),
         place=float(place),
-        steps=int(runs.path.steps[index]),
+        steps=int(runs.path.steps[index]) if ran else 0,
         free=tuple(values.values()),
+        ran=ran,
     )
 
 
@@ -218,7 +237,7 @@ def _history(problem: Any, runs: Runs) -> History:
     if isinstance(problem.law, FreeLaw):
         low, high = np.asarray(problem.law.low), np.asarray(problem.law.high)
         free = low + (high - low) * free
-    return History(
+    rows = History(
         loss=problem.scale**2 * np.asarray(runs.misfit)[:, :steps],
         bending_energy=slope**2 * np.sum(x[..., :first] ** 2, axis=-1),
         barrier=np.asarray(runs.path.weight)[:, :steps],
@@ -229,3 +248,10 @@ def _history(problem: Any, runs: Runs) -> History:
         sin=slope * np.asarray(sin),
         free=free,
     )
+    run = np.asarray(runs.ran)
+    return rows if run.all() else History(*(_of_starts(run, row) for row in rows))
+
+
+def _of_starts(run: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """The rows of starts that were run, NaN for others."""
+    return np.where(run.reshape(-1, *(1,) * (rows.ndim - 1)), rows, np.nan)

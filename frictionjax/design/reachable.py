@@ -2,11 +2,58 @@
 
 from typing import Any
 
+import jax
 import numpy as np
 
 from ..arguments import as_text
 from .constraints import ORDERS, Layout, basis
-from .targets import Geometry
+from .law import AbstractLaw, FreeLaw
+from .targets import Geometry, extreme_slopes
+
+_SAMPLES = 512  # of free numbers within their bounds, ends not counted
+_CORNERS = 6  # free numbers of which every combination of ends is looked at
+
+
+def slopes_asked(known: Geometry, coefficients: np.ndarray) -> np.ndarray:
+    """Extreme slopes (omega_plus, -omega_minus) of each target, (targets, 2).
+
+    NaN where no slope gives the coefficient.
+    """
+    plus, minus = extreme_slopes(*coefficients.T, known.a, known.alpha)
+    both = np.stack([plus, -minus], axis=1)
+    return np.where(np.isfinite(both) & (both > 0), both, np.nan)
+
+
+def followed(known: Geometry, slopes: np.ndarray) -> bool:
+    """Whether every bristle follows the slopes that its target asks for."""
+    limits = np.stack([known.upper, -np.asarray(known.lower)], axis=1)
+    return bool(np.all(slopes < limits))
+
+
+def limits_of(law: AbstractLaw, free: Any) -> list[tuple[float, float]]:
+    """`coefficient_limits` of each target; the widest where bristles have free numbers."""
+    if not isinstance(law, FreeLaw):
+        return [coefficient_limits(one) for one in _each(law.at(free))]
+    own, count = np.asarray(law.shares()), len(law.free)
+    shares = np.random.default_rng(0).uniform(size=(_SAMPLES, count))
+    corners = np.indices((2,) * count).reshape(count, -1).T if count <= _CORNERS else own
+    shares = np.concatenate([own[None], np.atleast_2d(free), shares, corners])
+    known = Geometry(*map(np.asarray, jax.jit(jax.vmap(law.at))(shares)))
+    rows = []
+    for index in range(known.alpha.shape[1]):
+        some = Geometry(*(value[:, index] for value in known))
+        ends = [coefficient_limits(one) for one in _each(some) if _alike(one, some)]
+        rows.append((max(high for high, _ in ends), min(low for _, low in ends)))
+    return rows
+
+
+def _each(known: Geometry) -> list[Geometry]:
+    return [Geometry(*map(float, row)) for row in zip(*known, strict=True)]
+
+
+def _alike(one: Geometry, every: Geometry) -> bool:
+    """Whether a bristle presses the way that the first does."""
+    return bool(np.isfinite(one.a) and one.alpha * every.alpha[0] > 0)
 
 
 def coefficient_limits(known: Geometry) -> tuple[float, float]:
@@ -59,33 +106,33 @@ def reachable_share(
 
 
 def reachable_text(
-    names: list[str],
-    geometries: list[Geometry],
+    limits: list[tuple[float, float]],
     harmonics: int,
-    wanted: Any,
-    share: float | None,
+    asked: np.ndarray,
+    within: str = "",
 ) -> str:
     """The reachable set in words, one sentence.
 
-    `wanted`: extreme slopes (omega_plus, -omega_minus) that the targets ask for; `share`:
-    the part of them that bounds on curvature and height leave room for, None without.
+    `limits`: of each target's coefficients; `asked`: slopes of `slopes_asked`. `within`:
+    what the bounds on the surface leave room for, if there are any.
     """
     parts = []
-    for name, known in zip(names, geometries, strict=True):
-        high, low = coefficient_limits(known)
+    for index, (high, low) in enumerate(limits):
+        name = f"targets[{index}]: " if len(limits) > 1 else ""
         span = [f"rho_plus < {as_text(high)} N"] if np.isfinite(high) else []
         span += [f"rho_minus > {as_text(low)} N"] if np.isfinite(low) else []
         parts.append(f"{name}{' and '.join(span) or 'any rho_plus > 0 > rho_minus'}")
-    plus, minus = (float(value) for value in wanted)
-    ratio = plus / minus if plus > 0 and minus > 0 else np.nan
-    asked = f" (asked for: {as_text(ratio)})" if np.isfinite(ratio) else ""
+    ratios = ", ".join(as_text(p / m) for p, m in asked if np.isfinite(p / m))
     parts.append(
         f"omega_plus/|omega_minus| from 1/{harmonics} to {harmonics} with {harmonics} "
-        f"harmonics{asked}"
+        f"harmonics{f' (asked for: {ratios})' if ratios else ''}"
     )
-    if share is not None and np.isfinite(ratio):
-        parts.append(
-            f"{as_text(min(share, 1.0))} of the slopes asked for, {as_text(plus)} and "
-            f"{as_text(-minus)}, within the bounds on the surface"
-        )
-    return "reachable: " + "; ".join(parts)
+    return "reachable: " + "; ".join([*parts, within] if within else parts)
+
+
+def share_text(share: float, slopes: np.ndarray) -> str:
+    """What `reachable_share` found for these slopes (omega_plus, -omega_minus)."""
+    return (
+        f"{as_text(min(share, 1.0))} of the slopes asked for, {as_text(slopes[0])} and "
+        f"{as_text(-slopes[1])}, within the bounds on the surface"
+    )

@@ -85,10 +85,14 @@ def _waterfall(axes: Any, fit: Any) -> None:
     names = [start.status.name.replace("_", " ").lower() for start in fit.starts]
     energies = np.array([start.bending_energy for start in fit.starts])
     axes.plot(places, energies, color=GUIDE, linewidth=1, zorder=1)
+    run = np.array([start.ran for start in fit.starts])
     for index, name in enumerate(dict.fromkeys(names)):
-        chosen = np.array([one == name for one in names])
+        chosen = np.array([one == name for one in names]) & run
         look = {"color": colour(index), "marker": marker(index), "linestyle": "none"}
         axes.plot(places[chosen], energies[chosen], **look, label=name)
+    if not run.all():
+        look = {"color": GUIDE, "marker": "o", "linestyle": "none", "fillstyle": "none"}
+        axes.plot(places[~run], energies[~run], **look, label="not run: best is proven")
     if fit.bending_bound > 0:
         label = "proven lower bound"
         axes.axhline(fit.bending_bound, color=LIMIT, linestyle=":", label=label)
@@ -98,7 +102,11 @@ def _waterfall(axes: Any, fit: Any) -> None:
         middle = float(energies[0])
         axes.set_ylim(0.9 * middle, 1.1 * middle)
     axes.set_xticks(places)
-    axes.set_title(f"Starts: energies differ by {spread:.1g} of the largest")
+    axes.set_title(
+        f"Starts: energies differ by {spread:.1g} of the largest"
+        if np.sum(run) > 1
+        else f"Starts: {np.sum(run)} of {run.size} run"
+    )
     axes.legend()
 
 
