@@ -67,24 +67,54 @@ def test_wrong_arguments_are_named():
         fx.fit_slide(WAVES, SLANTED, EPS, ratio=[1.0, 1.2])
 
 
+ROUND = fx.profiles.Sine(0.1)
+
+
+@pytest.mark.slow
+def test_a_largest_force_between_the_nodes_is_reached():
+    """33 even nodes show 0.154361 at most, where 0.1543857 is there."""
+    ends = {"bounds": (0.0, 1.1)}
+    found = fx.fit_slide(ROUND, SLANTED, EPS, rho_plus=0.154373, **ends)
+    assert found.status == FitStatus.OK
+    assert found.solutions.size == 2
+    for angle in found.solutions:
+        slide = fx.steady_slide(ROUND, leaning(angle), EPS)
+        assert float(slide.mean_plus) == pytest.approx(0.154373, rel=1e-12)
+    most = float(found.reachable[0, 1])
+    assert most == pytest.approx(0.15438566, rel=1e-7)
+    touched = fx.fit_slide(ROUND, SLANTED, EPS, rho_plus=most, **ends)
+    assert touched.status == FitStatus.TANGENT
+    assert touched.success
+    assert np.isinf(touched.by_target)
+    beyond = fx.fit_slide(ROUND, SLANTED, EPS, rho_plus=most * (1 + 1e-6), **ends)
+    assert beyond.status == FitStatus.UNREACHABLE
+    # Forces grow to a pole of the angle, which no slide was found next to.
+    pole = fx.fit_slide(ROUND, SLANTED, EPS, rho_plus=1e9, bounds=(-1.5, -1.2))
+    assert pole.status == FitStatus.UNKNOWN
+
+
 def test_slides_that_were_not_computed_are_not_unreachable(monkeypatch):
     """The scan made by hand: what it could not evaluate leaves the answer open."""
     ends = (0.2, 1.1)
-
-    def scan(lost, follows=True):
-        def quantities(free, bristle, profile, which, values, numbers):
-            shown = np.where(np.abs(values - 0.7) < 0.2 * lost, np.nan, 1.0 + 0.3 * values)
-            return shown, np.full(values.size, follows)
-
-        return quantities
-
     one = np.ones(())
     known = SteadySlide(np.asarray(EPS), one, -one, one, -one, 0 * one, 0 * one)
-    monkeypatch.setattr(slide_fit, "steady_slide", lambda *_: known)
-    monkeypatch.setattr(slide_fit, "_slope", lambda *_: one)
+
+    def shown(x):
+        return 1.0 + 0.3 * x
 
     def fit(lost, ratio, follows=True):
-        monkeypatch.setattr(slide_fit, "_quantities", scan(lost, follows))
+        def quantities(free, bristle, profile, asked, places):
+            return np.where(np.abs(places - 0.7) < 0.2 * lost, np.nan, shown(places))
+
+        def alone(free, bristle, profile, asked, x):
+            return slide_fit._Slide(shown(x), 0.3 * one, one, x, known)
+
+        def sliding(free, bristle, profile, places, eps):
+            return np.full(places.size, follows)
+
+        monkeypatch.setattr(slide_fit, "_quantities", quantities)
+        monkeypatch.setattr(slide_fit, "_alone", alone)
+        monkeypatch.setattr(slide_fit, "_follows", sliding)
         return fx.fit_slide(WAVES, SLANTED, EPS, ratio=ratio, bounds=ends)
 
     found = fit(1, 1.6)

@@ -1,12 +1,11 @@
 """Inverse design at finite eps: the bristle whose steady slide has a wanted friction."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from scipy.optimize import brentq
 
 from ..admissibility import require_reach
 from ..arguments import (
@@ -20,39 +19,39 @@ from ..arguments import (
 from ..bristles import AbstractBristle
 from ..potentials import BristlePotential
 from ..profiles import AbstractProfile
-from ..programs import Program
+from ..programs import Program, in_chunks
 from ..supports import Spring
 from .angle import fit_angle
 from .angle_fit import AngleFit, intervals_text
 from .fit_json import written
 from .fit_status import FitStatus
-from .free_parameter import free_parameter
+from .free_parameter import FreeParameter, free_parameter
 from .quantities import QUANTITIES, quantity_of
 from .slide_json import dump, fields
+from .slide_scan import Scan, crossings, scan, sliding, touching
 from .steady_slide import (
-    SlideForces,
+    FORCES,
     SteadySlide,
-    forces_at,
     forces_of,
     require_force,
+    slide_at,
     spring_of,
-    steady_slide,
 )
 
-_SCAN = 33  # values of an admissible interval at which slides are integrated
-_MARGIN = 1e-3  # of an interval: nearer to its ends forces have poles, or G > 0 fails
-_WIDTH = 1e-13
+_TOGETHER = 11  # slides of a call, which wait for the slowest: those near poles take 5x
 
 
 class SlideFit(eqx.Module):
     """A bristle whose steady slide at `eps` gives a wanted quantity.
 
     As `AngleFit`, with the quantity made of the slide's forces, `force` "mean" or "peak":
-    `value`, `achieved`, `target`, `solutions` (all that a scan of 33 values an interval
-    tells apart), `reachable` (intervals, 2): least and largest quantity of that scan.
-    `failed` (n,): values of it at which there is a bristle but its slide was not found;
-    without a solution the status is then UNKNOWN, not UNREACHABLE. `slide`: of the bristle
-    returned. `by_target`: d value/d target. `limit`: the fit for eps -> 0.
+    `value`, `achieved`, `target`, `solutions` (all that a scan of 43 values an interval
+    tells apart, its extrema polished), `reachable` (intervals, 2): least and largest
+    quantity of that scan. `failed` (n,): values of it at which there is a bristle but its
+    slide was not found, but for those next to an end where nothing grows towards the
+    target; without a solution the status is then UNKNOWN, not UNREACHABLE. `slide`: of the
+    bristle returned. `by_target`: d value/d target, infinite where the status is TANGENT.
+    `limit`: the fit for eps -> 0.
     """
 
     bristle: AbstractBristle
@@ -71,7 +70,7 @@ class SlideFit(eqx.Module):
     @property
     def success(self) -> bool:
         """Whether the slide gives what was asked for."""
-        return self.status == FitStatus.OK
+        return self.status in (FitStatus.OK, FitStatus.TANGENT)
 
     @property
     def message(self) -> str:
@@ -113,35 +112,75 @@ class SlideFit(eqx.Module):
         return f"SlideFit({self.message})"
 
 
-def _forces_at(free, bristle, profile, value, numbers) -> SlideForces:
-    part = free.put(bristle, value)
-    return forces_at(BristlePotential(profile, part), *numbers)
+class _Asked(NamedTuple):
+    """Of a design: number of the quantity, whether of peaks, (eps, gamma, rate, k_h)."""
+
+    which: Any
+    peak: Any
+    scene: tuple
+
+
+class _Slide(NamedTuple):
+    """At one coordinate: the quantity and the number, each with its slope, the slide."""
+
+    shown: Any
+    slope: Any
+    speed: Any
+    value: Any
+    slide: SteadySlide
+
+
+def _quantity(free, bristle, profile, asked: _Asked, x):
+    """The quantity at a coordinate of the number, and the slide."""
+    wiggle = BristlePotential(profile, free.at(bristle, x))
+    slide = slide_at(wiggle, *asked.scene)
+    mean, peak = (quantity_of(forces_of(slide, f), asked.which) for f in FORCES)
+    return jnp.where(asked.peak, peak, mean), slide
 
 
 @Program
-def _quantities(free, bristle, profile, which, values, numbers):
-    """The quantity at values (n,) of the number, NaN where there is no slide.
+def _quantities(free, bristle, profile, asked, places):
+    """The quantity at coordinates (n,), NaN where there is no slide."""
 
-    And whether the bristle follows the surface at this eps: G > 0.
-    """
+    def one(x):
+        found, slide = _quantity(free, bristle, profile, asked, x)
+        return jnp.where(slide.ok, found, jnp.nan)
 
-    def one(value):
-        forces = _forces_at(free, bristle, profile, value, numbers)
-        wiggle = BristlePotential(profile, free.put(bristle, value))
+    return jax.vmap(one)(places)
+
+
+@Program
+def _alone(free, bristle, profile, asked, x):
+    """A slide, its quantity and the number, and how both change with the coordinate."""
+
+    def one(x):
+        found, slide = _quantity(free, bristle, profile, asked, x)
+        return (found, free.value(bristle, x)), slide
+
+    (found, value), slopes, slide = jax.jvp(one, (x,), (jnp.ones_like(x),), has_aux=True)
+    return _Slide(found, *slopes, value, slide)
+
+
+@Program
+def _follows(free, bristle, profile, places, eps):
+    """Whether bristles at coordinates (n,) follow the surface at this eps: G > 0."""
+
+    def one(x):
+        wiggle = BristlePotential(profile, free.at(bristle, x))
         grid = jnp.arange(wiggle.points) / wiggle.points
-        stretch = jax.vmap(lambda y: wiggle.tip_force(y, numbers[1])[1])(grid)
-        known = jnp.where(forces.good, quantity_of(forces, which), jnp.nan)
-        return known, jnp.all(stretch > 0)
+        return jnp.all(jax.vmap(lambda y: wiggle.tip_force(y, eps)[1])(grid) > 0)
 
-    return jax.vmap(one)(values)
+    return jax.vmap(one)(places)
 
 
 @Program
-def _slope(free, bristle, profile, which, value, numbers):
-    def one(value):
-        return quantity_of(_forces_at(free, bristle, profile, value, numbers), which)
+def _coordinates(free, bristle, ends):
+    return jax.vmap(jax.vmap(lambda value: free.coordinate(bristle, value)))(ends)
 
-    return jax.jvp(one, (value,), (jnp.ones_like(value),))[1]
+
+@Program
+def _values(free, bristle, places):
+    return jax.vmap(lambda x: free.value(bristle, x))(places)
 
 
 def fit_slide(
@@ -159,10 +198,10 @@ def fit_slide(
     `gamma`, `rate` (N/s), `support`: as in `steady_slide`. `force`: "mean", over time, or
     "peak", the largest. `wanted`: one target (`rho_plus`, `rho_minus`, `ratio` or
     `difference`, of these forces), `free` and `bounds`, as in `fit_angle`. The admissible
-    intervals of the limit are scanned, and each change of sign is polished by
-    `scipy.optimize.brentq`: a slide takes 10 ms, so this takes about a second, not a
-    millisecond. `.status` tells what no bristle reaches from what could not be evaluated
-    (`UNKNOWN`).
+    intervals of the limit are scanned as far as bristles slide at this eps, turns of the
+    quantity are found, and each change of sign is polished by `scipy.optimize.brentq`: 50
+    to 200 slides, so this takes seconds, not a millisecond. `.status` tells what no bristle
+    reaches from what could not be evaluated (`UNKNOWN`).
 
     Raises `ValueError` as `fit_angle` and `steady_slide` do, and for several targets.
     """
@@ -173,71 +212,78 @@ def fit_slide(
     limit = fit_angle(profile, bristle, **wanted)
     require(is_concrete(limit), "targets", "traced", "known numbers: this is a search")
     require(limit.code.ndim == 0, limit.quantity, limit.target, "one number")
-    scene = (as_real(v) for v in (eps, gamma, rate, support.stiffness))
-    numbers = (np.asarray(force == "peak"), *scene)
+    scene = tuple(as_real(v) for v in (eps, gamma, rate, support.stiffness))
+    which = QUANTITIES.index(limit.quantity)
+    asked = _Asked(np.asarray(which), np.asarray(force == "peak"), scene)
     free = free_parameter(limit.bristle, limit.free)
-    which = np.asarray(QUANTITIES.index(limit.quantity))
+    parts = _sliding_parts(limit, free, profile, scene[0])
+    require(parts, "eps", eps, "an eps at which some bristle slides (G > 0)")
     target = float(limit.target)
 
-    def quantities(values):
-        found = _quantities(free, limit.bristle, profile, which, values, numbers)
-        return np.asarray(found[0]), np.asarray(found[1])
+    def shown(places):
+        fixed = free, limit.bristle, profile, asked
+        return in_chunks(_quantities, _TOGETHER, fixed, (places,))
 
-    ends = np.asarray(limit.admissible)
-    ends = ends[~np.isnan(ends[:, 0])]
-    shares = _MARGIN + (1 - 2 * _MARGIN) * np.linspace(0, 1, _SCAN)
-    grid = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * shares
-    scan = [quantities(row) for row in grid]
-    values, follows = (np.stack(parts) for parts in zip(*scan, strict=True))
-    require(follows.any(), "eps", eps, "an eps at which some bristle slides (G > 0)")
-    roots = _roots(quantities, grid, values, target)
-    known = ~np.isnan(values).all(axis=1)
-    failed = grid[np.isnan(values) & follows]
+    def alone(x):
+        return _alone(free, limit.bristle, profile, asked, np.asarray(x))
+
+    def gap(x):
+        return float(alone(x).shown) - target
+
+    def slope(x):
+        return float(alone(x).slope)
+
+    scans = [scan(shown, slope, *ends) for ends in parts]
+    roots = np.concatenate([crossings(gap, one, target) for one in scans])
+    turns = np.concatenate([touching(one, target) for one in scans])
+    failed = np.concatenate([one.failed(target) for one in scans])
+    found = roots if roots.size else turns
+
+    def values(places):
+        return _values(free, limit.bristle, places)
+
+    at = _nearest(scans, target)
     status = FitStatus.UNKNOWN if failed.size else FitStatus.UNREACHABLE
-    now = float(free_parameter(bristle, limit.free).now(bristle))
-    at = _nearest(grid, values, target) if known.any() else float(failed[0])
-    if roots.size:
-        status = FitStatus.OK
-        at = float(roots[np.argmin(np.abs(roots - now))])
-    part = free.put(limit.bristle, jnp.asarray(at))
-    require_reach(BristlePotential(profile, part), numbers[1])
-    slide = steady_slide(profile, part, eps, gamma, rate, support)
-    achieved = quantity_of(forces_of(slide, force), which)
-    by = 1 / _slope(free, limit.bristle, profile, which, jnp.asarray(at), numbers)
-    reach = [(np.nanmin(row), np.nanmax(row)) for row in values[known]]
+    if found.size:
+        now = float(free_parameter(bristle, limit.free).now(bristle))
+        at = found[np.argmin(np.abs(values(found) - now))]
+        status = FitStatus.TANGENT if at in turns else FitStatus.OK
+    best = alone(at)
+    part = free.put(limit.bristle, best.value)
+    require_reach(BristlePotential(profile, part), scene[0])
+    tangent = status == FitStatus.TANGENT
     return SlideFit(
         part,
-        jnp.asarray(at),
-        achieved,
+        best.value,
+        best.shown,
         limit.target,
-        jnp.asarray(roots),
-        jnp.asarray(reach).reshape(-1, 2),
-        jnp.asarray(failed),
-        by,
-        slide,
+        jnp.sort(values(found)),
+        jnp.asarray([one.reach for one in scans if one.known]).reshape(-1, 2),
+        jnp.sort(values(failed)),
+        jnp.asarray(np.inf) if tangent else best.speed / best.slope,
+        best.slide,
         limit,
         status,
         force,
     )
 
 
-def _roots(
-    quantities: Any, grid: np.ndarray, values: np.ndarray, target: float
-) -> np.ndarray:
-    """Every crossing of the target between neighbours of the scan, polished."""
-    found = []
-    for row, line in zip(grid, values - target, strict=True):
-        found += row[line == 0].tolist()
-        for i in np.flatnonzero(line[:-1] * line[1:] < 0):
+def _sliding_parts(
+    limit: AngleFit, free: FreeParameter, profile: AbstractProfile, eps: Any
+) -> list[tuple[float, float]]:
+    """Intervals of the coordinate that are admissible, and where G > 0 at this eps."""
+    ends = np.asarray(limit.admissible)
+    ends = ends[~np.isnan(ends[:, 0])]
+    places = np.sort(np.asarray(_coordinates(free, limit.bristle, ends)), axis=1)
 
-            def gap(value):
-                return float(quantities(np.full(1, value))[0][0]) - target
+    def follows(some):
+        return np.asarray(_follows(free, limit.bristle, profile, some, eps))
 
-            size = _WIDTH * max(1.0, abs(row[i]))
-            found.append(brentq(gap, row[i], row[i + 1], xtol=size, rtol=1e-14))
-    return np.sort(np.array(found))
+    return [part for low, high in places for part in sliding(follows, low, high)]
 
 
-def _nearest(grid: np.ndarray, values: np.ndarray, target: float) -> float:
-    away = np.abs(values - target)
-    return float(grid.ravel()[np.nanargmin(away)])
+def _nearest(scans: list[Scan], target: float) -> float:
+    """The coordinate whose quantity is nearest, or the first where none is known."""
+    nodes = np.concatenate([one.nodes for one in scans])
+    away = np.abs(np.concatenate([one.values for one in scans]) - target)
+    return float(nodes[np.nanargmin(away)] if np.isfinite(away).any() else nodes[0])

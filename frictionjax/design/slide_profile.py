@@ -173,7 +173,7 @@ def fit_slide_profile(
         slides = tuple(
             steady_slide(fit.profile, part, eps, gamma, rate, support) for part in parts
         )
-        found = np.array([forces_of(slide, force)[:2] for slide in slides], dtype=float)
+        found = np.array([forces_of(slide, force) for slide in slides], dtype=float)
         has = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in fit.coefficients])
         shown = np.log(np.abs(found))
         off = (shown - np.log(np.abs(has))).ravel() - at

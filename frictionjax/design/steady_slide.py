@@ -80,11 +80,10 @@ class _Sides(NamedTuple):
 
 
 class SlideForces(NamedTuple):
-    """Forces of slides to the right and to the left, and whether both are known."""
+    """Forces of slides to the right and to the left."""
 
     rho_plus: Real
     rho_minus: Real
-    good: Real
 
 
 def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> _Sides:
@@ -97,12 +96,21 @@ def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) 
     return jax.vmap(one)(jnp.array([1.0, -1.0]))
 
 
-def forces_at(potential, peak: Any, eps: Real, gamma: Real, rate: Real, stiffness: Real):
-    """Mean forces at one eps, or where `peak` the largest; without checks, traceable."""
-    found = _both_sides(potential, eps, gamma, rate, stiffness)
-    good = jnp.all(found.code == int(Status.OK))
-    force = jnp.where(peak, found.peak, found.mean)
-    return SlideForces(force[0], force[1], good)
+def slide_at(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> SteadySlide:
+    """The steady slide at one eps; without checks, traceable."""
+    return _joined(eps, _both_sides(potential, eps, gamma, rate, stiffness))
+
+
+def _joined(eps: Real, both: _Sides) -> SteadySlide:
+    return SteadySlide(
+        eps,
+        both.mean[..., 0],
+        both.mean[..., 1],
+        both.peak[..., 0],
+        both.peak[..., 1],
+        both.code[..., 0],
+        both.code[..., 1],
+    )
 
 
 def require_force(force: str) -> None:
@@ -113,7 +121,7 @@ def require_force(force: str) -> None:
 def forces_of(slide: SteadySlide, force: str) -> SlideForces:
     """Its mean or its peak forces."""
     plus, minus = getattr(slide, f"{force}_plus"), getattr(slide, f"{force}_minus")
-    return SlideForces(plus, minus, slide.ok)
+    return SlideForces(plus, minus)
 
 
 @Program
@@ -180,13 +188,4 @@ def steady_slide(
     padded = jnp.pad(several, (0, room(count, _LANES, 2) - count), mode="edge")
     found = _forces(wiggle, padded, *numbers)
     wanted = slice(count) if sizes.ndim else 0
-    both = jax.tree_util.tree_map(lambda leaf: leaf[wanted], found)
-    return SteadySlide(
-        sizes,
-        both.mean[..., 0],
-        both.mean[..., 1],
-        both.peak[..., 0],
-        both.peak[..., 1],
-        both.code[..., 0],
-        both.code[..., 1],
-    )
+    return _joined(sizes, jax.tree_util.tree_map(lambda leaf: leaf[wanted], found))
