@@ -52,12 +52,12 @@ def known_numbers(value: Any) -> np.ndarray:
 
 
 def _is_numeric(array: np.ndarray) -> bool:
-    return array.dtype.kind in "biuf"
+    return array.dtype.kind in "iuf"
 
 
 def as_text(value: Any) -> str:
     """A value as an error message shows it: six digits, arrays shortened."""
-    if value is None or isinstance(value, str) or callable(value):
+    if value is None or isinstance(value, str | bool | np.bool_) or callable(value):
         return repr(value)
     try:
         array = np.asarray(value, dtype=np.float64)
@@ -115,10 +115,10 @@ def require_real(name: str, value: Any, allowed: str, test: Any = None) -> None:
         require(test(float(array)), name, value, allowed)
 
 
-def require_whole(name: str, value: Any) -> None:
-    """Check a count: a whole number >= 1."""
+def require_whole(name: str, value: Any, least: int = 1) -> None:
+    """Check a count, or a seed: a whole number >= `least`."""
     whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    require(whole and value >= 1, name, value, "a whole number >= 1")
+    require(whole and value >= least, name, value, f"a whole number >= {least}")
 
 
 def require_function(name: str, fn: Any, what: str) -> None:

@@ -273,10 +273,8 @@ def cost(
 @click.option("--rho-minus", type=float, help="Wanted friction to the left in N, < 0.")
 @click.option(
     "--free",
-    default="angle",
-    show_default=True,
-    help="The bristle's number to choose; with --rho-plus and --rho-minus together the "
-    "surface is designed instead.",
+    help="The bristle's number to choose [angle]; with --rho-plus and --rho-minus together "
+    "the surface is designed, and this number too where it is given with --bounds.",
 )
 @click.option("--bounds", type=(float, float), help="Of that number.", metavar="LOW HIGH")
 @click.option(
@@ -285,6 +283,12 @@ def cost(
     help="Another bristle than the scene's.",
 )
 @click.option("--harmonics", type=click.IntRange(1), default=16, show_default=True)
+@click.option(
+    "--smallest-radius", type=float, help="Of the surface's curvature, in periods."
+)
+@click.option(
+    "--largest-amplitude", type=float, help="Of the surface, highest to lowest, in periods."
+)
 @click.option(
     "--period", type=float, default=1e-3, show_default=True, help="Of heights.csv, in m."
 )
@@ -298,10 +302,12 @@ def cost(
 @click.option("--out", default="frictionjax-design", show_default=True, metavar="DIR")
 def design(
     scene: str | None,
-    free: str,
+    free: str | None,
     bounds: tuple[float, float] | None,
     bristle: str | None,
     harmonics: int,
+    smallest_radius: float | None,
+    largest_amplitude: float | None,
     period: float,
     samples: int,
     out: str,
@@ -319,7 +325,8 @@ def design(
 
     folder = require_folder(out)
     job = read_job(scene, bristle)
-    asked = Asked(wanted, free, bounds, period, samples, harmonics)
+    limits = smallest_radius, largest_amplitude
+    asked = Asked(wanted, free, bounds, period, samples, harmonics, *limits)
     _write(folder, lambda place: run_design(job, place, asked))
 
 

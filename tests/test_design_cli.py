@@ -5,7 +5,9 @@ import pytest
 from command_line import error_line, run
 
 import frictionjax as fx
+from frictionjax.design.angle_fit import AngleFit
 from frictionjax.design.heights import surface_heights
+from frictionjax.design.profile_result import ProfileFit
 from frictionjax.scene_files import default_study
 
 WAVES = fx.profiles.Fourier(cos=[0.01, 0.004], sin=[0.02, 0.0])
@@ -23,7 +25,16 @@ def test_a_bristle_for_a_ratio(tmp_path):
     )
     assert result.exit_code == 0, result.output
     names = {path.name for path in folder.iterdir()}
-    assert names == {"design.toml", "design.png", "map.png", "heights.csv", "tables.txt"}
+    assert names == {
+        "design.toml",
+        "design.png",
+        "map.png",
+        "fit.json",
+        "heights.csv",
+        "tables.txt",
+    }
+    fit = AngleFit.from_json(folder / "fit.json")
+    assert float(fit.achieved) == pytest.approx(1.5, rel=1e-12)
     scene = fx.load_scene(folder / "design.toml")
     assert ratio_of(scene) == pytest.approx(1.5, rel=1e-12)
     before = default_study().scene
@@ -66,6 +77,23 @@ def test_a_surface_for_both_directions(tmp_path):
     np.testing.assert_allclose(found, (law.omega_plus, law.omega_minus), rtol=2e-3)
 
 
+@pytest.mark.slow
+def test_a_surface_within_bounds_and_its_rod(tmp_path):
+    folder = tmp_path / "bounded"
+    asked = ("--rho-plus", 0.12, "--rho-minus", -0.05, "--harmonics", 8)
+    bounds = ("--free", "angle", "--bounds", 0.9, 1.3, "--smallest-radius", 0.4)
+    result = run("design", *asked, *bounds, "--out", folder)
+    assert result.exit_code == 0, result.output
+    scene = fx.load_scene(folder / "design.toml")
+    law = fx.friction(scene)
+    assert float(law.rho_plus) == pytest.approx(0.12, rel=1e-6)
+    assert 0.9 < float(scene.bristle.angle) < 1.3
+    assert float(scene.bristle.angle) != float(default_study().scene.bristle.angle)
+    fit = ProfileFit.from_json(folder / "fit.json")
+    assert fit.bounds["smallest_radius"] == 0.4
+    assert fit.free["angle"] == pytest.approx(float(scene.bristle.angle), rel=1e-12)
+
+
 def test_what_cannot_be_designed_is_said_in_one_line(tmp_path):
     out = ("--out", tmp_path / "none")
     line = error_line(run("design", "--bristle", "angular", "--ratio", 7, *out))
@@ -80,6 +108,11 @@ def test_what_cannot_be_designed_is_said_in_one_line(tmp_path):
     assert "period = -1: needs period > 0" in line
     line = error_line(run("design", "--ratio", 1.3, "--bounds", 0.2, 0.1, *out))
     assert "bounds = [0.2 0.1]: needs a pair" in line
+    line = error_line(run("design", "--ratio", 1.3, "--smallest-radius", 0.1, *out))
+    assert "smallest_radius = 0.1: needs --rho-plus and --rho-minus together" in line
+    both = ("--rho-plus", 0.1, "--rho-minus", -0.1)
+    line = error_line(run("design", *both, "--bounds", 0.5, 1.1, *out))
+    assert "bounds = [0.5 1.1]: needs --free as well" in line
     assert not (tmp_path / "none").exists()
 
 

@@ -74,6 +74,7 @@ def fit_profile(
     counts = ("harmonics", harmonics), ("starts", starts), ("max_steps", max_steps)
     for name, value in counts:
         require_whole(name, value)
+    require_whole("seed", seed, 0)
     problem = problem_of(
         targets, harmonics, free, bounds, smallest_radius, largest_amplitude
     )
@@ -175,7 +176,8 @@ def _law(
     bristles = tuple(with_arrays(bristle) for bristle in distinct)
     numbers, lows, highs = [], [], []
     for name in names:
-        require(name in given, "bounds", sorted(given) or "{}", f"bounds of {name!r}")
+        allowed = f"bounds = {{{name!r}: (low, high), ...}}"
+        require(name in given, "bounds", ", ".join(given) or "none", allowed)
         for index, number in _numbers_called(name, bristles):
             low, high = _bounds_of(name, number, bristles[index], given[name])
             numbers.append((index, number))

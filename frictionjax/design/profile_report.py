@@ -197,8 +197,9 @@ def _reachable(problem: Any, runs: Runs, best: int) -> str:
         # The best compromise, which lies between the targets.
         wanted = np.asarray(runs.settled.wanted[best]) * float(task.slope)
         slopes = np.clip(wanted, np.min(asked, axis=0), np.max(asked, axis=0))
+        plus, minus = (slopes / float(task.slope)).tolist()
         bounds = float(task.curvature), float(task.height)
-        share = reachable_share(layout, *(slopes / float(task.slope)), *bounds)
+        share = reachable_share(layout, plus, minus, *bounds)
         within = share_text(share, slopes)
     limits = limits_of(task.law, runs.settled.free[best])
     return reachable_text(limits, layout.harmonics, asked, within)

@@ -19,7 +19,8 @@ def slopes_asked(known: Geometry, coefficients: np.ndarray) -> np.ndarray:
 
     NaN where no slope gives the coefficient.
     """
-    plus, minus = extreme_slopes(*coefficients.T, known.a, known.alpha)
+    rho_plus, rho_minus = coefficients.T
+    plus, minus = extreme_slopes(rho_plus, rho_minus, known.a, known.alpha)
     both = np.stack([plus, -minus], axis=1)
     return np.where(np.isfinite(both) & (both > 0), both, np.nan)
 

@@ -99,8 +99,8 @@ def scan(shown: Shown, slope: Callable[[float], float], low: float, high: float)
     nodes[-1] = high
     values = shown(nodes)
     brackets = [(nodes[i - 1], nodes[i + 1]) for i in _bumps(values)]
-    turns = [_turn(slope, *ends) for ends in brackets]
-    turns = np.array([turn for turn in turns if turn is not None])
+    found = [_turn(slope, *ends) for ends in brackets]
+    turns = np.array([turn for turn in found if turn is not None])
     if turns.size:
         values = np.concatenate([values, shown(turns)])
         nodes = np.concatenate([nodes, turns])

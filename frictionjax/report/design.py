@@ -33,11 +33,13 @@ class Asked(NamedTuple):
     """What a design is to reach: `wanted` by name, and how its results are written."""
 
     wanted: dict[str, float]
-    free: str
+    free: str | None
     bounds: tuple[float, float] | None
     period: float
     samples: int
     harmonics: int
+    smallest_radius: float | None = None
+    largest_amplitude: float | None = None
 
 
 class _Design(NamedTuple):
@@ -89,13 +91,18 @@ def _parts(scene: Scene) -> tuple[AbstractProfile, AbstractBristle]:
 
 def _bristle(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
     profile, bristle = _parts(job.scene)
-    options: Any = wanted | {"free": asked.free, "bounds": asked.bounds}
+    for name in ("smallest_radius", "largest_amplitude"):
+        value = getattr(asked, name)
+        allowed = "--rho-plus and --rho-minus together: the surface is given otherwise"
+        require(value is None, name, value, allowed)
+    options: Any = wanted | {"free": asked.free or "angle", "bounds": asked.bounds}
     fit = fit_angle(profile, bristle, **options)
     if not fit.success:
         raise ValueError(fit.message)
     found = exchanged(job.scene, profile, fit.bristle)
     pictures = _bristle_pictures(fit)
-    return _Design(found, [("Inverse design", angle_table(fit))], pictures, {})
+    sections = [("Inverse design", angle_table(fit))]
+    return _Design(found, sections, pictures, {"fit.json": fit.to_json()})
 
 
 def angle_table(fit: AngleFit) -> str:
@@ -129,10 +136,19 @@ def _bristle_pictures(fit: AngleFit) -> Iterator[tuple[str, Figure]]:
 def _surface(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
     _, bristle = _parts(job.scene)
     target = Target(bristle, wanted["rho_plus"], wanted["rho_minus"])
-    fit = fit_profile(target, harmonics=asked.harmonics)
+    free = [asked.free] if asked.free else []
+    require(free or asked.bounds is None, "bounds", asked.bounds, "--free as well")
+    fit = fit_profile(
+        target,
+        harmonics=asked.harmonics,
+        free=free,
+        bounds=dict.fromkeys(free, asked.bounds),
+        smallest_radius=asked.smallest_radius,
+        largest_amplitude=asked.largest_amplitude,
+    )
     if not fit.success:
         raise ValueError(fit.message)
-    found = exchanged(job.scene, fit.profile, bristle)
+    found = exchanged(job.scene, fit.profile, fit.bristles[0] or bristle)
     pictures = iter([("design", plot.draw_profile_fit(fit))])
     return _Design(
         found, [("Inverse design", repr(fit))], pictures, {"fit.json": fit.to_json()}
