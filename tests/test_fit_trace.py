@@ -344,3 +344,26 @@ def test_intervals_on_a_circle():
     np.testing.assert_allclose(intervals_of(flags) * 8, [[-1.5, 1.5], [3.5, 4.5]])
     flags[:] = True
     np.testing.assert_array_equal(intervals_of(flags), [[0.0, 1.0]])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("noise", [0.0, 1e-4])
+def test_slips_at_few_phases_need_more_starts(noise):
+    """Every slip is sampled at the same five phases: five starts end in wrong optima.
+
+    With noise others nearly explain the trace: none may pass for the surface.
+    """
+    truth = fx.profiles.Fourier([0.003, 0.001, 0.0, 0.0], [0.012, -0.002, 0.001, 0.0])
+    numbers = np.concatenate([truth.cos, truth.sin])
+    scene = scene_of(profile=truth, load=fx.loads.Triangle(0.6, 10.0))
+    trace = trace_of(scene, noise, np.linspace(0, 10, 241), numbers=numbers)
+    few = fx.fit_trace(trace, scene, 0.05, harmonics=4, starts=5)
+    assert not few.success
+    assert "more starts needed" in few.message or few.status == TraceStatus.OTHER_SLIPS
+    fit = fx.fit_trace(trace, scene, 0.05, harmonics=4)
+    if noise == 0:
+        assert fit.success
+        error = slopes(fit.profile, np.arange(64) / 64) - slopes(truth, np.arange(64) / 64)
+        assert np.max(np.abs(error)) < 1e-2 * np.max(np.abs(slopes(truth, [0.0])))
+    else:
+        assert not fit.identifiability.determined.any()

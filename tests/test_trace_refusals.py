@@ -71,7 +71,7 @@ def test_bad_traces_are_named(arguments, message):
         ({"within": 0.0}, "within = 0"),
         ({"harmonics": 0}, "harmonics = 0: needs a whole number"),
         ({"max_steps": 1.5}, "max_steps = 1.5"),
-        ({"starts": 6}, "starts = 6: needs a whole number, 1 to 5"),
+        ({"starts": 0}, "starts = 0: needs a whole number >= 1"),
         ({"accuracy": 1.0}, "accuracy = 1: needs"),
         ({"trace": fx.Trace([0, 1, 2, 11], z=FOUR)}, r"times in \[0, duration\]"),
     ],

@@ -56,12 +56,16 @@ class Step(NamedTuple):
 
 
 class Descent(NamedTuple):
-    """Where a descent ended, with every iterate on the way."""
+    """Where a descent ended, with every iterate on the way.
+
+    `drawn`: from a start at random.
+    """
 
     numbers: np.ndarray
     flow: Flow
     steps: list[Step]
     converged: bool
+    drawn: bool = False
 
 
 class View(NamedTuple):

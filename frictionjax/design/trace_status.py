@@ -9,7 +9,7 @@ class TraceStatus(Outcome):
     FITTED = 0, "the surface explains the trace"
     NO_SLIDE = 1, "the tip never leaves its first well: most of the surface is not seen"
     UNDETERMINED = 2, "the trace determines too little of the surface"
-    MISFIT = 3, "residuals far above the uncertainties: another scene made this trace"
+    MISFIT = 3, "residuals that errors do not explain: another scene, or more starts needed"
     OTHER_SLIPS = 4, "slips come at other times than in the trace"
     MAX_STEPS = 5, "the step budget ran out before the optimum; raise max_steps"
     NOT_FINITE = 6, "the start has no trajectory: slips too short, or too many"
