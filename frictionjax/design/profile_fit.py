@@ -63,9 +63,10 @@ def fit_profile(
     `.identifiability` and `.family` say what is left open. Where nothing is flattened and
     no bound is felt it has a closed form, taken in one step; where the problem is convex,
     a start whose optimum is proven stands for the others, which do not run. Every iterate
-    is admissible (`1 + a omega > 0`, the bristles' own bounds) and keeps the other bounds
-    with a margin of 0.5%. Targets that no surface meets come back with the best weighted
-    compromise and a `.status` and `.message` that say why.
+    is admissible (`1 + a omega > 0`, the bristles' own bounds; free bristles keep 0.1% from
+    the steepest slopes that they follow) and keeps the other bounds with a margin of 0.5%.
+    Targets that no surface meets come back with the best weighted compromise and a
+    `.status` and `.message` that say why.
 
     Raises `ValueError` for targets of the wrong sign, shape or kind, weights or
     uncertainties that are not positive, bristles that press on nothing, and names and
