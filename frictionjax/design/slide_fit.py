@@ -7,7 +7,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..admissibility import require_reach
 from ..arguments import (
     Real,
     as_real,
@@ -17,7 +16,7 @@ from ..arguments import (
     require_real,
 )
 from ..bristles import AbstractBristle
-from ..potentials import BristlePotential
+from ..potentials import BristlePotential, smallest_stretch
 from ..profiles import AbstractProfile
 from ..programs import Program, in_chunks
 from ..supports import Spring
@@ -166,9 +165,7 @@ def _follows(free, bristle, profile, places, eps):
     """Whether bristles at coordinates (n,) follow the surface at this eps: G > 0."""
 
     def one(x):
-        wiggle = BristlePotential(profile, free.at(bristle, x))
-        grid = jnp.arange(wiggle.points) / wiggle.points
-        return jnp.all(jax.vmap(lambda y: wiggle.tip_force(y, eps)[1])(grid) > 0)
+        return smallest_stretch(BristlePotential(profile, free.at(bristle, x)), eps) > 0
 
     return jax.vmap(one)(places)
 
@@ -250,7 +247,6 @@ def fit_slide(
         status = FitStatus.TANGENT if at in turns else FitStatus.OK
     best = alone(at)
     part = free.put(limit.bristle, best.value)
-    require_reach(BristlePotential(profile, part), scene[0])
     tangent = status == FitStatus.TANGENT
     return SlideFit(
         part,
