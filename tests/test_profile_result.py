@@ -223,9 +223,11 @@ def test_the_picture_shows_the_data(fit):
     np.testing.assert_allclose(levels, [found.omega_plus, found.omega_minus])
     assert len(surface.lines) == 13
     shown = [line for line in starts.lines if line.get_linestyle() == "None"]
-    np.testing.assert_allclose(
-        shown[0].get_ydata(), [one.bending_energy for one in fit.starts]
-    )
+    assert [one.ran for one in fit.starts] == [True, False]  # a closed form
+    drawn = np.concatenate([line.get_ydata() for line in shown])
+    np.testing.assert_allclose(drawn, [one.bending_energy for one in fit.starts])
+    assert shown[1].get_fillstyle() == "none"
+    assert shown[1].get_label() == "not run: best is proven"
     np.testing.assert_allclose(targets.lines[0].get_ydata(), [0.15])
     np.testing.assert_allclose(targets.lines[1].get_xdata(), [0.1])
 
