@@ -40,6 +40,7 @@ def test_a_target_at_the_turn_itself_touches():
     found = scan(HUMP, HUMP.slope, 0.0, 1.0)
     assert touching(found, 1.0)[0] == pytest.approx(0.513, abs=1e-6)
     assert touching(found, 1.0 + 1e-8).size == 0
+    assert touching(found, float(HUMP.formula(0.25))).size == 0  # a node, but no turn
 
 
 def test_rounding_is_no_turn():
@@ -63,7 +64,7 @@ def test_parts_that_slide_are_found_to_rounding():
 
     parts = sliding(follows, 0.0, 1.0)
     np.testing.assert_allclose(
-        parts, [(1 / 3 - 0.1, 1 / 3 + 0.1), (np.pi / 4, 1.0)], atol=1e-15
+        parts, [(1 / 3 - 0.1, 1 / 3 + 0.1), (np.pi / 4, 1.0)], rtol=1e-15
     )
     assert all(follows(np.array(ends)).all() for ends in parts)
     assert sliding(lambda x: x > 2, 0.0, 1.0) == []
