@@ -76,6 +76,6 @@ def test_parts_of_32_bits_are_refused():
 def test_numbers_of_any_kind_become_64_bits():
     for one in (1, np.float32(1), np.int8(1), jnp.asarray(1)):
         assert fx.bristles.Homothetic(one).alpha.dtype == np.float64
-    with pytest.raises(ValueError, match="bristle.alpha = True: needs a number"):
+    with pytest.raises(ValueError, match=r"bristle\.alpha = True: needs a number"):
         fx.bristles.Homothetic(True)
     assert fx.profiles.Fourier([1, 0], np.zeros(2, np.float32)).sin.dtype == np.float64
