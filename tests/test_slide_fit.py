@@ -1,5 +1,7 @@
 """Designs at finite eps: the slide itself has the friction asked for."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -102,12 +104,12 @@ def test_slides_that_were_not_computed_are_not_unreachable(monkeypatch):
     def shown(x):
         return 1.0 + 0.3 * x
 
-    def fit(lost, ratio, follows=True):
+    def fit(lost, ratio, follows=True, slide=known):
         def quantities(free, bristle, profile, asked, places):
             return np.where(np.abs(places - 0.7) < 0.2 * lost, np.nan, shown(places))
 
         def alone(free, bristle, profile, asked, x):
-            return slide_fit._Slide(shown(x), 0.3 * one, one, x, known)
+            return slide_fit._Slide(shown(x), 0.3 * one, one, x, slide)
 
         def sliding(free, bristle, profile, places, eps):
             return np.full(places.size, follows)
@@ -128,6 +130,11 @@ def test_slides_that_were_not_computed_are_not_unreachable(monkeypatch):
     assert fit(0, 1.6).status == FitStatus.UNREACHABLE
     assert fit(0, 1.6).failed.size == 0
     assert fit(1, 1.1).status == FitStatus.OK  # found on what is known
+    failing = dataclasses.replace(known, code_plus=one)
+    unsure = fit(0, 1.1, slide=failing)  # a crossing whose own slide is not found
+    assert unsure.status == FitStatus.UNKNOWN
+    assert unsure.solutions.size == 0
+    np.testing.assert_allclose(unsure.failed, 1 / 3, rtol=1e-12)
     again = SlideFit.from_json(fit(1, 1.6).to_json())
     assert again.status == FitStatus.UNKNOWN
     assert again.message == found.message

@@ -235,6 +235,8 @@ def fit_slide(
     turns = np.concatenate([touching(one, target) for one in scans])
     failed = np.concatenate([one.failed(target) for one in scans])
     found = roots if roots.size else turns
+    good = np.array([alone(x).slide.ok for x in found], dtype=bool)
+    failed, found = np.concatenate([failed, found[~good]]), found[good]
 
     def values(places):
         return _values(free, limit.bristle, places)

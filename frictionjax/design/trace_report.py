@@ -47,8 +47,8 @@ def report(trace: Trace, problem: Problem, found: Descent, within: float) -> Tra
     )
     chi2 = excess / scale**2 / freedom
     high = _high(chi2, freedom)
-    if trace.uncertainty is not None and found.drawn:
-        high = chi2 > 1
+    if found.drawn:
+        high = excess > freedom
     status = _status(problem, found, now, judged, high, sd)
     r = (now.away / sd)[now.used]
     if status == TraceStatus.FITTED and scale > 1 and _patterned(r, tips[now.used]):
@@ -72,7 +72,7 @@ def explains(trace: Trace, problem: Problem, found: Descent) -> bool:
     excess = float(r @ r) / freedom
     tips = problem.tips(found.numbers, np.asarray(found.flow.z))[now.used]
     if trace.uncertainty is None:
-        good = excess <= 1 or not _patterned(r, tips)
+        good = excess <= 1 or not (found.drawn or _patterned(r, tips))
     else:
         good = excess <= 1 + (0 if found.drawn else _DOUBTFUL) * np.sqrt(2 / freedom)
     return bool(found.converged and good and not now.disputed.any())
