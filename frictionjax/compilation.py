@@ -1,6 +1,6 @@
 """How XLA compiles and what it keeps: set by the command line, offered to notebooks.
 
-Imports no JAX: the flags must be set before it.
+Imports no JAX at the top: the flags must be set before it.
 """
 
 import os
@@ -19,16 +19,22 @@ _WORTH_KEEPING = 0.0  # s of compilation: small programs add up to 2 s of a stud
 def use_fast_cpu() -> bool:
     """Set the flags with which XLA compiles the library's loops best on a CPU.
 
+    And have programs run in the thread that calls them (`jax_cpu_enable_async_dispatch`).
     Call it before anything has been computed with JAX in the process; later calls, and
     flags of your own in `XLA_FLAGS`, are left alone. Returns whether the flags are in use
     or will be.
     """
     given = os.environ.get("XLA_FLAGS", "")
-    if FAST_CPU_FLAGS in given:
-        return True
-    if "xla_backend_extra_options" in given or _backend_is_running():
-        return False
-    os.environ["XLA_FLAGS"] = f"{given} {FAST_CPU_FLAGS}".strip()
+    if _backend_is_running():
+        return FAST_CPU_FLAGS in given
+    if FAST_CPU_FLAGS not in given:
+        if "xla_backend_extra_options" in given:
+            return False
+        os.environ["XLA_FLAGS"] = f"{given} {FAST_CPU_FLAGS}".strip()
+    import jax
+
+    # A small program takes 20 us where handing it to another thread takes 80.
+    jax.config.update("jax_cpu_enable_async_dispatch", False)
     return True
 
 

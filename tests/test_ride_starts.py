@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.wiggly import engine, ride_starts, rides
+from frictionjax.wiggly import engine, ride_starts, rides, slow_ends
 
 SCENE = fx.Scene(
     fx.profiles.Sine(0.1),
@@ -47,7 +47,7 @@ def test_at_once_is_as_one_after_the_other(monkeypatch, eps, calls):
 def test_what_was_foreseen_is_found_again_where_the_slide_before_lags(monkeypatch):
     """A ride that ends fast: those found without it are not believed."""
     expected, _ = solved(6e-3)
-    monkeypatch.setattr(ride_starts, "_END", 0.0)  # all slides are slow at their turn
+    monkeypatch.setattr(slow_ends, "_END", 0.0)  # all slides are slow at their turn
     found, followed = solved(6e-3)
     assert [slides.size for slides in followed] == [3, 1, 1]
     assert np.max(np.abs(found.z - expected.z)) < 2e-5 * 6e-3

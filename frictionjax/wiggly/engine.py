@@ -1,5 +1,7 @@
 """All cells of a sweep through lanes: rounds of windows until every bracket has closed."""
 
+import threading
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
@@ -201,10 +203,21 @@ def _first_attempt(
         return sweep.attempt(every)
     if others.size == 0:
         return _with_rides(sweep, every, some)
-    with ThreadPoolExecutor(1) as aside:
+    # Beside the first lanes that look for rides: with both planning at once, and two lanes
+    # waiting for one core, a sweep took a tenth longer.
+    lanes_run = threading.Event()
+
+    def aside() -> tuple[Answers, np.ndarray]:
+        lanes_run.wait()
         # With both cores lanes would hold up every small program of the other thread.
-        beside = aside.submit(sweep._replace(workers=1).attempt, _some(every, others))
-        found, open_ = _with_rides(sweep, every, some)
+        return sweep._replace(workers=1).attempt(_some(every, others))
+
+    with ThreadPoolExecutor(1) as pool:
+        beside = pool.submit(aside)
+        try:
+            found, open_ = _with_rides(sweep, every, some, lanes_run.set)
+        finally:
+            lanes_run.set()
         parts = ((others, *beside.result()), (some, found, open_))
     never = np.zeros(ridden.size, dtype=bool)
     columns = []
@@ -218,11 +231,14 @@ def _first_attempt(
 
 
 def _with_rides(
-    sweep: _Sweep, every: _Cellwise, chosen: np.ndarray
+    sweep: _Sweep,
+    every: _Cellwise,
+    chosen: np.ndarray,
+    lanes_run: Callable[[], None] = lambda: None,
 ) -> tuple[Answers, np.ndarray]:
     """An attempt at some cells after their rides have been found."""
     some = _some(every, chosen)
-    rounds = sweep.rounds(some)
+    rounds = sweep.rounds(some)._replace(lanes_run=lanes_run)
     find_rides(rounds, some.needs.warm)
     # The rides belong to the cells from here on: later attempts use them too.
     every.ground.rides[chosen] = some.ground.rides
@@ -272,6 +288,9 @@ def _from_the_start(
         return
     some = _some(every, chosen)
     forever, none = np.full(chosen.size, np.inf), np.zeros(chosen.size)
-    needs = some.needs._replace(warm=forever, settle=none, tile=forever, nodes=none)
+    uncut = np.zeros_like(some.needs.cut)
+    needs = some.needs._replace(
+        warm=forever, settle=none, tile=forever, nodes=none, cut=uncut
+    )
     part, _ = sweep.attempt(some._replace(needs=needs))
     _put(answers, part, chosen)

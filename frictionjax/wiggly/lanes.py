@@ -15,11 +15,11 @@ from .lane import Cells, LaneScene, Sums
 from .rosenbrock import Tableau
 
 # Lanes side by side. Seconds of one lane and step, one core: 0.09 us at 64; at 256, where
-# XLA splits the arrays over threads, 0.17. A few jobs go through the narrow loop, whose
-# steps take less time.
+# XLA splits the arrays over threads, 0.17. A few jobs, or a few long ones, go through the
+# narrow loop, whose steps take less time. (1.28 us at 8, 1.61 at 16, 2.99 at 32, 4.78 at
+# 64; 0.385 of the wide one's in another hour.)
 WIDTH, NARROW = 64, 8
-NARROW_STEP = 0.385  # seconds of a narrow loop's step, of a wide one's
-FEW_JOBS = int(NARROW / NARROW_STEP)  # that the narrow loop takes no longer for
+NARROW_STEP = 0.33  # seconds of a narrow loop's step, of a wide one's
 # Wells that few jobs go through in a wide loop that is there before the narrow one is
 # compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load, 2 s
 # to compile. For more at once they wait for it.
@@ -57,6 +57,15 @@ def _padded(rows: np.ndarray, size: int) -> np.ndarray:
     padded = np.ones((size, rows.shape[1]))
     padded[: rows.shape[0]] = rows
     return padded
+
+
+def loop_times(longest: Any, together: Any) -> tuple[Any, Any]:
+    """How long the narrow and the wide loop take for a queue, in steps of the wide one.
+
+    `longest`, `together`: work of its longest job, and of all, in steps.
+    """
+    narrow = NARROW_STEP * np.maximum(longest, together / NARROW)
+    return narrow, np.maximum(longest, together / WIDTH)
 
 
 class _Loops:
@@ -138,10 +147,12 @@ def march(
     legs: Legs,
     tableau: Tableau,
     wanted: Sums,
+    work: np.ndarray | None = None,
 ) -> Arrivals:
     """Run all jobs side by side; each lane takes the next job when it is through.
 
-    NumPy arrays in and out. What a lane finds does not depend on the others.
+    NumPy arrays in and out. What a lane finds does not depend on the others. `work`
+    (jobs,): about in proportion to the steps of each; None: to its wells.
     """
     tables = [np.stack([np.asarray(c, float) for c in t], -1) for t in (cells, jobs, legs)]
     needed = Room(*(len(t) for t in tables))
@@ -151,17 +162,17 @@ def march(
         return Tables(*rows, waiting=np.asarray(needed.jobs))
 
     program = scene, tableau, wanted
-    width = WIDTH
-    if needed.jobs <= FEW_JOBS:
-        width = _LOOPS.width_for(program, needed, _wells(cells, jobs, legs))
+    width, wells = WIDTH, _wells(cells, jobs, legs)
+    of_jobs = wells if work is None else work
+    narrow, wide = loop_times(of_jobs.max(), of_jobs.sum())
+    if narrow < wide:
+        width = _LOOPS.width_for(program, needed, max(wells.max(), wells.sum() / NARROW))
     found = _LOOPS.run((*program, width), needed, fill)
     return Arrivals(*np.asarray(found)[: needed.legs].T)
 
 
-def _wells(cells: Cells, jobs: Jobs, legs: Legs) -> float:
-    """Wells that few jobs go through one after the other in the narrow loop."""
+def _wells(cells: Cells, jobs: Jobs, legs: Legs) -> np.ndarray:
+    """Wells that each job goes through, (jobs,)."""
     eps = np.asarray(cells.eps)[np.asarray(jobs.cell, dtype=int)]
-    count = np.asarray(jobs.past_leg - jobs.first_leg, dtype=int)
-    owner = np.repeat(np.arange(eps.size), count)
-    wells = np.bincount(owner, np.abs(legs.guide1 - legs.guide0) / eps[owner], eps.size)
-    return float(max(wells.max(), wells.sum() / NARROW))
+    way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])
+    return (way[np.asarray(jobs.past_leg)] - way[np.asarray(jobs.first_leg)]) / eps

@@ -178,7 +178,9 @@ def _chains(
     other. Requested times among them are put into `output`."""
     # Beside rides windows of a few wells each lead to the times.
     chained = [c for c in range(eps.size) if summed or not rides[c]]
-    lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts, chained)
+    # Guides of long legs are coarse, which counts in sums only.
+    cut = chained if summed else []
+    lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts, cut)
     edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
     fixed = np.unique(np.concatenate([edges, ts]))
     cuts = [
@@ -192,6 +194,7 @@ def _chains(
     for k, (cell, (opening, own, segment)) in enumerate(zip(chained, cuts, strict=True)):
         since = (ways[2 * k + 1] - ways[2 * k][segment]) / eps[cell]
         tile = np.floor(since / needs.tile[cell] - 1e-9) + _on_rides(rides[cell], own)
+        tile += np.searchsorted(path.edges[1:][needs.cut[cell]], own)
         begins = own > opening[segment]
         own, segment, tile = own[begins], segment[begins], tile[begins]
         tiles = _tiles(segment, tile)

@@ -18,7 +18,8 @@ class Needs(NamedTuple):
     where the slide before is forgotten. `tile`: between two cuts of the chain, infinite
     where it is not cut. `nodes`: periods measured in a slide, 0 for all. `offset` (cells,
     pieces): from the start of a slide to its first lattice point, which is half a period
-    from the slips of a slow slide: what is measured should not begin in a slip.
+    from the slips of a slow slide: what is measured should not begin in a slip. `cut`
+    (cells, pieces): where the chain is cut however long its tiles are, at a piece's end.
     """
 
     warm: np.ndarray
@@ -26,6 +27,7 @@ class Needs(NamedTuple):
     tile: np.ndarray
     nodes: np.ndarray
     offset: np.ndarray
+    cut: np.ndarray
 
 
 def wells_of(path: Path, eps: np.ndarray, needs: Needs) -> tuple[np.ndarray, np.ndarray]:
@@ -48,8 +50,11 @@ def cost_of(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray
 
 
 def longest_lane(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:
-    """Wells of a tile and its run-up, at most all of them."""
-    return np.minimum(path.travel[-1] / eps, needs.tile + needs.warm)
+    """Wells of a tile and its run-up, at most all of them between two cuts."""
+    ends = np.where(needs.cut, path.travel[1:], 0.0)
+    begins = np.maximum.accumulate(np.pad(ends, ((0, 0), (1, 0)))[:, :-1], axis=1)
+    between = np.max(path.travel[1:] - begins, axis=1)
+    return np.minimum(between / eps, needs.tile + needs.warm)
 
 
 def wells_a_leg(path: Path, eps: np.ndarray) -> np.ndarray:

@@ -24,7 +24,10 @@ _LEGENDRE = np.polynomial.legendre.legvander(_X, _POINTS - 1)
 _TO_SERIES = np.linalg.inv(_LEGENDRE)
 _DEPTH = 26  # halvings of the period: folds narrower than 1e-8 of it are not resolved
 _FINE = 1e-8  # of the whole integral: last coefficients of a panel that is halved
-_ROUGH = 1e-4  # of it: last coefficients of panels in s; passages err by its square
+# Of it: last coefficients of panels in s; passages err by less than its square. (gamma 0.25
+# to 0.5, accuracy 1e-3 to 1e-6: the same errors of slip maps at a tenth of it, larger ones
+# at three times it.)
+_ROUGH = 1e-3
 _PANELS = 4, 6, 8, 12, 16, 32, 64  # in s
 _INVERSE = 4  # sweeps of Newton's method for the place at an s
 # Sweeps of Newton's method from a guess that keeps the force constant, and from the

@@ -22,6 +22,7 @@ from .path import Path
 from .rodas5p import RODAS5P
 from .rounds import LONG_MEMORY, MARGIN
 from .series_bristle import series_of
+from .slow_ends import slow_ends
 from .starts import Ground
 from .tolerance import Plan as StepPlan
 from .tolerance import plan_steps, pull_of
@@ -137,7 +138,9 @@ def _needs(control: StepPlan, ground: Ground, path: Path, accuracy: float) -> Ne
     slow = np.ceil(MARGIN + forgets)
     warm = np.minimum(slow, _resting(ground, lag, forgets))
     settle = np.ceil(lag + warm + 2)
-    return Needs(warm, settle, _TILE * slow, np.zeros(lag.size), _offsets(ground, path))
+    offset, none = _offsets(ground, path), np.zeros(lag.size)
+    cut = np.zeros(offset.shape, dtype=bool)
+    return Needs(warm, settle, _TILE * slow, none, offset, cut)
 
 
 def _resting(ground: Ground, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
@@ -177,12 +180,14 @@ def _choose(path: Path, eps: np.ndarray, needs: Needs, times: int, method: str) 
 
 
 def _long_memories(
-    control: StepPlan, path: Path, eps: np.ndarray, needs: Needs, method: str
+    scene: Scene, control: StepPlan, path: Path, ground: Ground, needs: Needs, method: str
 ) -> tuple[np.ndarray, Needs]:
     """Which cells follow slip maps: where windows would remember too many slips.
 
-    With few slips altogether one lane goes through all from z0, needing no bracket.
+    With few slips altogether one lane goes through all from z0, needing no bracket; others
+    set off where a slide ends slow.
     """
+    eps = ground.eps
     if method == "resolved":
         return np.zeros(eps.size, dtype=bool), needs
     long = needs.warm > LONG_MEMORY
@@ -194,9 +199,11 @@ def _long_memories(
         way = path.travel[-1] / eps * narrow
         ridden &= way > _MAP
         alone = long & (way <= _MAP)
+        lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
         needs = needs._replace(
             nodes=np.where(alone, 0, needs.nodes),
             tile=np.where(alone, np.inf, needs.tile),
+            cut=alone[:, None] & slow_ends(scene, path, eps, lag),
         )
     return ridden, needs
 
@@ -231,5 +238,5 @@ def planned(
     ground = ground_of(scene, path, eps, gamma, control.folds)
     needs = _needs(control, ground, path, accuracy)
     needs = _choose(path, eps, needs, times, method)
-    ridden, needs = _long_memories(control, path, eps, needs, method)
+    ridden, needs = _long_memories(scene, control, path, ground, needs, method)
     return Planned(control, ground, needs, ridden)

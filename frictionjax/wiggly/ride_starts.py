@@ -10,9 +10,10 @@ from collections.abc import Callable
 import numpy as np
 
 from .passage import pull_at
-from .path import Path, arrivals_at, slopes_at, states_at, times_at
-from .rides import RESTS, Candidates, Look, Ride, Rider
+from .path import Path, arrivals_at, slopes_at, states_at
+from .rides import Candidates, Look, Ride, Rider
 from .set_off import first_wells
+from .slow_ends import slow_ends
 
 # Wells behind the tip where the slip map takes over: passages change slowly enough for
 # panels of 16 wells (8 wells: tails 100 times larger).
@@ -22,7 +23,6 @@ _STILL = 4.0  # of them that must have been passed for the slide to go on
 _CLOSED = 0.1  # wells of time: gaps of brackets at the start of a ride, at most
 _LONG = 100.0  # wells of lag that are worth a slip map after the turn
 _FAST = 0.9  # share that a well leaves of a shift, where lags are many wells
-_END = 8.0  # wells before a slide's end where it should be slow
 
 # Rides of cells and the gaps at their starts -> errors of each on its panels, by lanes.
 Check = Callable[[list[int], list[Ride], list[float]], list[np.ndarray]]
@@ -142,25 +142,12 @@ def _joins(ride: Ride | None, piece: int, direction: float, path: Path) -> bool:
 
 
 def _foreseen(rider: Rider, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cells and pieces of slides whose slide before should end slow, or has none before.
-
-    Slides lag, and remember twice as many wells, in proportion to the square of their
-    speed, about.
-    """
+    """Cells and pieces of slides whose slide before should end slow, or has none before."""
     path = rider.path
     slides = np.flatnonzero(path.direction)
-    before = slides[:-1]
-    ends = np.abs(path.states[before + 1] - path.states[before])
-    level = np.maximum(ends[:, None] - _END * rider.eps[cells], 0.0)
-    state = path.states[before][:, None] + path.direction[before][:, None] * level
-    shape = state.shape
-    times = times_at(rider.scene, path, np.repeat(before, cells.size), state.ravel())
-    speed = slopes_at(rider.scene, path, times, state.ravel()).reshape(shape)
-    memory = 2 * rider.lag[cells] * (speed / path.speed) ** 2
-    slow = np.concatenate(
-        [np.ones((1, cells.size), dtype=bool), memory * -np.log(RESTS) < 1]
-    )
-    which, cell = np.nonzero(slow)
+    slow = slow_ends(rider.scene, path, rider.eps[cells], rider.lag[cells])[:, slides[:-1]]
+    first = np.ones((1, cells.size), dtype=bool)
+    which, cell = np.nonzero(np.concatenate([first, slow.T]))
     return cells[cell], slides[which]
 
 

@@ -13,10 +13,14 @@ from .rounds import EARLIER, ROUNDS, Rounds, run_ups
 from .starts import Starts
 from .windows import Plan, Windows
 
-# Tolerance of the lanes that measure a slip map; errors of the map at its start, as lanes
-# leave it, and at least, of the accuracy. (At 0.1 brackets of times in the first wells of a
-# ride stayed open where the tip was nearly in a slip.)
-_TIGHT_RIDE, _SET_OFF, _LEAST_ERROR = 1e-10, 0.02, 0.01
+# Tolerance of the lanes that measure a slip map, of the tolerance of others, and the
+# tightest that is of use. (gamma = 1/2, eps 1e-3 to 1e-4, accuracy 1e-3: the same errors of
+# maps from 1e-11 to 3e-8, in a third of the steps; others add up to as much as 0.02.)
+_TIGHT_RIDE, _TIGHTEST_RIDE = 0.05, 1e-10
+# Errors of a map at its start, as lanes leave it, and at least, of the accuracy. (At 0.1
+# brackets of times in the first wells of a ride stayed open where the tip was nearly in a
+# slip.)
+_SET_OFF, _LEAST_ERROR = 0.02, 0.01
 _TIGHT_LOOK = 0.2  # of the tolerance: lanes that lead to the start of a slip map
 # Share of the accuracy that rounding may take in a measurement of a slip map, wells that
 # lanes go through for it at most, and what rounding of loads takes of a spacing of times.
@@ -103,8 +107,8 @@ def _errors(
     whose, known = np.array(cells)[who], np.ones(tip.size, dtype=bool)
     never = np.full(tip.size, -np.inf)
     starts = Starts(begin, known, ~known, known, never, well, tip, well, tip)
-    tight = np.where(np.isin(np.arange(rounds.ground.eps.size), cells), _TIGHT_RIDE, 1.0)
-    tight = np.minimum(tight, rounds.cells.tolerance)
+    usual = np.asarray(rounds.cells.tolerance)
+    tight = np.minimum(np.maximum(_TIGHT_RIDE * usual, _TIGHTEST_RIDE), usual)
     exact = rounds._replace(cells=rounds.cells._replace(tolerance=tight, loosest=tight))
     windows = Windows(whose, begin, known, np.arange(tip.size), stop)
     plan, found = exact.march_from(windows, starts)

@@ -10,7 +10,7 @@ from ..scene import Scene
 from .brackets import gaps_of, shifts_of
 from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
-from .lanes import FEW_JOBS, NARROW, NARROW_STEP, WIDTH, march
+from .lanes import WIDTH, loop_times, march
 from .layout import Layout
 from .needs import Needs
 from .path import Path, states_at
@@ -26,6 +26,8 @@ EARLIER = 4  # times as far back in each round
 MARGIN = 3  # wells: one to fall behind, one to catch up, one to forget
 LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast slides are
 _WORTH = 0.9  # of the time with two loops of the same width: what is worth two others
+_FEW = 64  # long jobs that may have a loop of their own
+_FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
 _BATCH = 1e5  # wells: a few seconds, between two reports
 
 Report = Callable[[float], None]
@@ -41,28 +43,25 @@ def _seats(count: int, seats: int) -> np.ndarray:
     return np.where(row % 2 == 0, seat, seats - 1 - seat)
 
 
-def longest_alone(cost: np.ndarray) -> int:
-    """How many of the longest jobs go through a narrow loop beside all others.
+def longest_alone(work: np.ndarray) -> int:
+    """How many of the longest jobs go through a loop of their own, beside all others.
 
-    `cost` in wells, the longest first. 0 where two loops of the same width are as fast.
+    `work` as in `march`, the longest first. 0 where two loops of the same are as fast.
     """
-    if cost.size < 2:
+    if work.size < 2:
         return 0
-    few = np.arange(1, min(NARROW, cost.size - 1) + 1)
-    left = cost.sum() - np.cumsum(cost)[few - 1]
-    others = _taken(cost.size - few, cost[few], left)
-    both = np.maximum(_taken(few, cost[0], cost[:1]), others)
-    half = cost.size / WORKERS
-    even = _taken(half, cost[0], cost.sum() / WORKERS)
+    few = np.arange(1, min(_FEW, work.size - 1) + 1)
+    together = np.cumsum(work)[few - 1]
+    apart = [_taken(work[0], together), _taken(work[few], work.sum() - together)]
+    both = np.max(apart, axis=0)
+    even = _taken(work[0], work.sum() / WORKERS)
     best = int(np.argmin(both))
     return int(few[best]) if both[best] < _WORTH * even else 0
 
 
-def _taken(jobs, longest, together):
-    """Time of a queue, in wells of a lane of the wide loop."""
-    narrow = jobs <= FEW_JOBS
-    lanes, step = np.where(narrow, NARROW, WIDTH), np.where(narrow, NARROW_STEP, 1.0)
-    return step * np.maximum(longest, together / lanes)
+def _taken(longest, together):
+    """Time of a queue, in steps of the wide loop."""
+    return np.minimum(*loop_times(longest, together))
 
 
 def _merged(one: Arrivals, other: Arrivals) -> Arrivals:
@@ -87,7 +86,7 @@ class Rounds(NamedTuple):
 
     `brief` (cells,): tolerances of lanes on rides through a few wells; None: those of the
     others. `workers`: queues at once. `spent` (2, cells): steps and rejected steps so far,
-    added in place.
+    added in place. `lanes_run` is called as lanes set off.
     """
 
     scene: Scene
@@ -102,6 +101,7 @@ class Rounds(NamedTuple):
     spent: np.ndarray
     brief: np.ndarray | None
     workers: int = WORKERS
+    lanes_run: Callable[[], None] = lambda: None
 
     def run(self, windows: Windows, wells: np.ndarray, back: np.ndarray) -> Round:
         """March all windows, from `wells` of the path or `back` of a ride before them."""
@@ -124,21 +124,22 @@ class Rounds(NamedTuple):
         eps = self.ground.eps[jobs.cell]
         way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])
         wells = (way[jobs.past_leg] - way[jobs.first_leg]) / eps
-        cost = wells + 1 + 0.3 * (jobs.past_leg - jobs.first_leg)
+        work = wells + 1 + 0.3 * (jobs.past_leg - jobs.first_leg)
+        work = np.where(plan.brief, _FAST, 1.0) * work
         jobs, cells = self._steered(jobs, plan.brief)
-        order = np.argsort(-cost, kind="stable")
+        order = np.argsort(-work, kind="stable")
         # Batches of less than two jobs a lane leave lanes idle.
         most = max(order.size // (2 * self.workers * WIDTH), 1)
-        batches = min(int(np.ceil(cost.sum() / _BATCH)), most)
+        batches = min(int(np.ceil(work.sum() / _BATCH)), most)
         found = _nothing(legs)
         can = batches == 1 and self.workers > 1
-        alone = longest_alone(cost[order]) if can else 0
+        alone = longest_alone(work[order]) if can else 0
         seat = _seats(order.size, batches * self.workers)
         for batch in range(batches):
             queues = [order[seat == batch + i * batches] for i in range(self.workers)]
             if alone:
                 queues = [order[:alone], order[alone:]]
-            for part in _POOL.map(lambda q: self._queue(cells, jobs, legs, q), queues):
+            for part in self._through(cells, jobs, legs, queues, work):
                 found = _merged(found, part)
             self.report(1 / batches)
         return found
@@ -152,7 +153,19 @@ class Rounds(NamedTuple):
         both = (np.concatenate(pair) for pair in zip(self.cells, others, strict=True))
         return jobs._replace(cell=jobs.cell + brief * self.brief.size), Cells(*both)
 
-    def _queue(self, cells: Cells, jobs: Jobs, legs: Legs, chosen: np.ndarray) -> Arrivals:
+    def _through(self, cells: Cells, jobs: Jobs, legs: Legs, queues: list, work):
+        """What is found in each queue; the first is run by this thread.
+
+        Beside other cells' lanes two of the pool's would wait for each other.
+        """
+        parts = [(cells, jobs, legs, queue, work) for queue in queues]
+        self.lanes_run()
+        beside = [_POOL.submit(self._queue, *part) for part in parts[1:]]
+        found = [self._queue(*parts[0])]
+        return found + [part.result() for part in beside]
+
+    def _queue(self, cells, jobs, legs, chosen: np.ndarray, work: np.ndarray) -> Arrivals:
+        """What some jobs find, at all legs."""
         if chosen.size == 0:
             return _nothing(legs)
         mine = Jobs(*(np.asarray(column)[chosen] for column in jobs))
@@ -162,7 +175,8 @@ class Rounds(NamedTuple):
         rows = np.repeat(mine.first_leg - (past - count), count) + np.arange(count.sum())
         mine = mine._replace(first_leg=past - count, past_leg=past)
         some = Legs(*(column[rows] for column in legs))
-        found = march(self.lanes, cells, mine, some, self.tableau, self.wanted)
+        fixed = self.tableau, self.wanted
+        found = march(self.lanes, cells, mine, some, *fixed, work[chosen])
         return Arrivals(*(_spread(v, rows, legs.start.size) for v in found))
 
 
@@ -181,7 +195,7 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
     gap, how = np.full(size, np.inf), np.zeros(size, dtype=int)
     open_ = np.arange(windows.cell.size)
     wells = run_ups(rounds, windows, needs.warm)
-    back = np.ones(wells.size)
+    back = np.zeros(wells.size)
     for _ in range(ROUNDS):
         some = windows.chosen(open_)
         place = np.flatnonzero(np.isin(windows.owner, open_))
@@ -211,7 +225,7 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
         if open_.size == 0:
             break
         wells[open_] = np.maximum(EARLIER * wells[open_], MARGIN + 1)
-        back[open_] *= EARLIER
+        back[open_] = np.maximum(EARLIER * back[open_], 1)
     result = Found(Arrivals(*values), Legs(*legs), gap, how, *rounds.spent)
     return result, open_
 
