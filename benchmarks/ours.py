@@ -27,11 +27,12 @@ def solve(
     return integrate_cells(one, eps, gamma, TIMES, accuracy, method, **wanted)
 
 
-def _wait_for_loops() -> None:
-    """Loops that first calls have asked for compile beside later ones: no part of them."""
-    for thread in threading.enumerate():
-        if thread.name == LOADER:
-            thread.join()
+def _wait_for_loops() -> bool:
+    """Whether loops compile that this run has asked for; not any more, then."""
+    loading = [thread for thread in threading.enumerate() if thread.name == LOADER]
+    for thread in loading:
+        thread.join()
+    return bool(loading)
 
 
 class Timed(NamedTuple):
@@ -49,8 +50,9 @@ def timed(run, repeats: int = 5) -> Timed:
     while len(wall) <= (2 if wall and wall[-1] > _LONG else repeats):
         start, busy = time.perf_counter(), time.process_time()
         found = run()
-        wall.append(time.perf_counter() - start)
-        cpu.append(time.process_time() - busy)
-        if len(wall) == 1:
-            _wait_for_loops()
+        took = time.perf_counter() - start, time.process_time() - busy
+        # Beside a loop that compiles only the first run counts.
+        if not _wait_for_loops() or not wall:
+            wall.append(took[0])
+            cpu.append(took[1])
     return Timed(found, min(wall[1:]), max(wall[1:]), wall[0], min(cpu[1:]))

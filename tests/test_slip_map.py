@@ -277,7 +277,7 @@ def test_tiles_end_on_rides():
     series = none + np.eye(13)[1] * 0.5  # a second for a hundred wells
     series[0, 0] = 0.5
     curve = Curve(edges, np.array([1.0, 2.0]), series, none[:, 0], none[:, 0] + 0.9, 0.9)
-    ride = Ride(curve, 1.0, 0.0, 0.0, 0, none[:, 0])
+    ride = Ride(curve, 1.0, 0.0, 0.0, 0, lambda: none[:, 0])
     times = np.array([0.0, 1.0, 1.15, 1.17, 1.33, 1.9, 2.0, 5.0])
     assert layout._on_rides((ride,), times).tolist() == [0, 0, 0, 1, 2, 5, 6, 6]
     assert layout._on_rides((), times).tolist() == [0] * 8

@@ -239,13 +239,14 @@ def _with_rides(
     """An attempt at some cells after their rides have been found."""
     some = _some(every, chosen)
     rounds = sweep.rounds(some)._replace(lanes_run=lanes_run)
-    find_rides(rounds, some.needs.warm)
+    measured = find_rides(rounds, some.needs.warm)
     # The rides belong to the cells from here on: later attempts use them too.
     every.ground.rides[chosen] = some.ground.rides
     has = np.array([len(rides) > 0 for rides in some.ground.rides])
     nodes = np.where(has, NODES, some.needs.nodes)
     every.needs.nodes[chosen] = nodes
     answers, never = sweep.attempt(some._replace(needs=some.needs._replace(nodes=nodes)))
+    measured()
     spent = answers.steps + rounds.spent[0], answers.rejected + rounds.spent[1]
     return answers._replace(steps=spent[0], rejected=spent[1]), never
 

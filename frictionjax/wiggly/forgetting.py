@@ -96,21 +96,33 @@ def lag_forces(
 def _needed(wells: Wells, wanted: np.ndarray) -> np.ndarray:
     """The force at which each speed, a logarithm, is reached: between two of `FORCES`.
 
-    By halving: 9 integrals where the whole table has 85 and took a quarter of a sweep.
+    By halving on a thinned grid, then by steps on the whole one: 2 to 4 integrals where
+    halving alone took 9, and the whole table has 85.
     """
-
-    def speeds(index: np.ndarray) -> np.ndarray:
-        return -np.log(wells.passages(FORCES[index][:, None])[:, 0])
-
-    low = np.zeros(wanted.size, dtype=int)
-    high = np.full(wanted.size, FORCES.size - 1)
-    slow, fast = speeds(low), speeds(high)
-    while np.any(high - low > 1):
-        middle = (low + high) // 2
-        speed = speeds(middle)
-        below = speed <= wanted
-        low, slow = np.where(below, middle, low), np.where(below, speed, slow)
-        high, fast = np.where(below, high, middle), np.where(below, fast, speed)
+    low = _below(wells.thinned(), wanted)
+    while True:
+        slow, fast = _speeds(wells, low), _speeds(wells, low + 1)
+        shift = ((fast <= wanted) & (low < FORCES.size - 2)).astype(int)
+        shift -= (slow > wanted) & (low > 0)
+        if not shift.any():
+            break
+        low = low + shift
     share = np.clip((wanted - slow) / np.maximum(fast - slow, 1e-300), 0.0, 1.0)
     logs = np.log(FORCES)
-    return np.exp(logs[low] + share * (logs[high] - logs[low]))
+    return np.exp(logs[low] + share * (logs[low + 1] - logs[low]))
+
+
+def _speeds(wells: Wells, index: np.ndarray) -> np.ndarray:
+    """Logarithms of speeds under some of `FORCES`, one for each well."""
+    return -np.log(wells.passages(FORCES[index][:, None])[:, 0])
+
+
+def _below(wells: Wells, wanted: np.ndarray) -> np.ndarray:
+    """Index of the last force under which slides are not faster, by halving."""
+    low = np.zeros(wanted.size, dtype=int)
+    high = np.full(wanted.size, FORCES.size - 1)
+    while np.any(high - low > 1):
+        middle = (low + high) // 2
+        below = _speeds(wells, middle) <= wanted
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.minimum(low, FORCES.size - 2)

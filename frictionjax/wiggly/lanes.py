@@ -23,7 +23,7 @@ NARROW_STEP = 0.33  # seconds of a narrow loop's step, of a wide one's
 # Wells that few jobs go through in a wide loop that is there before the narrow one is
 # compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load, 2 s
 # to compile. For more at once they wait for it.
-_PATIENCE, _AT_ONCE = 1000, 20_000
+_PATIENCE, _AT_ONCE = 500, 20_000
 LOADER = "frictionjax-loader"  # threads that compile loops in the background
 
 

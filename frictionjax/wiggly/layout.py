@@ -178,9 +178,9 @@ def _chains(
     other. Requested times among them are put into `output`."""
     # Beside rides windows of a few wells each lead to the times.
     chained = [c for c in range(eps.size) if summed or not rides[c]]
-    # Guides of long legs are coarse, which counts in sums only.
-    cut = chained if summed else []
-    lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts, cut)
+    # Guides of long legs are coarse, which counts in sums only: long lanes go without stops.
+    stopped = [c for c in chained if summed or np.isfinite(needs.tile[c])]
+    lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts, stopped)
     edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
     fixed = np.unique(np.concatenate([edges, ts]))
     cuts = [

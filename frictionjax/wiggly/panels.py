@@ -13,6 +13,9 @@ SMALLEST = 8.0  # wells of a panel
 _BEFORE = 12.0  # wells since the set-off where a slide begins, about: it is singular there
 _END = 3.0  # wells left before the end of a slide
 _GROWTH = 1.5  # of the way so far, at most: times may bend for other reasons
+# Of a panel: what is left at the end is no panel of its own, but near where the force would
+# vanish, where six of 21 stretched ones did not hold: there it is cut in two.
+_STRETCH, _FIRST_OF_TWO = 1.3, 0.6
 _RECOVERS = 0.7  # power of a panel's share for the next (1: twice as many panels)
 # As the averaged equation has it: a little less than what the recursion may show.
 _SLOWER = 0.4
@@ -65,5 +68,9 @@ def edges_of(
         span = np.floor(max(share * span, SMALLEST))
         share = share**_RECOVERS
         rest = np.floor(end - edges[-1])
-        edges.append(edges[-1] + (rest if rest < 1.3 * span else span))
+        if span < rest < _STRETCH * span and np.isfinite(nothing):
+            span = max(np.ceil(_FIRST_OF_TWO * rest), SMALLEST)
+        elif rest < _STRETCH * span:
+            span = rest
+        edges.append(edges[-1] + span)
     return np.array(edges)

@@ -24,8 +24,8 @@ _CLOSED = 0.1  # wells of time: gaps of brackets at the start of a ride, at most
 _LONG = 100.0  # wells of lag that are worth a slip map after the turn
 _FAST = 0.9  # share that a well leaves of a shift, where lags are many wells
 
-# Rides of cells and the gaps at their starts -> errors of each on its panels, by lanes.
-Check = Callable[[list[int], list[Ride], list[float]], list[np.ndarray]]
+# Rides of cells and the gaps at their starts -> for each, what waits for its errors.
+Check = Callable[[list[int], list[Ride], list[float]], list[Callable[[], np.ndarray]]]
 Keep = Callable[[int, Ride], None]
 
 
@@ -152,15 +152,15 @@ def _foreseen(rider: Rider, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _followed(rider: Rider, some: Candidates, check: Check) -> list[Ride | None]:
-    """The rides of candidates, with their errors."""
+    """The rides of candidates; their errors are measured meanwhile."""
     rides = rider.rides(some)
     rows = zip(some.cell, rides, some.gap, strict=True)
     found = [(int(c), ride, float(gap)) for c, ride, gap in rows if ride is not None]
     if not found:
         return rides
     cells, some_rides, gaps = (list(column) for column in zip(*found, strict=True))
-    errors = iter(check(cells, some_rides, gaps))
-    return [r if r is None else r._replace(error=next(errors)) for r in rides]
+    measured = iter(check(cells, some_rides, gaps))
+    return [r if r is None else r._replace(measured=next(measured)) for r in rides]
 
 
 def _at_once(rider: Rider, cells: np.ndarray, look: Look, check: Check) -> dict:

@@ -24,8 +24,8 @@ class Ride(NamedTuple):
     """A fast slide of one cell.
 
     `curve`: when the tip passes its lattice points. At the number n the tip is at `tip` in
-    the well `well + sign n`. `piece`: of the load. `error` (K,): of the tip at lattice
-    points of each panel, in periods, measured by lanes.
+    the well `well + sign n`. `piece`: of the load. `measured`: waits for lanes that
+    measure the errors.
     """
 
     curve: Curve
@@ -33,7 +33,12 @@ class Ride(NamedTuple):
     well: float
     tip: float
     piece: int
-    error: np.ndarray
+    measured: Callable[[], np.ndarray]
+
+    @property
+    def error(self) -> np.ndarray:
+        """Of the tip at lattice points of each panel, in periods, (K,)."""
+        return self.measured()
 
     @property
     def begin(self) -> float:
@@ -49,6 +54,10 @@ class Ride(NamedTuple):
     def lags(self) -> bool:
         """Whether the tip is behind the path where the ride ends, by more than a slip."""
         return bool(self.curve.last > RESTS)
+
+
+def _not_measured() -> np.ndarray:
+    raise RuntimeError("a ride is used before its errors are measured")
 
 
 def last_begun(rides: np.ndarray, cell: np.ndarray, time: np.ndarray):
@@ -190,5 +199,5 @@ class Rider(NamedTuple):
             if curve is not None:
                 sign, piece = float(some.sign[i]), int(some.piece[i])
                 where = float(well[i]), float(place[i]), piece
-                found[able[i]] = Ride(curve, sign, *where, curve.tail)
+                found[able[i]] = Ride(curve, sign, *where, _not_measured)
         return found

@@ -1,6 +1,8 @@
 """Rides of a sweep: the slip map between looks through lanes, and measured by lanes."""
 
 import functools
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -30,8 +32,15 @@ _TIGHT_LOOK = 0.2  # of the tolerance: lanes that lead to the start of a slip ma
 _NOISE, _MOST_CHECKED, _OF_LOADS = 0.03, 400.0, 0.05
 
 
-def find_rides(rounds: Rounds, warm: np.ndarray) -> None:
-    """Put the rides of all cells into the ground of the rounds."""
+# Lanes measure rides while windows are laid out. Kept as the pool of `rounds` is.
+_ASIDE = ThreadPoolExecutor(1)
+
+
+def find_rides(rounds: Rounds, warm: np.ndarray) -> Callable[[], None]:
+    """Put the rides of all cells into the ground of the rounds.
+
+    Returns what waits for the lanes that measure them, and adds up their steps.
+    """
     ground, folds = rounds.ground, rounds.ground.folds
     sides = {
         1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
@@ -63,8 +72,22 @@ def find_rides(rounds: Rounds, warm: np.ndarray) -> None:
     def keep(cell: int, ride: Ride) -> None:
         ground.rides[cell] = (*ground.rides[cell], ride)
 
-    check = functools.partial(_errors, rounds)
+    spent: list[np.ndarray] = []
+
+    def check(cells: list[int], rides: list[Ride], gaps: list[float]) -> list:
+        own = rounds._replace(spent=np.zeros_like(rounds.spent))
+        spent.append(own.spent)
+        errors = _errors(own, cells, rides, gaps)
+        return [lambda k=k: errors()[k] for k in range(len(rides))]
+
+    def wait() -> None:
+        for rides in ground.rides:
+            for ride in rides:
+                ride.measured()
+        rounds.spent[:] += sum(spent)
+
     ride_through(rider, np.arange(ground.eps.size), look, check, keep)
+    return wait
 
 
 def _at_stops(rounds: Rounds, plan: Plan, found: Arrivals):
@@ -89,11 +112,12 @@ def _wells_checked(rounds: Rounds, cell: int, ride: Ride) -> np.ndarray:
 
 def _errors(
     rounds: Rounds, cells: list[int], rides: list[Ride], gaps: list[float]
-) -> list[np.ndarray]:
+) -> Callable[[], list[np.ndarray]]:
     """Errors in the tip on the panels of rides: what lanes find in some wells, summed up.
 
     Counted in wells of time, which are as many periods of the tip as it is slow there.
-    `gaps`: of each ride's start, in wells of time.
+    `gaps`: of each ride's start, in wells of time. Lanes set off at once; what is returned
+    waits for them.
     """
     wells = [_wells_checked(rounds, c, r) for c, r in zip(cells, rides, strict=True)]
     sizes = [own.size for own in wells]
@@ -111,17 +135,24 @@ def _errors(
     tight = np.minimum(np.maximum(_TIGHT_RIDE * usual, _TIGHTEST_RIDE), usual)
     exact = rounds._replace(cells=rounds.cells._replace(tolerance=tight, loosest=tight))
     windows = Windows(whose, begin, known, np.arange(tip.size), stop)
-    plan, found = exact.march_from(windows, starts)
-    at = plan.behind
-    place = wells_between(aim, tip, found.well[at], found.tip[at])
-    # In wells of time: at its fold the tip is far slower than on the average.
-    pace = np.abs(found.speed[at]) * (stop - begin) / (count * rounds.ground.eps[whose])
-    # The lane sets off, and is asked, at rounded times.
-    off = np.diff(np.split(late, 2), axis=0)[0] * count / (stop - begin)
-    drift = np.abs(sign * place / np.maximum(pace, 1e-300) - off) / count
-    ends = np.cumsum(sizes)[:-1]
-    parts = zip(rides, np.split(drift, ends), np.split(pace, ends), gaps, strict=True)
-    return [_summed(rounds, *part) for part in parts]
+    # Planned here: two threads that plan wait for each other.
+    plan = exact.planned(windows, starts)
+    lanes = _ASIDE.submit(exact.through, plan)
+
+    @functools.cache
+    def summed() -> list[np.ndarray]:
+        found, at = lanes.result().found, plan.behind
+        place = wells_between(aim, tip, found.well[at], found.tip[at])
+        # In wells of time: at its fold the tip is far slower than on the average.
+        pace = np.abs(found.speed[at]) * (stop - begin) / (count * rounds.ground.eps[whose])
+        # The lane sets off, and is asked, at rounded times.
+        off = np.diff(np.split(late, 2), axis=0)[0] * count / (stop - begin)
+        drift = np.abs(sign * place / np.maximum(pace, 1e-300) - off) / count
+        ends = np.cumsum(sizes)[:-1]
+        parts = zip(rides, np.split(drift, ends), np.split(pace, ends), gaps, strict=True)
+        return [_summed(rounds, *part) for part in parts]
+
+    return summed
 
 
 def _summed(rounds: Rounds, ride: Ride, drift, pace, gap: float) -> np.ndarray:

@@ -111,7 +111,14 @@ class Rounds(NamedTuple):
 
     def march_from(self, windows: Windows, starts: Starts) -> Round:
         """March all windows from their starts."""
-        plan = plan_windows(self.scene, self.path, self.ground, windows, starts)
+        return self.through(self.planned(windows, starts))
+
+    def planned(self, windows: Windows, starts: Starts) -> Plan:
+        """What lanes are to do for windows, from their starts."""
+        return plan_windows(self.scene, self.path, self.ground, windows, starts)
+
+    def through(self, plan: Plan) -> Round:
+        """March all windows of a plan."""
         found = self._march(plan)
         owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
         for total, steps in zip(self.spent, (found.steps, found.rejected), strict=True):
@@ -241,9 +248,10 @@ def run_ups(rounds: Rounds, windows: Windows, warm: np.ndarray) -> np.ndarray:
         return wells
     near = np.full(wells.size, MARGIN + 1.0)
     where = windows.cell, windows.begin, near, near
-    starts = starts_of(rounds.scene, rounds.path, rounds.ground, *where)
-    states = states_at(rounds.scene, rounds.path, starts.time)
-    share = slow_share(rounds.scene, rounds.path, starts.time, states)
+    scene, path = rounds.scene, rounds.path
+    starts = starts_of(scene, path, rounds.ground, *where, measured=False)
+    states = states_at(scene, path, starts.time)
+    share = slow_share(scene, path, starts.time, states)
     share = np.where(starts.ridden | starts.lagging, 1.0, share)
     # Others keep theirs: what they find must not depend on their neighbours.
     return np.where(long, np.ceil(MARGIN + share * (wells - MARGIN)), wells)

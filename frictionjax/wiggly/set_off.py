@@ -30,17 +30,28 @@ def first_wells(
     one = from_fold_to_fold(potential, eps[first], fold[first], side[first]).thinned()
     passages = one.passages(np.tile(FORCES, (first.size, 1)))[which]
     speeds = -np.log(viscosity[:, None] * passages)
-    columns = zip(eps, speeds, rate, stiffness, strict=True)
-    return np.array([_wait(*slide, wells) for slide in columns])
+    return _waits(eps, speeds, rate, stiffness, wells)
 
 
-def _wait(eps: float, speeds: np.ndarray, rate: float, stiffness: float, wells: float):
-    """The same of one cell, whose logarithms of speeds belong to `FORCES`."""
-    logs = np.log(FORCES)
-    steady = np.interp(np.log(rate / stiffness), speeds, logs)
-    share = -np.expm1(-_GRID)
-    pace = np.exp(np.interp(steady + np.log(share), logs, speeds))
-    gain = np.maximum(rate - stiffness * pace, 1e-12 * rate)
-    step = np.diff(_GRID, prepend=0.0) * np.exp(steady - _GRID) / gain
-    passed = np.cumsum(step * pace / eps)
-    return np.interp(wells, passed, np.cumsum(step))
+def _waits(eps, speeds, rate, stiffness, wells: float) -> np.ndarray:
+    """The same of slides whose logarithms of speeds, (n, forces), belong to `FORCES`."""
+    logs, wanted = np.log(FORCES), np.log(rate / stiffness)
+    rows = zip(wanted, speeds, strict=True)
+    steady = np.array([np.interp(speed, row, logs) for speed, row in rows])
+    pace = np.exp(_between(speeds, steady[:, None] + np.log(-np.expm1(-_GRID))))
+    gain = rate[:, None] - stiffness[:, None] * pace
+    gain = np.maximum(gain, 1e-12 * rate[:, None])
+    step = np.diff(_GRID, prepend=0.0) * np.exp(steady[:, None] - _GRID) / gain
+    passed, time = np.cumsum(step * pace / eps[:, None], axis=1), np.cumsum(step, axis=1)
+    pairs = zip(passed, time, strict=True)
+    return np.array([np.interp(wells, way, since) for way, since in pairs])
+
+
+def _between(rows: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Linear between the values of each row at the logarithms of `FORCES`: even steps."""
+    first, pitch = np.log(FORCES[0]), np.log(FORCES[1] / FORCES[0])
+    place = np.clip((at - first) / pitch, 0.0, FORCES.size - 1.0)
+    left = np.minimum(place.astype(int), FORCES.size - 2)
+    low = np.take_along_axis(rows, left, axis=1)
+    rise = np.take_along_axis(rows, left + 1, axis=1) - low
+    return low + (place - left) * rise

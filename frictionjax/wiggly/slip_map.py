@@ -33,7 +33,7 @@ _SLOW = 0.3
 _ON = 0.5  # at the end of the last panel: the slide may go on
 _AGAIN = 0.6  # of a panel that does not hold, and of those behind it
 # Of the accuracy: last coefficients of a panel. (Errors as lanes measure them are the same
-# at a tenth of it, with a tenth of the panels more, and at gamma = 1/4 up to 17 times larger
+# at a tenth of it, with a tenth of the panels more, and at gamma = 1/4 up to 17 times those
 # at three times it.)
 _TAIL = 1e-2
 _SPACING = 1e-14  # of T: rounding of times, in the last coefficients
@@ -262,7 +262,10 @@ def follow(scene: Scene, slides: Slides, accuracy: float) -> list[Curve | None]:
                 first[c], time[c] = first[c] + span, times[-1]
             if held.size == mine.size:
                 # The averaged equation may end a fast slide wells too early.
-                if _ON < solved.kept[held[-1], -1] < 1 / _ON:
+                p = held[-1]
+                pace = np.diff(solved.times[p, -2:]) / np.diff(panels.number[p, -2:])
+                left = (slides.late[c] - time[c]) / pace[0]
+                if left >= SMALLEST and _ON < solved.kept[p, -1] < 1 / _ON:
                     going.append(c)
                 continue
             failed = mine[held.size]

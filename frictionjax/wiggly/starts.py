@@ -89,6 +89,7 @@ def starts_of(
     begin: np.ndarray,
     wells,
     back,
+    measured: bool = True,
 ) -> Starts:
     """Starts at least `wells` of the path's way before each window, or `back` of a ride's.
 
@@ -97,6 +98,7 @@ def starts_of(
     the largest speed of the scene; where that is many wells, of the moment. Both hold once
     the path has come further than the lag of the slide before in the other direction.
     Where no such place is left, lanes start from z0; from a ride where one is nearer.
+    Where not `measured`, errors of rides are not waited for: both lanes start on them.
     """
     eps = ground.eps[cell]
     lag = np.maximum(ground.lag_plus, ground.lag_minus)[cell]
@@ -129,7 +131,7 @@ def starts_of(
     none = np.zeros(begin.size, dtype=bool)
     plain = Starts(time, known, none, lagging, np.full(begin.size, -np.inf), *lanes)
     reach = wells * eps + 2 * share * lag
-    return _ridden(scene, path, before, begin, plain, back, reach)
+    return _ridden(scene, path, before, begin, plain, back, reach, measured)
 
 
 def _still_lagging(path: Path, rides: list[Ride], which: np.ndarray, time: np.ndarray):
@@ -147,7 +149,9 @@ def _still_lagging(path: Path, rides: list[Ride], which: np.ndarray, time: np.nd
     return lagging
 
 
-def _ridden(scene: Scene, path: Path, before: tuple, begin, plain: Starts, back, way):
+def _ridden(
+    scene: Scene, path: Path, before: tuple, begin, plain: Starts, back, way, measured: bool
+) -> Starts:
     """The same starts, from the last ride where it holds the window or ends nearer to it.
 
     `before`: as `last_begun` says. `way` (W,): m that a lane of the bracket goes until the
@@ -157,7 +161,7 @@ def _ridden(scene: Scene, path: Path, before: tuple, begin, plain: Starts, back,
     some = np.flatnonzero(which >= 0)
     if some.size == 0:
         return plain
-    ridden, inside = _on_rides(rides, which[some], begin[some], back[some])
+    ridden, inside = _on_rides(rides, which[some], begin[some], back[some], measured)
     late, early = np.split(way_at(scene, path, np.append(begin[some], ridden.time)), 2)
     nearer = plain.known[some] | inside | (late - early <= way[some])
     starts = Starts(*(column.copy() for column in plain))
@@ -166,7 +170,7 @@ def _ridden(scene: Scene, path: Path, before: tuple, begin, plain: Starts, back,
     return starts
 
 
-def _on_rides(rides: list[Ride], which: np.ndarray, begin, back):
+def _on_rides(rides: list[Ride], which: np.ndarray, begin, back, measured: bool):
     """Starts at lattice points of rides, their errors behind and ahead; and what holds
     `begin`."""
     curves = Curves([ride.curve for ride in rides])
@@ -174,8 +178,10 @@ def _on_rides(rides: list[Ride], which: np.ndarray, begin, back):
     sign, well, tip, first, end = np.array(rows)[which].T
     number = np.floor(curves.number_at(which, np.minimum(begin, end)) + _WHOLE) - back
     number = np.maximum(number, first)
-    errors = np.concatenate([ride.error for ride in rides])
-    error = sign * errors[curves.panel_of(which, number)]
+    error = np.zeros(which.size)
+    if measured:
+        errors = np.concatenate([ride.error for ride in rides])
+        error = sign * errors[curves.panel_of(which, number)]
     time = np.minimum(curves.time_of(which, number), begin)
     none, well = np.zeros(which.size, dtype=bool), well + sign * number
     lanes = well, tip - error, well, tip + error
