@@ -178,7 +178,7 @@ def _chains(
     other. Requested times among them are put into `output`."""
     # Beside rides windows of a few wells each lead to the times.
     chained = [c for c in range(eps.size) if summed or not rides[c]]
-    # Guides of long legs are coarse, which counts in sums only: long lanes go without stops.
+    # Guides of long legs are coarse, which counts in sums only: long lanes need no stops.
     stopped = [c for c in chained if summed or np.isfinite(needs.tile[c])]
     lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts, stopped)
     edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
