@@ -27,6 +27,6 @@ def slow_ends(scene: Scene, path: Path, eps: np.ndarray, lag: np.ndarray) -> np.
     state = path.states[slides] + path.direction[slides] * level
     times = times_at(scene, path, np.tile(slides, eps.size), state.ravel())
     speed = slopes_at(scene, path, times, state.ravel()).reshape(state.shape)
-    memory = 2 * lag[:, None] * (speed / path.speed) ** 2
+    memory = 2 * lag[:, None] * (speed / (path.speed or 1.0)) ** 2  # nothing slides at 0
     slow[:, slides] = memory * -np.log(RESTS) < 1
     return slow
