@@ -21,9 +21,9 @@ def solved(eps, method="windowed"):
     followed = []
     follow = rides.follow
 
-    def spy(scene, slides, accuracy):
+    def spy(scene, slides, tail):
         followed.append(slides.eps)
-        return follow(scene, slides, accuracy)
+        return follow(scene, slides, tail)
 
     cell = np.array([eps]), np.array([0.5]), TIMES, 1e-3
     with pytest.MonkeyPatch.context() as patch:

@@ -121,7 +121,7 @@ def test_curves_obey_the_recursion():
     slides = slip_map.Slides(
         track, eps * one, viscosity, state * one, 0 * one, time * one, 0.75 * one
     )
-    (curve,) = slip_map.follow(scene, slides, 1e-3)
+    (curve,) = slip_map.follow(scene, slides, 1e-6)
     assert curve.edges[-1] > 3000
     now = curve.starts[0]
     for n in range(300):

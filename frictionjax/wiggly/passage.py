@@ -24,10 +24,8 @@ _LEGENDRE = np.polynomial.legendre.legvander(_X, _POINTS - 1)
 _TO_SERIES = np.linalg.inv(_LEGENDRE)
 _DEPTH = 26  # halvings of the period: folds narrower than 1e-8 of it are not resolved
 _FINE = 1e-8  # of the whole integral: last coefficients of a panel that is halved
-# Of it: last coefficients of panels in s; passages err by less than its square. (gamma 0.25
-# to 0.5, accuracy 1e-3 to 1e-6: the same errors of slip maps at a tenth of it, larger ones
-# at three times it.)
-_ROUGH = 1e-3
+# Of it: last coefficients of panels in s, at most; passages err by less than its square.
+ROUGH = 1e-4
 _PANELS = 4, 6, 8, 12, 16, 32, 64  # in s
 _INVERSE = 4  # sweeps of Newton's method for the place at an s
 # Sweeps of Newton's method from a guess that keeps the force constant, and from the
@@ -211,13 +209,13 @@ def _clock(potential, some: Stretch) -> _Clock:
     return _Clock(cell, left, width, series, before, whole)
 
 
-def track_of(potential: AbstractPotential, some: Stretch) -> Track:
+def track_of(potential: AbstractPotential, some: Stretch, rough: float = ROUGH) -> Track:
     """The force along stretches of a period, resolved for the excess.
 
     Gauss panels of equal length in `s`, `dy/ds = sqrt(force)`: around a fold the force is
     `X cosh(c s)^2`, and 1/force as smooth however narrow the fold. (Panels halved in y
     until as accurate: 80 to 160 nodes where these have 40.) As many for all as the cell
-    that needs most.
+    that needs most. `rough`: last coefficients of panels, of the whole.
     """
     clock, count = _clock(potential, some), some.eps.size
     cells = np.arange(count)
@@ -228,8 +226,8 @@ def track_of(potential: AbstractPotential, some: Stretch) -> Track:
         places = some.start[:, None] + way[:, None] * inside
         density = _density(potential, some, cells, places)
         series = np.abs(density.reshape(count, panels, _POINTS) @ _TO_SERIES.T)
-        rough = np.sum(series[..., -1] + series[..., -2], axis=1)
-        if np.all(rough <= _ROUGH * np.sum(series[..., 0], axis=1)):
+        last = np.sum(series[..., -1] + series[..., -2], axis=1)
+        if np.all(last <= rough * np.sum(series[..., 0], axis=1)):
             break
     eps = some.eps[:, None]
     force, stretch, offset = wiggles_at(potential, eps, places)

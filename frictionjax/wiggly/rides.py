@@ -12,12 +12,26 @@ import numpy as np
 
 from ..scene import Scene
 from .curve import Curve
-from .passage import Stretch, Track, one_passage, pull_at, track_of, wiggles_at
+from .passage import (
+    ROUGH,
+    Stretch,
+    Track,
+    one_passage,
+    pull_at,
+    track_of,
+    wiggles_at,
+)
 from .path import Path
 from .slip_map import Slides, follow
 from .slow_ends import RESTS
 
 _NARROW = 0.2  # of the force beyond the fold at the start: the smallest one on the way
+
+
+# Of the accuracy: what errors of passages may add up to, about; and the roughest passages.
+# (gamma = 1/2, accuracy 1e-3: errors of slip maps as with 1e-4, in 40 nodes for 60. gamma =
+# 1/4, eps = 1e-8: brackets of 1.4e-3 eps with more than 2e-4, of 2.3e-4 with less.)
+_OF_ACCURACY, _ROUGHEST = 0.3, 1e-3
 
 
 class Ride(NamedTuple):
@@ -116,7 +130,7 @@ class Rider(NamedTuple):
 
     `eps`, `viscosity`, `lag` (wells, of the fastest slide): shape (cells,). `folds`: tip
     coordinates and forces of the extreme folds of each cell by direction, as
-    `{1.0: (place, force), -1.0: ...}`.
+    `{1.0: (place, force), -1.0: ...}`. `tail`: as of `follow`.
     """
 
     scene: Scene
@@ -125,6 +139,7 @@ class Rider(NamedTuple):
     viscosity: np.ndarray
     lag: np.ndarray
     folds: dict[float, tuple[np.ndarray, np.ndarray]]
+    tail: float
     accuracy: float
 
     def fold(self, cell: np.ndarray, sign: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -159,9 +174,15 @@ class Rider(NamedTuple):
         )
         # Both at once: each took 4 ms of a sweep for its small programs.
         both = Stretch(*(np.concatenate(pair) for pair in zip(*parts, strict=True)))
-        track = track_of(self.scene.potential, both)
+        track = track_of(self.scene.potential, both, self._rough(some.cell))
         count = some.cell.size
         return Track(*(c[:count] for c in track)), Track(*(c[count:] for c in track))
+
+    def _rough(self, cell: np.ndarray) -> float:
+        """How roughly passages may be resolved, so that errors that add up stay small."""
+        memory = 2 * np.max(self.lag[cell])
+        allowed = np.sqrt(_OF_ACCURACY * self.accuracy / max(memory, 1.0))
+        return float(np.clip(allowed, ROUGH, _ROUGHEST))
 
     def _to_fold(self, some: Candidates, track: Track):
         """Time of the next passage of a fold, and the well of that fold."""
@@ -195,7 +216,7 @@ class Rider(NamedTuple):
         slides = Slides(
             track, eps, self.viscosity[some.cell], origin, 0 * one, time, some.late
         )
-        for i, curve in enumerate(follow(self.scene, slides, self.accuracy)):
+        for i, curve in enumerate(follow(self.scene, slides, self.tail)):
             if curve is not None:
                 sign, piece = float(some.sign[i]), int(some.piece[i])
                 where = float(well[i]), float(place[i]), piece

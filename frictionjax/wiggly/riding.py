@@ -12,6 +12,7 @@ from .job_queue import Arrivals
 from .ride_starts import ride_through
 from .rides import Ride, Rider, Seen
 from .rounds import EARLIER, ROUNDS, Rounds, run_ups
+from .slip_map import BARE_TAIL, TAIL
 from .starts import Starts
 from .windows import Plan, Windows
 
@@ -51,7 +52,8 @@ def find_rides(rounds: Rounds, warm: np.ndarray) -> Callable[[], None]:
     closer = rounds._replace(cells=cells_._replace(**fixed), brief=None)
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     of_cells = ground.eps, cells_.viscosity, lag, sides
-    rider = Rider(rounds.scene, rounds.path, *of_cells, rounds.accuracy)
+    tail = (TAIL if any(rounds.wanted) else BARE_TAIL) * rounds.accuracy
+    rider = Rider(rounds.scene, rounds.path, *of_cells, tail, rounds.accuracy)
 
     def look(cell: np.ndarray, begin: np.ndarray, stop: np.ndarray) -> Seen:
         paired, one = np.ones(cell.size, dtype=bool), np.arange(cell.size)

@@ -223,8 +223,9 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
         np.maximum.at(worst, some.owner, np.nan_to_num(gaps, nan=np.inf))
         # Lanes that met before a stop part again for a moment where it is at a slip: the
         # start is forgotten all the same, and the gap is reported as it is. Lanes from
-        # close by have had steps of their own, which part them further: they go back once.
-        far = wells[open_] > MARGIN
+        # close by have had steps of their own, which part them further: they go back once,
+        # and so do those that set off from a ride where their window begins.
+        far = (wells[open_] > MARGIN) & ~(plan.ridden & (back[open_] < 1))
         met = np.maximum(meets, shifts_of(found, plan.legs, *begins, speed))
         met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
         worst = np.minimum(worst, met)

@@ -32,10 +32,11 @@ _CONVERGED = 1e-4  # wells: what Newton's method leaves, by how its corrections 
 _SLOW = 0.3
 _ON = 0.5  # at the end of the last panel: the slide may go on
 _AGAIN = 0.6  # of a panel that does not hold, and of those behind it
-# Of the accuracy: last coefficients of a panel. (Errors as lanes measure them are the same
-# at a tenth of it, with a tenth of the panels more, and at gamma = 1/4 up to 17 times those
-# at three times it.)
-_TAIL = 1e-2
+# Of the accuracy: last coefficients of a panel; where slides are surveyed, and where not.
+# (Errors of times as lanes measure them are the same with either, at gamma = 1/4 up to 17
+# times larger at 0.03. But surveys through longer panels are rough: at gamma = 0.4, eps =
+# 1.3e-7 made three times, in 2.5 times the steps.)
+TAIL, BARE_TAIL = 1e-3, 1e-2
 _SPACING = 1e-14  # of T: rounding of times, in the last coefficients
 _WORTH = 0.2  # of the panel before: the smallest one worth trying where slides turn slow
 _SLOWING = 0.7  # of the wells that the pace at a panel's start would pass before the end
@@ -161,14 +162,14 @@ def _newton(scene: Scene, slides: Slides, panels: _Panels, times: np.ndarray):
     return times, found.kept, to_come
 
 
-def _solved(scene: Scene, slides: Slides, panels: _Panels, times, accuracy) -> _Solved:
+def _solved(scene: Scene, slides: Slides, panels: _Panels, times, least) -> _Solved:
     times, kept, size = _newton(scene, slides, panels, times)
     series = (times - times[:, :1]) @ _TO_SERIES.T
     length = (times[:, -1] - times[:, 0]) / panels.span
     tail = (np.abs(series[:, -1]) + np.abs(series[:, -2])) / length
     noise = _SPACING * np.abs(times[:, -1]) / length
     fine = (size <= np.maximum(_CONVERGED, noise)) & np.all(np.diff(times) > 0, axis=1)
-    fine &= tail <= np.maximum(_TAIL * accuracy, noise)
+    fine &= tail <= np.maximum(least, noise)
     fine &= times[:, -1] <= slides.late[panels.slide]
     return _Solved(times, kept, fine, tail)
 
@@ -224,8 +225,10 @@ def _guess(scene: Scene, slides: Slides, panels: _Panels, force, time) -> np.nda
     return guess
 
 
-def follow(scene: Scene, slides: Slides, accuracy: float) -> list[Curve | None]:
+def follow(scene: Scene, slides: Slides, tail: float) -> list[Curve | None]:
     """Times of passage of every slide, from where it sets off to its end or until slow.
+
+    `tail`: last coefficients of panels, in wells.
 
     All panels of all slides together, where the averaged equation puts them; those behind
     one that does not hold are cut again. None where a slide is slow from the start, or too
@@ -240,12 +243,12 @@ def follow(scene: Scene, slides: Slides, accuracy: float) -> list[Curve | None]:
     for _ in range(_ROUNDS):
         if now.size == 0:
             break
-        how = _TAIL * accuracy, share, past
+        how = tail, share, past
         panels, force = _cut(scene, slides, now, first, time, *how)
         if panels.slide.size == 0:
             break
         guess = _guess(scene, slides, panels, force, time)
-        solved = _solved(scene, slides, panels, guess, accuracy)
+        solved = _solved(scene, slides, panels, guess, tail)
         calm = np.all((solved.kept > _SLOW) & (solved.kept < 1 / _SLOW), axis=1)
         on = solved.fine & calm
         going = []
