@@ -193,19 +193,20 @@ def _long_memories(
     long = needs.warm > LONG_MEMORY
     longest = np.max(np.abs(np.diff(path.states)), initial=0.0) / eps
     ridden = long & (longest > _LONG_SLIDE)
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
+    slow = slow_ends(scene, path, eps, lag)
     if method == "auto":
         # Steps are the shorter, the narrower the branches.
         narrow = (WIDEST / np.asarray(control.reach)) ** 0.6
         way = path.travel[-1] / eps * narrow
         ridden &= way > _MAP
         alone = long & (way <= _MAP)
-        lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
         needs = needs._replace(
             nodes=np.where(alone, 0, needs.nodes),
             tile=np.where(alone, np.inf, needs.tile),
-            cut=alone[:, None] & slow_ends(scene, path, eps, lag),
+            cut=alone[:, None] & slow,
         )
-    return ridden, needs
+    return ridden, needs._replace(cut=needs.cut | (ridden[:, None] & slow))
 
 
 class Planned(NamedTuple):

@@ -133,7 +133,7 @@ class Rounds(NamedTuple):
         wells = (way[jobs.past_leg] - way[jobs.first_leg]) / eps
         work = wells + 1 + 0.3 * (jobs.past_leg - jobs.first_leg)
         work = np.where(plan.brief, _FAST, 1.0) * work
-        jobs, cells = self._steered(jobs, plan.brief)
+        jobs, cells = self._steered(jobs, plan.brief | plan.calm)
         order = np.argsort(-work, kind="stable")
         # Batches of less than two jobs a lane leave lanes idle.
         most = max(order.size // (2 * self.workers * WIDTH), 1)

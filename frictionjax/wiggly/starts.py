@@ -12,7 +12,7 @@ from .rides import Ride, last_begun
 
 ASIDE = 1e-6  # of a stretch of time: where one-sided slopes are taken
 _GAP = 1e-6  # of a well: rounding of z/eps
-_FASTER = 1.5  # how much slides may have been faster, squared, where lanes set off
+FASTER = 1.5  # how much slides may have been faster, squared, where lanes set off
 # Wells: lags that are longer are taken at the speed of the moment. (At the largest speed
 # always: lanes of 300 wells in slow parts of slides at gamma = 0.4, where ten do.)
 _LONG_LAG = 5.0
@@ -197,7 +197,7 @@ def slow_share(scene: Scene, path: Path, time: np.ndarray, state: np.ndarray) ->
     before = time - ASIDE * path.edges[-1]  # a slide may end at full speed, in a kink
     both = [slopes_at(scene, path, t, state) for t in (time, np.maximum(before, 0.0))]
     share = np.max(np.abs(both), axis=0) / (path.speed or 1.0)  # nothing slides at 0
-    return np.minimum(_FASTER * share**2, 1.0)
+    return np.minimum(FASTER * share**2, 1.0)
 
 
 def _brackets(ground: Ground, cell, direction, level, known, share):

@@ -7,11 +7,11 @@ import numpy as np
 from ..scene import Scene
 from .job_queue import Jobs, Legs
 from .path import Path, slopes_at, states_at
-from .starts import ASIDE, Ground, Starts
+from .starts import ASIDE, FASTER, Ground, Starts
 
 # Steps are 10 to 200 a well; lags let lanes pass through more wells than the path.
 _STEPS_A_WELL, _SOME_WELLS = 2000, 100
-_BRIEF = 20.0  # wells of a lane whose errors hardly add up
+_BRIEF = 20.0  # wells of a lane whose errors hardly add up, or that it remembers, twice
 
 
 class Windows(NamedTuple):
@@ -44,7 +44,8 @@ class Plan(NamedTuple):
 
     `behind`, `ahead` (S,): leg of each stop in either lane, -1 where the second does not
     run. `meet_behind`, `meet_ahead` (W,): legs that end where the windows begin. `known`,
-    `ridden` (W,): as in `Starts`. `brief` (J,): jobs on a ride that go through a few wells.
+    `ridden` (W,): as in `Starts`. `brief` (J,): jobs on a ride that go through a few wells;
+    `calm` (J,): in a part of a slide where few wells are remembered.
     """
 
     jobs: Jobs
@@ -56,6 +57,7 @@ class Plan(NamedTuple):
     known: np.ndarray
     ridden: np.ndarray
     brief: np.ndarray
+    calm: np.ndarray
 
 
 def points_between(points: np.ndarray, low: np.ndarray, high: np.ndarray):
@@ -136,7 +138,22 @@ def plan_windows(
     inside = last <= starts.until
     brief = np.concatenate([inside, inside[second]])
     brief &= np.bincount(job, wells, brief.size) <= _BRIEF
-    return Plan(jobs, legs, *marks, starts.known, starts.ridden, brief)
+    calm = _calm(path, ground, jobs, legs)
+    return Plan(jobs, legs, *marks, starts.known, starts.ridden, brief, calm)
+
+
+def _calm(path: Path, ground: Ground, jobs: Jobs, legs: Legs) -> np.ndarray:
+    """Jobs inside a piece, on a slide that grows slower, which is slow at their start."""
+    first, last = jobs.first_leg, jobs.past_leg - 1
+    piece = path.piece_of(jobs.origin)
+    inside = (path.direction[piece] != 0) & (jobs.origin > path.touch[piece])
+    inside &= legs.end[last] <= path.edges[piece + 1]
+    speed = np.maximum(np.abs(legs.slope0), np.abs(legs.slope1))
+    start = np.abs(legs.slope0[first])
+    slower = np.maximum.reduceat(speed, first) <= start
+    lag = np.maximum(ground.lag_plus, ground.lag_minus)[jobs.cell] / ground.eps[jobs.cell]
+    memory = 2 * FASTER * lag * (start / (path.speed or 1.0)) ** 2
+    return inside & slower & (memory <= 0.5 * _BRIEF)
 
 
 def _legs(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Legs:
