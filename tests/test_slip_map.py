@@ -258,8 +258,9 @@ def test_lanes_on_rides_have_tolerances_of_their_own(monkeypatch):
     def spy(lanes, cells, jobs, legs, *rest):
         way = np.abs(legs.guide1 - legs.guide0)
         wells = np.add.reduceat(way, jobs.first_leg) / cells.eps[jobs.cell.astype(int)]
-        before = jobs.origin < 0.75  # of the first slide, which the sine's turn slows down
-        slow = before & (np.abs(legs.slope0[jobs.first_leg]) < 0.1)
+        # The first slide, which the sine's turn at 0.75 slows down.
+        slow = (jobs.origin > 0.1) & (legs.end[jobs.past_leg - 1] <= 0.75)
+        slow &= np.abs(legs.slope0[jobs.first_leg]) < 0.1
         if cells.tolerance.size > 1:  # some jobs with a tolerance of their own
             marched.append((cells.tolerance[jobs.cell.astype(int)], wells, slow))
         return march(lanes, cells, jobs, legs, *rest)
