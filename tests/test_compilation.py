@@ -11,7 +11,8 @@ import jax, sys
 import frictionjax as fx
 if "early" in sys.argv:
     jax.numpy.ones(2).block_until_ready()
-print(fx.use_fast_cpu(), fx.use_fast_cpu(), jax.config._read("jax_cpu_enable_async_dispatch"))
+used = fx.use_fast_cpu(), fx.use_fast_cpu()
+print(*used, jax.config._read("jax_cpu_enable_async_dispatch"))
 """
 
 

@@ -239,7 +239,7 @@ def _with_rides(
     """An attempt at some cells after their rides have been found."""
     some = _some(every, chosen)
     rounds = sweep.rounds(some)._replace(lanes_run=lanes_run)
-    measured = find_rides(rounds, some.needs.warm)
+    measured = find_rides(rounds, some.needs)
     # The rides belong to the cells from here on: later attempts use them too.
     every.ground.rides[chosen] = some.ground.rides
     has = np.array([len(rides) > 0 for rides in some.ground.rides])

@@ -109,7 +109,11 @@ class _Loops:
         return WIDTH
 
     def load(self, program: tuple, needed: Room) -> None:
-        """Compile the loop in the background."""
+        """Compile the loop in the background, where none is there that does."""
+        kind = _kind(program)
+        with self._lock:
+            if any(k == kind and room.holds(needed) for k, room in self._done):
+                return
 
         def quietly() -> None:
             # What cannot be compiled fails again in `run`, where somebody hears of it.

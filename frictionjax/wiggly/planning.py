@@ -193,6 +193,8 @@ def _long_memories(
     long = needs.warm > LONG_MEMORY
     longest = np.max(np.abs(np.diff(path.states)), initial=0.0) / eps
     ridden = long & (longest > _LONG_SLIDE)
+    if not long.any():
+        return ridden, needs
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
     slow = slow_ends(scene, path, eps, lag)
     if method == "auto":

@@ -13,7 +13,6 @@ from .passage import pull_at
 from .path import Path, arrivals_at, slopes_at, states_at
 from .rides import Candidates, Look, Ride, Rider
 from .set_off import first_wells
-from .slow_ends import slow_ends
 
 # Wells behind the tip where the slip map takes over: passages change slowly enough for
 # panels of 16 wells (8 wells: tails 100 times larger).
@@ -145,9 +144,9 @@ def _foreseen(rider: Rider, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Cells and pieces of slides whose slide before should end slow, or has none before."""
     path = rider.path
     slides = np.flatnonzero(path.direction)
-    slow = slow_ends(rider.scene, path, rider.eps[cells], rider.lag[cells])[:, slides[:-1]]
     first = np.ones((1, cells.size), dtype=bool)
-    which, cell = np.nonzero(np.concatenate([first, slow.T]))
+    slow = rider.slow[cells][:, slides[:-1]].T
+    which, cell = np.nonzero(np.concatenate([first, slow]))
     return cells[cell], slides[which]
 
 

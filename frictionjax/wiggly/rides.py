@@ -130,7 +130,8 @@ class Rider(NamedTuple):
 
     `eps`, `viscosity`, `lag` (wells, of the fastest slide): shape (cells,). `folds`: tip
     coordinates and forces of the extreme folds of each cell by direction, as
-    `{1.0: (place, force), -1.0: ...}`. `tail`: as of `follow`.
+    `{1.0: (place, force), -1.0: ...}`. `slow` (cells, pieces): slides that should end
+    slow. `tail`: as of `follow`.
     """
 
     scene: Scene
@@ -139,6 +140,7 @@ class Rider(NamedTuple):
     viscosity: np.ndarray
     lag: np.ndarray
     folds: dict[float, tuple[np.ndarray, np.ndarray]]
+    slow: np.ndarray
     tail: float
     accuracy: float
 

@@ -9,6 +9,7 @@ import numpy as np
 from .brackets import wells_between
 from .curve import Curves
 from .job_queue import Arrivals
+from .needs import Needs
 from .ride_starts import ride_through
 from .rides import Ride, Rider, Seen
 from .rounds import EARLIER, ROUNDS, Rounds, run_ups
@@ -37,7 +38,7 @@ _NOISE, _MOST_CHECKED, _OF_LOADS = 0.03, 400.0, 0.05
 _ASIDE = ThreadPoolExecutor(1)
 
 
-def find_rides(rounds: Rounds, warm: np.ndarray) -> Callable[[], None]:
+def find_rides(rounds: Rounds, needs: Needs) -> Callable[[], None]:
     """Put the rides of all cells into the ground of the rounds.
 
     Returns what waits for the lanes that measure them, and adds up their steps.
@@ -53,12 +54,12 @@ def find_rides(rounds: Rounds, warm: np.ndarray) -> Callable[[], None]:
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     of_cells = ground.eps, cells_.viscosity, lag, sides
     tail = (TAIL if any(rounds.wanted) else BARE_TAIL) * rounds.accuracy
-    rider = Rider(rounds.scene, rounds.path, *of_cells, tail, rounds.accuracy)
+    rider = Rider(rounds.scene, rounds.path, *of_cells, needs.cut, tail, rounds.accuracy)
 
     def look(cell: np.ndarray, begin: np.ndarray, stop: np.ndarray) -> Seen:
         paired, one = np.ones(cell.size, dtype=bool), np.arange(cell.size)
         windows = Windows(cell, np.minimum(begin, stop), paired, one, stop)
-        wells, back = run_ups(rounds, windows, warm), np.ones(cell.size)
+        wells, back = run_ups(rounds, windows, needs.warm), np.ones(cell.size)
         found, open_ = Seen(*np.empty((3, cell.size))), one
         for _ in range(ROUNDS):
             some = windows.chosen(open_)
@@ -109,7 +110,7 @@ def _wells_checked(rounds: Rounds, cell: int, ride: Ride) -> np.ndarray:
     noise = _OF_LOADS * np.finfo(float).eps * curve.starts[1:] / length
     memory = 1 / np.maximum(np.abs(1 - curve.kept), 1e-12)
     wanted = noise * memory / (_NOISE * rounds.accuracy)
-    return np.minimum(np.clip(np.ceil(wanted), 2, _MOST_CHECKED), np.diff(curve.edges))
+    return np.minimum(np.clip(np.ceil(wanted), 1, _MOST_CHECKED), np.diff(curve.edges))
 
 
 def _errors(

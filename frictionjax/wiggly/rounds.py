@@ -25,7 +25,7 @@ ROUNDS = 3
 EARLIER = 4  # times as far back in each round
 MARGIN = 3  # wells: one to fall behind, one to catch up, one to forget
 LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast slides are
-_WORTH = 0.9  # of the time with two loops of the same width: what is worth two others
+_WORTH = 0.8  # of the time with two loops of the same width: what is worth two others
 _FEW = 64  # long jobs that may have a loop of their own
 _FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
 _BATCH = 1e5  # wells: a few seconds, between two reports
@@ -131,7 +131,7 @@ class Rounds(NamedTuple):
         eps = self.ground.eps[jobs.cell]
         way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])
         wells = (way[jobs.past_leg] - way[jobs.first_leg]) / eps
-        work = wells + 1 + 0.3 * (jobs.past_leg - jobs.first_leg)
+        work = wells + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
         work = np.where(plan.brief, _FAST, 1.0) * work
         jobs, cells = self._steered(jobs, plan.brief | plan.calm)
         order = np.argsort(-work, kind="stable")
