@@ -395,3 +395,13 @@ def test_surveys_with_many_nodes_do_not_run_away(monkeypatch):
     cell = np.array([1.3e-7]), np.array([0.4]), TIMES, 1e-3
     found = engine.integrate_cells(SCENES["sine"], *cell, "windowed", balanced=False)
     assert abs(found.sup_error[0] / 7.47784e-5 - 1) < 1e-2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("accuracy", [1e-5, 1e-6])
+def test_maps_are_measured_as_closely_as_accuracy_wants(accuracy):
+    """Where errors of maps are measured too coarsely, brackets as wide stay open."""
+    cell = np.array([1.3e-5]), np.array([0.5]), TIMES, accuracy
+    found = engine.integrate_cells(SCENES["sine"], *cell, "auto", balanced=False)
+    assert found.status == fx.Status.OK
+    assert found.gap.max() < accuracy

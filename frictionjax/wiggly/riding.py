@@ -19,8 +19,9 @@ from .windows import Plan, Windows
 
 # Tolerance of the lanes that measure a slip map, of the tolerance of others, and the
 # tightest that is of use. (gamma = 1/2, eps 1e-3 to 1e-4, accuracy 1e-3: the same errors of
-# maps from 1e-11 to 3e-8, in a third of the steps; others add up to as much as 0.02.)
-_TIGHT_RIDE, _TIGHTEST_RIDE = 0.05, 1e-10
+# maps from 1e-11 to 3e-8, in a third of the steps; others add up to as much as 0.02. At
+# accuracy 1e-6 brackets of eps = 1.3e-5 stay open with 1e-10 at least.)
+_TIGHT_RIDE, _TIGHTEST_RIDE = 0.05, 1e-12
 # Errors of a map at its start, as lanes leave it, and at least, of the accuracy. (At 0.1
 # brackets of times in the first wells of a ride stayed open where the tip was nearly in a
 # slip.)
@@ -110,7 +111,7 @@ def _wells_checked(rounds: Rounds, cell: int, ride: Ride) -> np.ndarray:
     noise = _OF_LOADS * np.finfo(float).eps * curve.starts[1:] / length
     memory = 1 / np.maximum(np.abs(1 - curve.kept), 1e-12)
     wanted = noise * memory / (_NOISE * rounds.accuracy)
-    return np.minimum(np.clip(np.ceil(wanted), 1, _MOST_CHECKED), np.diff(curve.edges))
+    return np.minimum(np.clip(np.ceil(wanted), 2, _MOST_CHECKED), np.diff(curve.edges))
 
 
 def _errors(

@@ -233,7 +233,7 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
         if open_.size == 0:
             break
         wells[open_] = np.maximum(EARLIER * wells[open_], MARGIN + 1)
-        back[open_] = np.maximum(EARLIER * back[open_], 1)
+        back[open_] = EARLIER * np.maximum(back[open_], 1)
     result = Found(Arrivals(*values), Legs(*legs), gap, how, *rounds.spent)
     return result, open_
 
