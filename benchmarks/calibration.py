@@ -1,13 +1,14 @@
 """Is `accuracy` honest? Error reached over accuracy asked for, over the whole grid.
 
 python benchmarks/calibration.py [--method auto] [--bristles vertical angular]
-    [--smallest 1e-7] [--largest 1] [--gamma 0.5 1]
+    [--smallest 1e-7] [--largest 1] [--gamma 0.5 1] [--truth 1e-8 1e-9]
 
 For each bristle and load: eps 1e-1 to 1e-6, gamma 0.5 to 2, accuracy 1e-1 to 1e-6. The
 error is the larger of the largest error of z outside slips, in eps, at 61 times, and that
 of the dissipation, relative. Truth: every slip at accuracy 1e-8 where eps >= 1e-4, windows
-at 1e-8 below; its distance from the same at 1e-9 is its own error, and a ratio is only
-counted where that is below a third of the accuracy asked for. (Tests compare with LSODA.)
+at 1e-8 below (or the first of `--truth`); its distance from the same at 1e-9 (the second)
+is its own error, and a ratio is only counted where that is below a third of the accuracy
+asked for. (Tests compare with LSODA.)
 """
 
 import argparse
@@ -54,16 +55,16 @@ def gap(z, spent, true_z, true_spent, counted, eps):
     return np.maximum(off, (np.abs(spent - true_spent) / last).max(axis=1))
 
 
-def cells(scene, eps, gamma, method):
+def cells(scene, eps, gamma, method, truths):
     """Rows gamma, accuracy, ratio, error of the truth over the accuracy, status."""
     when = instants(scene, eps, TIMES)
     way = "resolved" if eps >= EVERY_SLIP else "windowed"
-    z, spent, _ = solved(scene, eps, gamma, when, 1e-8, way)
+    z, spent, _ = solved(scene, eps, gamma, when, truths[0], way)
     counted = ~when.in_slip(z, eps, float(scene.duration))
     keep = np.zeros(when.ts.size, dtype=bool)
     keep[when.asked] = True
     counted &= keep
-    other, other_spent, _ = solved(scene, eps, gamma, when, 1e-9, way)
+    other, other_spent, _ = solved(scene, eps, gamma, when, truths[1], way)
     known = gap(other[:, 1], other_spent, z[:, 1], spent, counted, eps)
     for accuracy in ACCURACIES:
         found, lost, status = solved(scene, eps, gamma, when, accuracy, method)
@@ -103,6 +104,7 @@ def main():
     parser.add_argument("--smallest", type=float, default=1e-7)
     parser.add_argument("--largest", type=float, default=1.0)
     parser.add_argument("--gamma", type=float, nargs="+", default=list(GAMMA))
+    parser.add_argument("--truth", type=float, nargs=2, default=[1e-8, 1e-9])
     options = parser.parse_args()
     rows = []
     for name in options.bristles:
@@ -110,7 +112,7 @@ def main():
             surface, bristle = BRISTLES[name]
             scene = fx.Scene(surface, bristle, fx.supports.Spring(1.0), LOADS[load], 3.0)
             for eps in EPS[(options.smallest < EPS) & (options.largest >= EPS)]:
-                fixed = float(eps), np.array(options.gamma), options.method
+                fixed = float(eps), np.array(options.gamma), options.method, options.truth
                 for gamma, accuracy, ratio, known, status in cells(scene, *fixed):
                     rows.append((eps, gamma, accuracy, ratio, known, status))
                     if status or not ratio < 1:
