@@ -166,10 +166,14 @@ class Rider(NamedTuple):
         _, force = self.fold(some.cell, some.sign)
         return some.sign * (pull.load[:, 0] - pull.support[:, 0] - force)
 
+    def _way(self, some: Candidates) -> tuple[np.ndarray, np.ndarray]:
+        """Tip coordinate of the next fold, and periods until there."""
+        place, _ = self.fold(some.cell, some.sign)
+        return place, np.mod(some.sign * (place - some.tip), 1.0)
+
     def _tracks(self, some: Candidates, excess: np.ndarray) -> tuple[Track, Track]:
         """Force on the ways to the next fold, and through the wells from there on."""
-        place, _ = self.fold(some.cell, some.sign)
-        way = np.mod(some.sign * (place - some.tip), 1.0)
+        place, way = self._way(some)
         parts = (
             self._stretch(some, some.tip, way, excess),
             self._stretch(some, place, np.ones_like(way), excess),
@@ -188,8 +192,7 @@ class Rider(NamedTuple):
 
     def _to_fold(self, some: Candidates, track: Track):
         """Time of the next passage of a fold, and the well of that fold."""
-        place, _ = self.fold(some.cell, some.sign)
-        way = np.mod(some.sign * (place - some.tip), 1.0)
+        place, way = self._way(some)
         states = self.states(some.cell, some.well, some.tip)
         pull = pull_at(self.scene, some.time, states)
         length = one_passage(track, pull, self.viscosity[some.cell])

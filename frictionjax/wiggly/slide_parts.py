@@ -88,7 +88,7 @@ def _rests_of_slides(scene: Scene, path: Path, eps, needs: Needs, rides) -> list
         past = np.floor(way - needs.offset[c, piece]) - TAIL
         if ride.end > path.touch[piece] and past - first > _FEW * needs.nodes[c]:
             # Slides turn from fast to slow there: 17 nodes leave 6e-4 eps. Chebyshev's
-            # points less than a well apart mean nothing: 129 in 3800 wells left 6e4 m.
+            # points less than a well apart mean nothing: 129 in 3800 wells left 6e3 m.
             most = max(_DENSE * np.sqrt(past - first), 2 * _LEAST)
             rows.append((c, piece, first, past, int(min(2 * needs.nodes[c], most))))
     return rows

@@ -143,7 +143,11 @@ def plan_windows(
 
 
 def _calm(path: Path, ground: Ground, jobs: Jobs, legs: Legs) -> np.ndarray:
-    """Jobs inside a piece, on a slide that grows slower, which is slow at their start."""
+    """Jobs inside a piece, on a slide that grows slower, which is slow at their start.
+
+    Of cells with rides: tolerances of others are for what they remember there anyway.
+    """
+    rides = np.array([len(own) > 0 for own in ground.rides], dtype=bool)
     first, last = jobs.first_leg, jobs.past_leg - 1
     piece = path.piece_of(jobs.origin)
     inside = (path.direction[piece] != 0) & (jobs.origin > path.touch[piece])
@@ -153,7 +157,7 @@ def _calm(path: Path, ground: Ground, jobs: Jobs, legs: Legs) -> np.ndarray:
     slower = np.maximum.reduceat(speed, first) <= start
     lag = np.maximum(ground.lag_plus, ground.lag_minus)[jobs.cell] / ground.eps[jobs.cell]
     memory = 2 * FASTER * lag * (start / (path.speed or 1.0)) ** 2
-    return inside & slower & (memory <= 0.5 * _BRIEF)
+    return rides[jobs.cell] & inside & slower & (memory <= 0.5 * _BRIEF)
 
 
 def _legs(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Legs:
