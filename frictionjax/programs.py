@@ -3,12 +3,14 @@
 from collections.abc import Callable
 from typing import Any
 
+import equinox as eqx
 import jax
 import numpy as np
 
 from .kept_programs import kept
 
 _MOST = 256  # programs kept of one function
+_MOST_PARTS = 64  # whose leaves are kept
 
 
 class Program:
@@ -25,7 +27,7 @@ class Program:
         self._known: dict[Any, Callable] = {}
 
     def __call__(self, *args: Any) -> Any:
-        leaves, structure = jax.tree_util.tree_flatten(args)
+        leaves, structure = flattened(args)
         numbers = [leaf for leaf in leaves if isinstance(leaf, _ARRAYS)]
         rest: tuple = ()
         if len(numbers) < len(leaves):
@@ -33,7 +35,8 @@ class Program:
         key = structure, rest
         program = self._known.get(key)
         if program is None:
-            program = self._compiled(structure, rest)
+            whole = jax.tree_util.tree_structure(args)
+            program = self._compiled(whole, rest)
             if len(self._known) >= _MOST:
                 self._known.clear()
             self._known[key] = program
@@ -55,6 +58,49 @@ class Program:
 _ARRAYS = (jax.Array, np.ndarray, np.generic)
 
 
+class _Flat:
+    """Leaves and structures of parts, which do not change once they are made.
+
+    A scene takes 30 us to flatten, hundreds of times a sweep. What is kept is kept alive,
+    so that no other part can have its number.
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[eqx.Module, list, Any]] = {}
+
+    def of(self, part: eqx.Module) -> tuple[list, Any]:
+        """Its leaves and their structure."""
+        found = self._known.get(id(part))
+        if found is None:
+            leaves, structure = jax.tree_util.tree_flatten(part)
+            # What is traced must not outlive its trace.
+            if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
+                return leaves, structure
+            if len(self._known) >= _MOST_PARTS:
+                self._known.clear()
+            found = self._known[id(part)] = part, leaves, structure
+        return found[1:]
+
+
+_FLAT = _Flat()
+
+
+def flattened(args: tuple) -> tuple[list, tuple]:
+    """Leaves of some arguments, and what tells their structures apart."""
+    leaves: list = []
+    structures: list = []
+    for arg in args:
+        if isinstance(arg, _ARRAYS):
+            leaves.append(arg)
+            structures.append(None)
+            continue
+        flat = _FLAT.of if isinstance(arg, eqx.Module) else jax.tree_util.tree_flatten
+        own, structure = flat(arg)
+        leaves += own
+        structures.append(structure)
+    return leaves, tuple(structures)
+
+
 def in_chunks(
     program: Callable, size: int, fixed: tuple, columns: tuple[np.ndarray, ...]
 ) -> Any:
@@ -64,24 +110,29 @@ def in_chunks(
     so one program, where four sizes took 0.5 s of a study to trace and fetch.
     """
     count = columns[0].shape[0]
-    short = -count % size
-    whole = [_lengthened(column, short) for column in columns]
+    room = -(-count // size) * size
+    whole = [_lengthened(column, room) for column in columns]
     parts = [
-        program(*fixed, *(c[at : at + size] for c in whole)) for at in range(0, count, size)
+        program(*fixed, *(c[at : at + size] for c in whole)) for at in range(0, room, size)
     ]
 
-    def joined(*values: Any) -> np.ndarray:
-        found = [np.asarray(v) for v in values]
-        return (found[0] if len(found) == 1 else np.concatenate(found))[:count]
+    outs = [jax.tree_util.tree_flatten(part) for part in parts]
+    if len(outs) == 1:
+        joined = [np.asarray(leaf)[:count] for leaf in outs[0][0]]
+    else:
+        rows = zip(*(leaves for leaves, _ in outs), strict=True)
+        joined = [np.concatenate(pieces)[:count] for pieces in rows]
+    return jax.tree_util.tree_unflatten(outs[0][1], joined)
 
-    return jax.tree_util.tree_map(joined, *parts)
 
-
-def _lengthened(column: np.ndarray, by: int) -> np.ndarray:
-    if by == 0:
+def _lengthened(column: np.ndarray, to: int) -> np.ndarray:
+    count = column.shape[0]
+    if count == to:
         return column
     # `np.pad` takes 20 us.
-    return np.concatenate([column, np.repeat(column[-1:], by, axis=0)])
+    whole = np.empty((to, *column.shape[1:]), column.dtype)
+    whole[:count], whole[count:] = column, column[-1:]
+    return whole
 
 
 def room(count: int, least: int, factor: int = 4) -> int:

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-_INVERSE = 6  # sweeps of Newton's method for the number at a time
+# Sweeps of Newton's method for the number at a time, at most, and what they leave in x.
+_INVERSE, _SETTLED = 6, 1e-13
 
 
 class Curve(NamedTuple):
@@ -87,7 +88,9 @@ class Curves:
             waves = np.cos(np.arccos(x)[:, None] * order)
             value = np.sum(series * waves, axis=1)
             slope = np.sum(slopes * waves[:, :-1], axis=1)
-            x = np.clip(x - (value - since) / slope, -1.0, 1.0)
+            before, x = x, np.clip(x - (value - since) / slope, -1.0, 1.0)
+            if np.all(np.abs(x - before) <= _SETTLED):
+                break
         return self.edges[panel] + 0.5 * (x + 1) * self.wells[panel]
 
 

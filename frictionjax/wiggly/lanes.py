@@ -6,20 +6,19 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import equinox as eqx
-import jax
 import numpy as np
 from jaxtyping import Array
 
+from ..programs import flattened
 from .job_queue import Arrivals, Jobs, Legs, Tables, run_queue
 from .lane import Cells, LaneScene, Sums
 from .rosenbrock import Tableau
 
-# Lanes side by side. Seconds of one lane and step, one core: 0.09 us at 64; at 256, where
-# XLA splits the arrays over threads, 0.17. A few jobs, or a few long ones, go through the
-# narrow loop, whose steps take less time. (1.28 us at 8, 1.61 at 16, 2.99 at 32, 4.78 at
-# 64; 0.385 of the wide one's in another hour.)
+# Lanes side by side. Microseconds of a step of the loop: 0.72 at 4, 0.92 at 8, 1.43 at 16,
+# 2.49 at 32, 4.23 at 64, 8.65 at 128. A few jobs, or a few long ones, go through the narrow
+# loop, whose steps take less time. (Between 0.15 and 0.33 sweeps take the same.)
 WIDTH, NARROW = 64, 8
-NARROW_STEP = 0.33  # seconds of a narrow loop's step, of a wide one's
+NARROW_STEP = 0.22  # seconds of a narrow loop's step, of a wide one's
 # Wells that few jobs go through in a wide loop that is there before the narrow one is
 # compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load, 2 s
 # to compile. For more at once they wait for it.
@@ -131,7 +130,7 @@ def _nothing(room: Room) -> Tables:
 
 def _kind(program: tuple) -> tuple:
     """What a compiled loop depends on, numbers left out."""
-    leaves, structure = jax.tree_util.tree_flatten(program)
+    leaves, structure = flattened(program)
     shapes = (x.shape if eqx.is_array(x) else x for x in leaves)
     return structure, *shapes
 

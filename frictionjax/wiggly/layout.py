@@ -128,21 +128,35 @@ class _Rows:
     """Windows as they are added: cell, begin, paired and stops of each."""
 
     def __init__(self) -> None:
-        self._rows: list[tuple] = []
+        self._cells: list[np.ndarray] = []
+        self._begins: list[np.ndarray] = []
+        self._paired: list[np.ndarray] = []
+        self._sizes: list[np.ndarray] = []
+        self._stops: list[np.ndarray] = []
         self._count = 0
 
-    def add(self, cell: int, begin: float, paired: bool, stops: np.ndarray) -> np.ndarray:
-        """Add a window; the numbers of its stops among all."""
-        self._rows.append((cell, begin, paired, stops))
+    def add(self, cell, begin, paired: bool, stops: np.ndarray, sizes=None) -> np.ndarray:
+        """Add windows; the numbers of their stops among all.
+
+        `cell`, `begin`, `sizes`: of each, so many of the stops as its size; of one window
+        with all the stops where there are no sizes.
+        """
+        sizes = np.array([stops.size]) if sizes is None else sizes
+        self._cells.append(np.atleast_1d(cell))
+        self._begins.append(np.atleast_1d(begin))
+        self._paired.append(np.full(sizes.size, paired))
+        self._sizes.append(sizes)
+        self._stops.append(stops)
         self._count += stops.size
         return np.arange(self._count - stops.size, self._count)
 
     def windows(self) -> Windows:
         """All of them."""
-        cell, begin, paired, stops = zip(*self._rows, strict=True)
-        owner = np.repeat(np.arange(len(stops)), [own.size for own in stops])
-        where = np.array(cell), np.array(begin), np.array(paired)
-        return Windows(*where, owner, np.concatenate(stops))
+        sizes = np.concatenate(self._sizes)
+        owner = np.repeat(np.arange(sizes.size), sizes)
+        parts = self._cells, self._begins, self._paired, self._stops
+        cell, begin, paired, stops = (np.concatenate(part) for part in parts)
+        return Windows(cell, begin, paired, owner, stops)
 
 
 def lay_out(
@@ -224,9 +238,10 @@ def _slides(
     slides = []
     for i in range(parts.cell.size):
         own = np.flatnonzero(who == i)
-        stops = [rows.add(parts.cell[i], starts[k], True, ends[k, None]) for k in own]
+        one = np.ones(own.size, dtype=int)
+        stops = rows.add(parts.cell[i] * one, starts[own], True, ends[own], one)
         where = parts.cell[i], parts.piece[i], parts.low[i], parts.high[i]
-        periods = starts[own], ends[own], np.concatenate([*stops, np.zeros(0, dtype=int)])
+        periods = starts[own], ends[own], stops
         slides.append(Slide(*where, highs[i] - lows[i], *periods))
     return slides
 
@@ -236,19 +251,26 @@ def _show(scene, path: Path, eps, needs: Needs, rides, ts, rows: _Rows, output) 
     cell, shown = np.nonzero((output < 0) & (ts > 0))
     begin = _period_before(scene, path, eps, needs, cell, ts[shown])
     begin = _ridden_before(rides, cell, ts[shown], begin)
-    for group in _rests_together(path, cell, ts[shown]):
-        one, index = cell[group[0]], shown[group]
-        output[one, index] = rows.add(one, begin[group[0]], True, ts[index])
+    order, sizes = _rests_together(path, cell, ts[shown])
+    cell, shown, begin = cell[order], shown[order], begin[order]
+    first = np.cumsum(sizes) - sizes
+    output[cell, shown] = rows.add(cell[first], begin[first], True, ts[shown], sizes)
 
 
-def _rests_together(path: Path, cell: np.ndarray, times: np.ndarray) -> list[np.ndarray]:
-    """Groups of times, by their indices: those of one rest of the path share a window."""
+def _rests_together(
+    path: Path, cell: np.ndarray, times: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Times, by their indices, and how many follow each other into one window.
+
+    Those of one rest of the path share a window.
+    """
     piece = path.piece_of(times)
     slides = times > path.touch[piece]
     order = np.lexsort((times, piece, cell))
     same = (np.diff(cell[order]) == 0) & (np.diff(piece[order]) == 0)
     cut = ~same | slides[order[1:]] | slides[order[:-1]]
-    return np.split(order, np.flatnonzero(cut) + 1) if order.size else []
+    opens = np.flatnonzero(np.append(order.size > 0, cut))
+    return order, np.diff(np.append(opens, order.size))
 
 
 def _period_before(scene, path, eps, needs, cell, times) -> np.ndarray:

@@ -10,7 +10,7 @@ from ..scene import Scene
 from .brackets import gaps_of, shifts_of
 from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
-from .lanes import WIDTH, loop_times, march
+from .lanes import WIDTH, march
 from .layout import Layout
 from .needs import Needs
 from .path import Path, states_at
@@ -25,8 +25,6 @@ ROUNDS = 3
 EARLIER = 4  # times as far back in each round
 MARGIN = 3  # wells: one to fall behind, one to catch up, one to forget
 LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast slides are
-_WORTH = 0.8  # of the time with two loops of the same width: what is worth two others
-_FEW = 64  # long jobs that may have a loop of their own
 _FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
 _BATCH = 1e5  # wells: a few seconds, between two reports
 
@@ -41,37 +39,6 @@ def _seats(count: int, seats: int) -> np.ndarray:
     """Seats dealt there and back, so that none gets all the lanes behind of brackets."""
     row, seat = np.divmod(np.arange(count), seats)
     return np.where(row % 2 == 0, seat, seats - 1 - seat)
-
-
-def longest_alone(work: np.ndarray) -> int:
-    """How many of the longest jobs go through a loop of their own, beside all others.
-
-    `work` as in `march`, the longest first. 0 where two loops of the same are as fast.
-    """
-    if work.size < 2:
-        return 0
-    few = np.arange(1, min(_FEW, work.size - 1) + 1)
-    together = np.cumsum(work)[few - 1]
-    apart = [_taken(work[0], together), _taken(work[few], work.sum() - together)]
-    both = np.max(apart, axis=0)
-    even = _taken(work[0], work.sum() / WORKERS)
-    best = int(np.argmin(both))
-    return int(few[best]) if both[best] < _WORTH * even else 0
-
-
-def _taken(longest, together):
-    """Time of a queue, in steps of the wide loop."""
-    return np.minimum(*loop_times(longest, together))
-
-
-def _merged(one: Arrivals, other: Arrivals) -> Arrivals:
-    """Each leg from the queue that ran it."""
-    pairs = zip(one, other, strict=True)
-    return Arrivals(*(np.where(np.isnan(a), b, a) for a, b in pairs))
-
-
-def _nothing(legs: Legs) -> Arrivals:
-    return Arrivals(*[np.full(legs.start.size, np.nan)] * len(Arrivals._fields))
 
 
 class Round(NamedTuple):
@@ -138,18 +105,14 @@ class Rounds(NamedTuple):
         # Batches of less than two jobs a lane leave lanes idle.
         most = max(order.size // (2 * self.workers * WIDTH), 1)
         batches = min(int(np.ceil(work.sum() / _BATCH)), most)
-        found = _nothing(legs)
-        can = batches == 1 and self.workers > 1
-        alone = longest_alone(work[order]) if can else 0
+        found = np.full((len(Arrivals._fields), legs.start.size), np.nan)
         seat = _seats(order.size, batches * self.workers)
         for batch in range(batches):
             queues = [order[seat == batch + i * batches] for i in range(self.workers)]
-            if alone:
-                queues = [order[:alone], order[alone:]]
-            for part in self._through(cells, jobs, legs, queues, work):
-                found = _merged(found, part)
+            for rows, part in self._through(cells, jobs, legs, queues, work):
+                found[:, rows] = part
             self.report(1 / batches)
-        return found
+        return Arrivals(*found)
 
     def _steered(self, jobs: Jobs, brief: np.ndarray) -> tuple[Jobs, Cells]:
         """Jobs that are `brief` in cells of their own, with their tolerance."""
@@ -161,20 +124,18 @@ class Rounds(NamedTuple):
         return jobs._replace(cell=jobs.cell + brief * self.brief.size), Cells(*both)
 
     def _through(self, cells: Cells, jobs: Jobs, legs: Legs, queues: list, work):
-        """What is found in each queue; the first is run by this thread.
+        """Legs of each queue and what is found there; the first is run by this thread.
 
         Beside other cells' lanes two of the pool's would wait for each other.
         """
-        parts = [(cells, jobs, legs, queue, work) for queue in queues]
+        parts = [(cells, jobs, legs, queue, work) for queue in queues if queue.size]
         self.lanes_run()
         beside = [_POOL.submit(self._queue, *part) for part in parts[1:]]
-        found = [self._queue(*parts[0])]
+        found = [self._queue(*part) for part in parts[:1]]
         return found + [part.result() for part in beside]
 
-    def _queue(self, cells, jobs, legs, chosen: np.ndarray, work: np.ndarray) -> Arrivals:
-        """What some jobs find, at all legs."""
-        if chosen.size == 0:
-            return _nothing(legs)
+    def _queue(self, cells, jobs, legs, chosen: np.ndarray, work: np.ndarray) -> tuple:
+        """Legs of some jobs, and what is found there."""
         mine = Jobs(*(np.asarray(column)[chosen] for column in jobs))
         # Rows of this queue's legs only, in the order of its jobs.
         count = mine.past_leg - mine.first_leg
@@ -183,14 +144,7 @@ class Rounds(NamedTuple):
         mine = mine._replace(first_leg=past - count, past_leg=past)
         some = Legs(*(column[rows] for column in legs))
         fixed = self.tableau, self.wanted
-        found = march(self.lanes, cells, mine, some, *fixed, work[chosen])
-        return Arrivals(*(_spread(v, rows, legs.start.size) for v in found))
-
-
-def _spread(values: np.ndarray, rows: np.ndarray, size: int) -> np.ndarray:
-    out = np.full(size, np.nan)
-    out[rows] = values
-    return out
+        return rows, march(self.lanes, cells, mine, some, *fixed, work[chosen])
 
 
 def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.ndarray]:
