@@ -1,10 +1,22 @@
 """Sums over slides from a few of their slip periods."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from frictionjax.wiggly.survey import RESIDUAL, VISCOUS, WORK, nodes_of, surveys_of
+from frictionjax.wiggly.cell_sums import CellWay, deviations, energetics
+from frictionjax.wiggly.path import Path
+from frictionjax.wiggly.stops import Stops
+from frictionjax.wiggly.survey import (
+    RESIDUAL,
+    SURPLUS,
+    VISCOUS,
+    WORK,
+    nodes_of,
+    surveys_of,
+)
 
 LOW, HIGH, COUNT, PERIOD = 1.0, 3.0, 17, 1e-3
 
@@ -38,3 +50,61 @@ def test_what_is_left_of_the_balance_is_never_negative(seed):
     assert np.all(np.diff(done) >= 0)
     assert done[-1] == found.whole[RESIDUAL]
     assert rough.min() < done[-1] / (HIGH - LOW) < rough.max()
+
+
+def rough_survey(behind, wobble, rows=slice(0, 2)):
+    """A slide whose tip stays `behind` the path, with a last coefficient of `wobble`."""
+    starts = nodes_of(LOW, HIGH, COUNT)
+    extremes = np.zeros((1, 4, COUNT))
+    extremes[0, 1] = -behind
+    extremes[0, rows] += wobble * (-1.0) ** np.arange(COUNT)  # of degree COUNT - 1
+    sums = np.zeros((1, 3, COUNT))
+    ends = starts + 1e-12
+    parts = np.array([LOW]), np.array([HIGH]), starts[None], ends[None]
+    return surveys_of(*parts, sums, extremes)[0]
+
+
+def way(*surveys):
+    """A cell that starts at rest and then slides, surveyed throughout."""
+    sliding = np.ones(2)
+    parts = np.zeros((3, 2)), np.zeros(2), np.zeros((4, 2)), sliding
+    stops = Stops(np.array([0.0, LOW]), np.zeros(2), np.zeros(2), *parts)
+    slide = SimpleNamespace(stops=np.array([1]), piece=0, way=0.0)
+    chain = np.array([0])
+    totals, before = np.zeros((3, 1)), np.zeros((len(surveys), 3))
+    return CellWay(chain, [slide] * len(surveys), list(surveys), totals, before), stops
+
+
+def test_errors_of_surveys_count_where_they_may_change_the_largest():
+    far, near = rough_survey(10.0, 1e-6), rough_survey(5.0, 0.5)
+    found = deviations(*way(far, near))
+    assert found.far == pytest.approx(10.0, rel=1e-6)
+    assert found.lag == pytest.approx(10.0, rel=1e-6)
+    assert found.error == pytest.approx(1e-6, rel=0.01)
+    assert near.error_extreme == pytest.approx(0.5, rel=0.05)
+
+
+@pytest.mark.parametrize("behind", [9.5, 9.9, 10.0, 11.0])
+def test_errors_of_surveys_that_reach_the_largest_count(behind):
+    """Which of two is the larger may change as well."""
+    far, other = rough_survey(10.0, 1e-6), rough_survey(behind, 0.5)
+    found = deviations(*way(far, other))
+    # The wobble itself is in what is found.
+    high = behind + 0.5
+    low = max(high - other.error_extreme, 10.0)
+    assert found.far == pytest.approx(max(high, 10.0), rel=1e-4)
+    wanted = max(high + other.error_extreme - found.far, found.far - low)
+    assert found.error == pytest.approx(wanted, rel=1e-3)
+
+
+def test_a_rough_surplus_is_an_error_of_the_dissipation():
+    path = Path(*[np.zeros(2)] * 5, rho=np.ones(1), rho_plus=0.1, rho_minus=-0.1)
+    layout = SimpleNamespace(
+        windows=SimpleNamespace(begin=np.zeros(2), owner=np.arange(2)),
+    )
+    for wobble in (1e-7, 1e-2):
+        cell, stops = way(rough_survey(1.0, wobble, slice(SURPLUS, SURPLUS + 2)))
+        of = layout, np.array([0]), 0.0, np.zeros(1), path, 1e-3
+        *_, sup, lost = energetics(cell, stops, *of)
+        assert sup == pytest.approx(wobble, rel=0.05)
+        assert lost == pytest.approx(wobble, rel=0.05)

@@ -72,6 +72,8 @@ def _running(cell: CellWay, stops: Stops, outputs: _Outputs) -> np.ndarray:
 def energetics(cell, stops, layout, output, energy0, of_path, path, eps):
     """Dissipation and residual at the outputs, gap at the end, sup of the error, all in J.
 
+    And how far surveys may be off, in the dissipation or in that sup.
+
     `int eps^gamma z'^2` is the path's dissipation and what the energies and the work of
     z - path add to it; the direct sum is an independent second value.
     """
@@ -87,12 +89,14 @@ def energetics(cell, stops, layout, output, energy0, of_path, path, eps):
         # 4700 wells from the origin, over a way of 5e-7 wells, their differences are 4e-3
         # off, and this sum 7e-5.
         spent, gap = running[VISCOUS], float(cell.totals[RESIDUAL, -1])
+    worst, change = _worst_dissipation(cell, stops, energy0, beyond)
     return (
         spent,
         running[RESIDUAL],
         cell.totals[RESIDUAL, -1],
         gap,
-        _worst_dissipation(cell, stops, energy0, beyond),
+        worst,
+        max(change, sum(survey.error_work for survey in cell.surveys)),
     )
 
 
@@ -109,9 +113,9 @@ def _second_opinion(cell: CellWay, stops: Stops, final: float) -> float:
 
 
 def no_energetics(size: int) -> tuple:
-    """What `energetics` would give, all NaN."""
+    """What `energetics` would give, all NaN, and nothing that surveys spoil."""
     nothing = np.full(size, np.nan)
-    return nothing, nothing, np.nan, np.nan, np.nan
+    return nothing, nothing, np.nan, np.nan, np.nan, 0.0
 
 
 def _spent(cell: CellWay, stops: Stops, path: Path) -> float:
@@ -120,28 +124,55 @@ def _spent(cell: CellWay, stops: Stops, path: Path) -> float:
     return legs + sum(path.rho[s.piece] * s.way for s in cell.slides)
 
 
-def _worst_dissipation(cell, stops, energy0, beyond) -> float:
+def _worst_dissipation(cell, stops, energy0, beyond) -> tuple[float, float]:
+    """Largest distance of the dissipation from the path's, and the error of it."""
     start = beyond - stops.beyond[cell.chain]
     surplus, deficit = stops.extremes[SURPLUS:, cell.chain]
-    high = np.max(start + surplus, initial=0.0)
-    low = np.min(start + deficit, initial=0.0)
+    rows = [(np.max(start + surplus, initial=0.0), -np.min(start + deficit, initial=0.0))]
     for before, survey in zip(cell.before, cell.surveys, strict=True):
         left = energy0 - before[WORK] - survey.work
-        high = max(high, np.max(left + survey.extremes[SURPLUS]))
-        low = min(low, np.min(left + survey.extremes[DEFICIT]))
-    return float(max(high, -low))
+        over, under = survey.extremes[SURPLUS], survey.extremes[DEFICIT]
+        rows.append((np.max(left + over), -np.min(left + under)))
+    values = np.max(np.array(rows), axis=1)
+    errors = np.array([0.0, *(survey.error_surplus for survey in cell.surveys)])
+    return float(values.max()), _change(values, errors)
 
 
-def deviations(cell: CellWay, stops: Stops) -> tuple[float, float]:
-    """Largest |z - path|, and by how much z lags outside the strip, in m."""
+class Deviations(NamedTuple):
+    """Largest |z - path|, how far z lags outside the strip, and errors of both, in m."""
+
+    far: float
+    lag: float
+    error: float
+
+
+NOT_ASKED = Deviations(np.nan, np.nan, 0.0)
+
+
+def deviations(cell: CellWay, stops: Stops) -> Deviations:
+    """Largest deviations of the whole way, and by how much surveys may change them.
+
+    The first wells of a slide are surveyed most roughly, where z is still near the path:
+    only what may be the largest of all counts.
+    """
     ahead, behind = stops.extremes[:SURPLUS, cell.chain]
     sliding = stops.sliding[cell.chain]
     lags = np.where(sliding > 0, -behind, np.where(sliding < 0, ahead, 0.0))
-    far, lag = np.max(np.maximum(ahead, -behind)), np.max(lags, initial=0.0)
+    rows = [(np.max(np.maximum(ahead, -behind)), np.max(lags, initial=0.0), 0.0)]
     for slide, survey in zip(cell.slides, cell.surveys, strict=True):
         high = float(np.max(survey.extremes[AHEAD]))
         low = float(np.min(survey.extremes[BEHIND]))
-        far = max(far, high, -low)
         sign = stops.sliding[slide.stops[0]]
-        lag = max(lag, -low if sign > 0 else high if sign < 0 else 0.0)
-    return float(far), float(lag)
+        lag = -low if sign > 0 else high if sign < 0 else 0.0
+        rows.append((max(high, -low), lag, survey.error_extreme))
+    *both, errors = np.array(rows).T
+    changes = [_change(values, errors) for values in both]
+    far, lag = (float(values.max()) for values in both)
+    return Deviations(far, lag, max(changes))
+
+
+def _change(values: np.ndarray, errors: np.ndarray) -> float:
+    """By how much the largest value may change where each may by its error."""
+    largest = values.max()
+    lowest, highest = (values - errors).max(), (values + errors).max()
+    return float(max(highest - largest, largest - lowest))

@@ -5,7 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
-from .cell_sums import CellWay, deviations, energetics, no_energetics, way_of
+from .cell_sums import (
+    NOT_ASKED,
+    CellWay,
+    deviations,
+    energetics,
+    no_energetics,
+    way_of,
+)
 from .lane import Sums
 from .layout import Layout
 from .path import Path, states_at
@@ -22,8 +29,8 @@ class Answers(NamedTuple):
     since z0, 1 where a bracket has closed, 2 where one has that set off from a slip map.
     `gap`: how closely, in eps. `sampled`: share of the path's way in slides of which only
     some periods were measured, NaN where only the times were. `survey_error`,
-    `survey_work_error`: estimates of the errors that this makes in `sup_error` (m) and in
-    the dissipation (J).
+    `survey_work_error`: estimates of the errors that this makes in `sup_error` (m), in the
+    dissipation and in its distance from the path's (J).
     """
 
     z: np.ndarray
@@ -80,22 +87,24 @@ def evaluate(
         mine.sort(key=lambda i: layout.slides[i].low)
         own = [layout.slides[i] for i in mine], [surveys[i] for i in mine]
         cell = way_of(layout.chain[c], *own, stops)
-        energies = no_energetics(ts.size)
+        *energies, lost = no_energetics(ts.size)
         if wanted.energies:
             of = layout, layout.output[c], energy0[c], of_path, path, eps[c]
-            energies = energetics(cell, stops, *of)
+            *energies, lost = energetics(cell, stops, *of)
         output = layout.output[c]
         z = np.where(output >= 0, stops.z[output], z_start[c])
+        off = deviations(cell, stops) if wanted.extremes else NOT_ASKED
         rows.append(
             (
                 z,
                 *energies,
-                *(deviations(cell, stops) if wanted.extremes else (np.nan, np.nan)),
+                off.far,
+                off.lag,
                 np.where(output >= 0, found.how[output], 0),
                 np.where(output >= 0, found.gap[output], 0.0),
                 _share(cell, path, whole) if layout.whole else np.nan,
-                max([s.error_extreme for s in cell.surveys], default=0.0),
-                sum(s.error_work for s in cell.surveys) if wanted.energies else 0.0,
+                off.error,
+                lost,
                 _status(cell, stops, layout, found, output, path, eps[c], wanted.energies),
             )
         )

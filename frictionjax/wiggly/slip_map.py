@@ -34,9 +34,10 @@ _ON = 0.5  # at the end of the last panel: the slide may go on
 _AGAIN = 0.6  # of a panel that does not hold, and of those behind it
 # Of the accuracy: last coefficients of a panel; where slides are surveyed, and where not.
 # (Errors of times as lanes measure them are the same with either, at gamma = 1/4 up to 17
-# times larger at 0.03. But surveys through longer panels are rough: at gamma = 0.4, eps =
-# 1.3e-7 made three times, in 2.5 times the steps.)
-TAIL, BARE_TAIL = 1e-3, 1e-2
+# times larger at 0.03. Surveys through longer panels are rougher: at gamma = 1/4, eps =
+# 1.3e-4 with 1e-2 in both made twice, in 1.7 times the steps; with 1e-3 too many panels at
+# eps = 1.3e-8 of the angular scene, whose brackets stayed open.)
+TAIL, BARE_TAIL = 3e-3, 1e-2
 _SPACING = 1e-14  # of T: rounding of times, in the last coefficients
 _WORTH = 0.2  # of the panel before: the smallest one worth trying where slides turn slow
 _SLOWING = 0.7  # of the wells that the pace at a panel's start would pass before the end

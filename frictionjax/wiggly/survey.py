@@ -19,7 +19,7 @@ class Survey(NamedTuple):
     `work` (fine,) since `low`, and `extremes` (4, fine): of z - path over a period, ahead
     and behind, m; of the dissipation beyond the path's, less what the work adds, surplus
     and deficit, J. `residual` since `low` at `times` (n + 2,), J. `error_*`: estimates from
-    the last coefficients: of the integrals in J, of extremes in m.
+    the last coefficients: of the integrals in J, of extremes in m, of surpluses in J.
     """
 
     low: float
@@ -32,6 +32,7 @@ class Survey(NamedTuple):
     extremes: np.ndarray
     error_work: float
     error_extreme: float
+    error_surplus: float
 
     def integrals(self, times: np.ndarray) -> np.ndarray:
         """`int_low^t` of what is summed, in J, (3, times)."""
@@ -102,7 +103,7 @@ def surveys_of(
     work = primitives[:, WORK] @ basis.T
     tails = _tails(series)
     errors = 2 * half * tails[:, WORK] / count
-    extreme = np.max(tails[:, 3:5], axis=1)
+    extreme, surplus = (np.max(tails[:, k : k + 2], axis=1) for k in (3, 5))
     return [
         Survey(*row)
         for row in zip(
@@ -116,6 +117,7 @@ def surveys_of(
             fine,
             errors.tolist(),
             extreme.tolist(),
+            surplus.tolist(),
             strict=True,
         )
     ]
