@@ -57,28 +57,21 @@ class Wells(NamedTuple):
 
 
 def from_fold_to_fold(
-    potential: AbstractPotential,
-    eps: np.ndarray,
-    place: np.ndarray,
-    side: np.ndarray,
-    thin: bool = False,
+    potential: AbstractPotential, eps: np.ndarray, place: np.ndarray, side: np.ndarray
 ) -> Wells:
-    """Wells at each eps from the extreme fold `place`, right (`side` 1) or left (-1).
-
-    `thin`: as if `thinned`.
-    """
-    count, grid = eps.size, _GRID[::_THIN] if thin else _GRID
+    """Wells at each eps from the extreme fold `place`, right (`side` 1) or left (-1)."""
+    count = eps.size
     scan = np.arange(potential.points) / potential.points
-    around = np.concatenate([place[:, None] + grid, np.tile(scan, (count, 1))], axis=1)
+    around = np.concatenate([place[:, None] + _GRID, np.tile(scan, (count, 1))], axis=1)
     force, stretch = in_chunks(_forces, _ROWS, (potential,), (eps, around))
     force = side[:, None] * force
-    heights, top = force[:, grid.size :], force[:, grid.size // 2, None]
+    heights, top = force[:, _GRID.size :], force[:, _GRID.size // 2, None]
     bump = (heights >= np.roll(heights, 1, 1)) & (heights > np.roll(heights, -1, 1))
     high = heights.max(axis=1, keepdims=True)
     near = bump & (heights > high - 0.05 * np.ptp(heights, axis=1, keepdims=True))
-    gaps = np.maximum(top - force[:, : grid.size], 0.0)
+    gaps = np.maximum(top - force[:, : _GRID.size], 0.0)
     folds = np.maximum(near.sum(axis=1), 1)
-    return Wells(gaps, stretch[:, : grid.size], folds)
+    return Wells(gaps, stretch[:, : _GRID.size], folds)
 
 
 def lag_forces(

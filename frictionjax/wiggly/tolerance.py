@@ -52,7 +52,6 @@ class Plan(NamedTuple):
 
     `loosest`: tolerance in the middle of a slip; `pace`: periods a second of the fastest
     slide: see `Control`. `brief`: tolerance of a lane that goes through a few wells only.
-    `memory`: slips back that a disturbance still matters.
     """
 
     tolerance: Real
@@ -62,7 +61,6 @@ class Plan(NamedTuple):
     reach: Real
     first_step: Real
     shortest_step: Real
-    memory: Real
     folds: Folds
 
 
@@ -174,7 +172,6 @@ def plan_steps(
         reach=0.25 * ground.branch,
         first_step=first,
         shortest_step=shortest,
-        memory=memory,
         folds=ground.folds,
     )
     return jax.lax.stop_gradient(plan)
