@@ -3,10 +3,10 @@
     python benchmarks/sweep.py [--scene vertical|angular] [--gamma 0.5 1 2] [--cells 16]
         [--smallest 1e-4] [--patience 20] [--peers heyoka numbalsoda ...]
 
-16 eps from 0.1 to 1e-4, a sweep for each gamma and one of all together. Error: max over
-61 times, those inside a slip left out, in units of eps, against our own method at accuracy
-1e-6. A cell's time for us is its share of the sweep (also: solved alone); for a peer that
-of a lane while both cores run such cells, at the loosest tolerance of those tried that
+16 eps from 0.1 to 1e-4, one sweep of all gamma, and one of each. Error: max over 61
+times, those inside a slip left out, in units of eps, against our own method at accuracy
+1e-6. A cell's time for us is its share of the sweep of all (also: solved alone); for a peer
+that of a lane while both cores run such cells, at the loosest tolerance of those tried that
 reaches 1e-3 eps. Both find z at the times and nothing else; `suprema`: our sweep with
 sup |z_eps - z| over [0, T] beside it. Wall seconds; CPU seconds where said, which other
 programs on the machine change less. All warm; compilation is printed apart. A peer that
@@ -85,30 +85,38 @@ def alone(one, eps: float, gamma: float) -> float:
     return timed(lambda: solve(one, eps, gamma, ACCURACY), 3)[1]
 
 
-def table(contest: Contest, eps: np.ndarray, gamma: float, truths, errors, run: Timed):
-    """Rows of one gamma; the fastest peers added up, over cells where one has ended."""
-    one, share = scene(contest.scene), run.best / eps.size
+def table(contest: Contest, eps: np.ndarray, gamma: float, truths, errors, share: float):
+    """Rows of one gamma; wall and CPU of the fastest peers, NaN where none ends."""
+    one = scene(contest.scene)
     names = " | ".join(contest.peers)
     print(f"\n| gamma | eps | our error | share, s | alone, s | {names} | peer/share |")
     print("|---" * (6 + len(contest.peers)) + "|")
     fastest = []
     for e, truth, error in zip(eps, truths, errors, strict=True):
         met = [contest.cheapest(name, float(e), gamma, truth) for name in contest.peers]
-        fastest.append(np.min([(np.inf, np.inf), *(m[:2] for m in met)], axis=0))
-        wall = fastest[-1][0]
+        wall, cpu = np.min([(np.inf, np.inf), *(m[:2] for m in met)], axis=0)
+        fastest.append((wall, cpu) if np.isfinite(wall) else (np.nan, np.nan))
         ratio = f"{wall / share:.2g}" if np.isfinite(wall) else "-"
         columns = [f"{gamma:g}", f"{e:.2g}", f"{error:.0e}", f"{share:.2g}"]
         columns += [f"{alone(one, e, gamma):.2g}", *(m[2] for m in met), ratio]
         print(f"| {' | '.join(columns)} |", flush=True)
-    wall, cpu = np.array(fastest).T
+    return np.array(fastest)
+
+
+def compare(name: str, fastest: np.ndarray, shares: float, own: Timed) -> None:
+    """Prints the fastest peers of some cells, added up, beside ours.
+
+    `shares`: of these cells in the sweep of all, s; `own`: a sweep of nothing else.
+    """
+    wall, cpu = fastest.T
     ended = np.isfinite(wall)
-    added, busy = wall[ended].sum(), cpu[ended].sum()
     part = ended.mean() or 1.0
+    added, busy = np.nansum(wall), 2 * np.nansum(cpu)
     print(
-        f"\nfastest peers added up: {added:.3f} s over {ended.sum()} of {eps.size} cells, "
-        f"{added / (part * run.best):.2g} times our share of those, "
-        f"{added / run.best:.2g} times our whole sweep; in CPU seconds {2 * busy:.3f}, "
-        f"{2 * busy / run.cpu:.2g} times our whole sweep\n",
+        f"{name}: fastest peers added up {added:.3f} s over {ended.sum()} of "
+        f"{ended.size} cells, {added / (part * shares):.2g} times our shares of the sweep "
+        f"of all, {added / (part * own.best):.2g} times a sweep of these alone; in CPU "
+        f"seconds {busy:.3f}, {busy / (part * own.cpu):.2g} times the latter",
         flush=True,
     )
 
@@ -128,27 +136,42 @@ def main() -> None:
     eps = np.geomspace(chosen.largest, chosen.smallest, chosen.cells)
     contest = Contest(chosen.scene, chosen.peers, chosen.patience)
     print(f"scene: {chosen.scene}")
-    everything, one = [], scene(chosen.scene)
+    one = scene(chosen.scene)
+    every = np.repeat(chosen.gamma, eps.size)
+    # Each gamma, those where windows are short, and all.
+    groups = [[gamma] for gamma in chosen.gamma]
+    groups += [[g for g in chosen.gamma if g >= 1]] * (len(chosen.gamma) > 2)
 
-    def sweep(cells, gammas, method):
-        return timed(lambda: solve(one, cells, gammas, ACCURACY, *_METHODS[method]))
+    def sweep(gammas: list[float], method: str) -> Timed:
+        cells = np.tile(eps, len(gammas)), np.repeat(gammas, eps.size)
+        return timed(lambda: solve(one, *cells, ACCURACY, *_METHODS[method]))
 
+    # Before the references, so that the first calls of the first sweep compile.
+    whole = [sweep(chosen.gamma, method) for method in chosen.methods]
+    alone_ = [[sweep(group, method) for method in chosen.methods] for group in groups]
+    cells = np.tile(eps, len(chosen.gamma)), every
+    truths = [own(one, float(e), float(g)) for e, g in zip(*cells, strict=True)]
+    errors = [
+        report(run, *cells, truths, method)
+        for run, method in zip(whole, chosen.methods, strict=True)
+    ]
+    for group, runs in zip(groups, alone_, strict=True):
+        mine = np.flatnonzero(np.isin(every, group))
+        rows = cells[0][mine], every[mine], [truths[i] for i in mine]
+        for run, method in zip(runs, chosen.methods, strict=True):
+            report(run, *rows, method)
+    share, fastest = whole[0].best / every.size, np.empty((every.size, 2))
     for gamma in chosen.gamma:
-        gammas = np.full(eps.size, gamma)
-        # Before the reference, so that the first call of the first gamma compiles.
-        runs = [sweep(eps, gammas, method) for method in chosen.methods]
-        truths = [own(one, float(e), gamma) for e in eps]
-        everything += truths
-        found = [
-            report(run, eps, gammas, truths, method)
-            for run, method in zip(runs, chosen.methods, strict=True)
-        ]
-        table(contest, eps, gamma, truths, found[0], runs[0])
-    if len(chosen.gamma) > 1:
-        gammas = np.repeat(chosen.gamma, eps.size)
-        every = np.tile(eps, len(chosen.gamma))
-        run = sweep(every, gammas, chosen.methods[0])
-        report(run, every, gammas, everything, chosen.methods[0])
+        mine = np.flatnonzero(every == gamma)
+        rows = [truths[i] for i in mine], errors[0][mine], share
+        fastest[mine] = table(contest, eps, gamma, *rows)
+    print()
+    for group, runs in zip(groups, alone_, strict=True):
+        mine = np.isin(every, group)
+        name = "gamma " + ", ".join(f"{g:g}" for g in group)
+        compare(name, fastest[mine], share * mine.sum(), runs[0])
+    for run, method in zip(whole, chosen.methods, strict=True):
+        compare(f"all, {method}", fastest, run.best, run)
     contest.cores.stop()
     compiled = ", ".join(f"{n} {s:.1f} s" for n, s in contest.compiled.items())
     print(f"compilation: {compiled}")

@@ -17,6 +17,7 @@ from frictionjax.wiggly.lanes import (
     loop_times,
 )
 from frictionjax.wiggly.planning import TABLEAU, lane_scene
+from frictionjax.wiggly.rounds import _batches, _seats
 
 PROGRAM = np.ones(3), "scheme", True
 FEW, LARGE = Room(1, 7, 14), Room(64, 2048, 4096)
@@ -88,3 +89,25 @@ def test_loops_are_compiled_as_one_function(width):
     text = str(program(*tables))
     assert "while" in text
     assert "scatter" not in text
+
+
+def idle(work, batches, workers=2):
+    """Share of the time that lanes idle, at best: as the longest job of a batch goes on."""
+    seat = _seats(work.size, batches)
+    rows = [np.sort(work)[::-1][seat == batch] for batch in range(batches)]
+    wall = sum(max(row.sum() / (workers * WIDTH), row.max()) for row in rows)
+    return 1 - work.sum() / (workers * WIDTH * wall)
+
+
+@pytest.mark.parametrize("longest", [1e3, 3e3, 1e5])
+def test_lanes_do_not_wait_for_the_longest_job_of_every_batch(longest):
+    """One batch for all has the same work in it, and fewer reports."""
+    work = np.concatenate([np.full(160, longest), np.full(2400, 1e3)])
+    batches = _batches(work, 2)
+    assert idle(work, batches) <= 0.01 + idle(work, 1)
+    assert batches == {1e3: 10, 3e3: 3, 1e5: 1}[longest]
+
+
+def test_a_few_jobs_and_none_are_one_batch():
+    assert _batches(np.zeros(0), 2) == 1
+    assert _batches(np.full(3, 1e6), 2) == 1
