@@ -178,6 +178,15 @@ def test_help_waits_for_no_library():
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
+def test_the_package_runs_as_a_module():
+    command = [sys.executable, "-m", "frictionjax", "study", "--eps", "none"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith("Error: ")
+    assert "eps = 'none'" in done.stderr
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_is_quiet(tmp_path):
     """Sent when the bar shows that the sweep is under way, in compiled code."""

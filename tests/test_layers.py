@@ -41,10 +41,10 @@ FLOORS = [
     {"plot"},
     {"design"},
     {"studies"},
-    {"measured"},
     {"scene_files"},
     {"report"},
     {"cli"},
+    {"__main__"},
 ]
 LEVEL = {unit: level for level, floor in enumerate(FLOORS) for unit in floor}
 ROOF = {"plot", "report", "cli"}  # where matplotlib may be imported
