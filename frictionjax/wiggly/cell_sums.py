@@ -72,7 +72,8 @@ def _running(cell: CellWay, stops: Stops, outputs: _Outputs) -> np.ndarray:
 def energetics(cell, stops, layout, output, energy0, of_path, path, eps):
     """Dissipation and residual at the outputs, gap at the end, sup of the error, all in J.
 
-    And how far surveys may be off, in the dissipation or in that sup.
+    And how far surveys may be off, in the dissipation or in that sup, over the dissipation
+    in [0, T].
 
     `int eps^gamma z'^2` is the path's dissipation and what the energies and the work of
     z - path add to it; the direct sum is an independent second value.
@@ -96,8 +97,12 @@ def energetics(cell, stops, layout, output, energy0, of_path, path, eps):
         cell.totals[RESIDUAL, -1],
         gap,
         worst,
-        max(change, sum(survey.error_work for survey in cell.surveys)),
+        _share(max(change, sum(survey.error_work for survey in cell.surveys)), final),
     )
+
+
+def _share(error: float, whole: float) -> float:
+    return error / max(abs(whole), 1e-300) if error > 0 else error  # NaN stays
 
 
 def _second_opinion(cell: CellWay, stops: Stops, final: float) -> float:

@@ -101,10 +101,7 @@ class _Sweep(NamedTuple):
         """Cells whose surveys are not good to the accuracy."""
         rough = answers.survey_error > CLOSED * self.accuracy * eps
         if self.wanted.energies:
-            share = answers.survey_work_error > CLOSED * self.accuracy * np.abs(
-                answers.dissipation[:, -1]
-            )
-            rough = rough | share
+            rough |= answers.survey_work_error > CLOSED * self.accuracy
         return rough
 
 

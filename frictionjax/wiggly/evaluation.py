@@ -30,7 +30,7 @@ class Answers(NamedTuple):
     `gap`: how closely, in eps. `sampled`: share of the path's way in slides of which only
     some periods were measured, NaN where only the times were. `survey_error`,
     `survey_work_error`: estimates of the errors that this makes in `sup_error` (m), in the
-    dissipation and in its distance from the path's (J).
+    dissipation or in its distance from the path's (of the dissipation over [0, T]).
     """
 
     z: np.ndarray

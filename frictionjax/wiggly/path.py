@@ -19,8 +19,26 @@ from ..programs import Program, in_chunks
 from ..roots import find_root
 from ..scene import Scene
 from ..strip import CHUNK, strips_at
+from .survey import nodes_of, through_nodes
 
 _PIECES = 16  # of the load, in a compiled call
+NODES = 17  # periods measured in a slide
+_ASIDE = 1e-9  # of a piece
+
+
+class Probes(NamedTuple):
+    """Where the speed of the path on each piece has been looked at, P pieces.
+
+    `times` (P, n): s, the steepest of the load among them; `speeds` (P, n): m/s. `unseen`
+    (P,): by how much a polynomial through a few nodes misses them, of the largest.
+    """
+
+    times: np.ndarray
+    speeds: np.ndarray
+    unseen: np.ndarray
+
+
+_NO_PROBES = Probes(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0))
 
 
 class Path(NamedTuple):
@@ -30,6 +48,7 @@ class Path(NamedTuple):
     or 0 where the path rests. `touch` (P,): time at which a slide begins, the piece's end
     where none does. `travel` (P+1,): way so far, in m. `rho` (P,): force of friction in N
     on the slide. `speed`, `stiffness`: largest speed of slides in m/s, smallest Phi''.
+    `probes`: speeds on the way.
     `rho_plus`, `rho_minus`: in N.
     """
 
@@ -43,6 +62,7 @@ class Path(NamedTuple):
     rho_minus: float
     speed: float = 0.0
     stiffness: float = 1.0
+    probes: Probes = _NO_PROBES
 
     @property
     def width(self) -> float:
@@ -131,14 +151,47 @@ def _steep_times(load: AbstractLoad, start: Float[Array, " n"], end: Float[Array
     return jax.vmap(partial(steep_times, load))(start, end)
 
 
-def _speeds(scene: Scene, path: Path) -> tuple[float, float]:
-    """Largest speed on slides, sampled, and smallest stiffness there."""
-    whole = in_chunks(_steep_times, _PIECES, (scene.load,), (path.touch, path.edges[1:]))
-    times = whole.ravel()
-    states = states_at(scene, path, times)
-    speeds = slopes_at(scene, path, times, states)
-    _, stiffness = in_chunks(_rates, CHUNK, (scene,), (times, states))
-    return float(np.max(np.abs(speeds))), float(np.min(stiffness))
+def speeds_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
+    """The path's speed in m/s at times of any shape."""
+    flat = times.ravel()
+    return slopes_at(scene, path, flat, states_at(scene, path, flat)).reshape(times.shape)
+
+
+def _looked_at(scene: Scene, path: Path) -> Path:
+    """With the largest speed on slides, sampled, and the smallest stiffness there."""
+    ends = path.touch, path.edges[1:]
+    steep = in_chunks(_steep_times, _PIECES, (scene.load,), ends)
+    times = np.concatenate([steep, nodes_inside(*ends)], axis=1)
+    flat = times.ravel()
+    states = states_at(scene, path, flat)
+    speeds = slopes_at(scene, path, flat, states).reshape(times.shape)
+    _, stiffness = in_chunks(_rates, CHUNK, (scene,), (flat, states))
+    seen, known = speeds[:, : steep.shape[1]], speeds[:, steep.shape[1] :]
+    unseen = unseen_of(*ends, known, steep, seen)
+    return path._replace(
+        speed=float(np.max(np.abs(speeds))),
+        stiffness=float(np.min(stiffness)),
+        probes=Probes(steep, seen, np.where(path.direction == 0, 0.0, unseen)),
+    )
+
+
+def nodes_inside(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Nodes of [low, high] (n,) in s, (n, NODES): at the ends from inside, where slides
+    begin and pieces meet."""
+    share = np.clip(nodes_of(0.0, 1.0, NODES), _ASIDE, 1 - _ASIDE)
+    return low[:, None] + (high - low)[:, None] * share
+
+
+def unseen_of(low, high, known, times, speeds) -> np.ndarray:
+    """By how much a polynomial through `known` (n, nodes) misses speeds (n, m), at most.
+
+    Of the largest speed there; only times in [low, high] (n,) count.
+    """
+    inside = (times >= low[:, None]) & (times <= high[:, None])
+    long = np.where(high > low, high, low + 1.0)
+    gaps = np.abs(through_nodes(low, long, known, times) - speeds) * inside
+    size = np.maximum(np.abs(known).max(axis=1), np.max(np.abs(speeds) * inside, axis=1))
+    return gaps.max(axis=1) / np.maximum(size, 1e-300)
 
 
 def path_of(scene: Scene) -> Path | None:
@@ -171,6 +224,4 @@ def path_of(scene: Scene) -> Path | None:
     sliding = np.flatnonzero(direction)
     touch = path.touch.copy()
     touch[sliding] = times_at(scene, path, sliding, states[sliding])
-    path = path._replace(touch=touch)
-    speed, stiffness = _speeds(scene, path)
-    return path._replace(speed=speed, stiffness=stiffness)
+    return _looked_at(scene, path._replace(touch=touch))

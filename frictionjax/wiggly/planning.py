@@ -18,7 +18,7 @@ from .forgetting import lag_forces
 from .landscape import Folds
 from .lane import LaneScene
 from .needs import Needs, cost_of, wells_of
-from .path import Path
+from .path import NODES, Path
 from .rodas5p import RODAS5P
 from .rounds import LONG_MEMORY, MARGIN
 from .series_bristle import series_of
@@ -32,7 +32,6 @@ from .tolerance import plan_steps, pull_of
 # (256) tiles were longer, a few percent of the steps fewer, and values depended on the
 # other cells, by up to a tenth of the accuracy.
 TILES = 128
-NODES = 17  # periods measured in a slide
 _NEAR_STRIP = 1e-3  # wells
 # Looser brackets and surveys save a fifth of the time, and at gamma = 0.75 were off by up
 # to 6 times an accuracy of 1e-1, and twice one of 1e-2.
@@ -49,6 +48,8 @@ _LONG_SLIDE = 60.0
 # eps to 1e-4, gamma = 1/2, seconds with maps from 1100, 1800, 2500 and 4000 on: 0.35, 0.26,
 # 0.25, 0.39.)
 _MAP = 2200.0
+# Of the largest speed: what panels of a slip map might step over.
+_BURST = 0.1
 WIDEST = 0.125  # reach of a sine, periods
 # Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2, 16
 # eps to 1e-4, seconds at 1, 1.5, 2, 3 and 5: vertical 0.74, 0.57, 0.62, 0.52, 0.45, angular
@@ -197,7 +198,7 @@ def _long_memories(
         return np.zeros(eps.size, dtype=bool), needs
     long = needs.warm > LONG_MEMORY
     longest = np.max(np.abs(np.diff(path.states)), initial=0.0) / eps
-    ridden = long & (longest > _LONG_SLIDE)
+    ridden = long & (longest > _LONG_SLIDE) & np.all(path.probes.unseen <= _BURST)
     if not long.any():
         return ridden, needs
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..scene import Scene
 from .needs import TAIL, Needs, inner_wells
-from .path import Path, states_at, times_at
+from .path import Path, nodes_inside, speeds_at, states_at, times_at, unseen_of
 from .survey import nodes_of
 
 # Wells of a part for each node that is measured in it. On fewer, nodes moved to whole wells
@@ -14,6 +14,8 @@ from .survey import nodes_of
 _SPARSE, _FEW = 6, 20
 # Most nodes of a part, over the square root of its wells, and how many there may always be.
 _DENSE, _LEAST = 1.2, 17
+# Of the largest speed: what nodes may miss of the path's; and halves of halves of a part.
+_EVEN, _HALVINGS = 1e-3, 40
 
 
 class Parts(NamedTuple):
@@ -101,6 +103,7 @@ def _last_of_pieces(path: Path, rides: tuple) -> list:
 
 
 def inner_parts(scene: Scene, path: Path, eps, needs: Needs, rides: np.ndarray) -> Parts:
+    """All inner parts, none of which hides a short fast stretch between its nodes."""
     parts = [_path_parts(scene, path, eps, needs, rides)]
     ridden = _ridden_parts(needs, rides)
     if ridden:
@@ -109,7 +112,50 @@ def inner_parts(scene: Scene, path: Path, eps, needs: Needs, rides: np.ndarray) 
     if rest:
         columns = (np.array(column) for column in zip(*rest, strict=True))
         parts.append(_between(scene, path, eps, needs, *columns))
+    every = _joined(parts)
+    uneven = uneven_pieces(path)[every.piece] & (every.ride < 0)
+    if not uneven.any():
+        return every
+    even = [_chosen(every, ~uneven)]
+    return _joined(even + _graded(scene, path, eps, needs, _chosen(every, uneven)))
+
+
+def uneven_pieces(path: Path) -> np.ndarray:
+    """Pieces on which the path speeds up and slows down between a few nodes, (P,)."""
+    return path.probes.unseen > _EVEN
+
+
+def _joined(parts: list[Parts]) -> Parts:
     return Parts(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+def _chosen(parts: Parts, which: np.ndarray) -> Parts:
+    return Parts(*(column[which] for column in parts))
+
+
+def _graded(scene: Scene, path: Path, eps, needs: Needs, some: Parts) -> list[Parts]:
+    """Parts halved until their nodes see the path's speed; short ones are left out.
+
+    A load that rises by 0.04 N within 6 ms of 3 s was stepped over by all 17 nodes, and
+    the largest deviation was a hundredth of what it is there.
+    """
+    done = []
+    for _ in range(_HALVINGS):
+        known = speeds_at(scene, path, nodes_inside(some.low, some.high))
+        probes = path.probes.times[some.piece], path.probes.speeds[some.piece]
+        seen = unseen_of(some.low, some.high, known, *probes) <= _EVEN
+        done.append(_chosen(some, seen))
+        left = _chosen(some, ~seen)
+        middle = np.floor(0.5 * (left.first + left.last))
+        first = np.concatenate([left.first, middle])
+        last = np.concatenate([middle, left.last])
+        cell, piece, nodes = (np.tile(c, 2) for c in (left.cell, left.piece, left.nodes))
+        long = last - first > 2 * nodes
+        rows = (column[long] for column in (cell, piece, first, last, nodes))
+        some = _between(scene, path, eps, needs, *rows)
+        if some.cell.size == 0:
+            break
+    return done
 
 
 def sampled(scene: Scene, path: Path, eps, needs: Needs, parts: Parts, rides: np.ndarray):

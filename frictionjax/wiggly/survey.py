@@ -61,6 +61,17 @@ def nodes_of(low: float, high: float, count: int) -> np.ndarray:
     return 0.5 * (low + high) + 0.5 * (high - low) * x
 
 
+def through_nodes(low, high, values: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """The polynomial with `values` (n, count) at the nodes of [low, high] (s, (n,)), at
+    `times` (n, m)."""
+    count = values.shape[1]
+    matrix = chebyshev.chebvander(nodes_of(-1.0, 1.0, count), count - 1)
+    series = np.linalg.solve(matrix, values.T).T
+    scaled = 2 * (times - low[:, None]) / (high - low)[:, None] - 1
+    basis = chebyshev.chebvander(np.clip(scaled, -1, 1), count - 1)
+    return np.einsum("nmk,nk->nm", basis, series)
+
+
 def _tails(series: np.ndarray) -> np.ndarray:
     """Size of the last coefficients: what a shorter series would have missed."""
     return np.max(np.abs(series[..., -3:]), axis=-1)

@@ -113,7 +113,7 @@ def plan_windows(
         first_leg=first,
         past_leg=past,
     )
-    legs = _legs(scene, path, start, end)
+    legs = legs_of(scene, path, start, end)
     cell = np.concatenate([windows.cell[lanes[0][0]], some.cell[lanes[1][0]]])
     wells = np.abs(legs.guide1 - legs.guide0) / ground.eps[cell]
     # A lane from far outside the strip passes through wells that the path does not.
@@ -160,7 +160,7 @@ def _calm(path: Path, ground: Ground, jobs: Jobs, legs: Legs) -> np.ndarray:
     return rides[jobs.cell] & inside & slower & (memory <= 0.5 * _BRIEF)
 
 
-def _legs(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Legs:
+def legs_of(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Legs:
     """Legs with the path as their guide; slopes from inside each leg."""
     length = np.maximum(end - start, 0.0)
     guides = states_at(scene, path, np.concatenate([start, end]))
