@@ -58,3 +58,11 @@ def test_a_stiff_rest_is_followed(solver):
         jnp.asarray(0.0),
     )
     assert float(found.ys[-1]) == pytest.approx(np.cos(1.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("state", [jnp.ones(2), (jnp.ones(()), jnp.ones(()))])
+def test_states_of_several_numbers_are_refused(state):
+    """Their Jacobian is a matrix; a diagonal in its place gave wrong states, quietly."""
+    term = diffrax.ODETerm(lambda t, y, args: y)
+    with pytest.raises(ValueError, match="y0 = 'a state of shape"):
+        diffrax.diffeqsolve(term, Rodas5P(), 0.0, 1.0, 0.1, state)

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 from equinox import AbstractClassVar
 
-from ..arguments import Real
+from ..arguments import Real, require
 from .rodas4p2 import RODAS4P2
 from .rodas5p import RODAS5P
 from .rosenbrock import Linearised, Tableau, combine, rosenbrock_step
@@ -31,7 +31,10 @@ class StageInterpolation(diffrax.AbstractLocalInterpolation):
 
 
 class AbstractRosenbrock(diffrax.AbstractAdaptiveSolver):
-    """A scheme for a scalar state, with exact Jacobian and time derivative by autodiff."""
+    """A scheme for a scalar state, with exact Jacobian and time derivative by autodiff.
+
+    Raises `ValueError` for a state of another shape: its Jacobian would be a matrix.
+    """
 
     tableau: AbstractClassVar[Tableau]
     term_structure: ClassVar = diffrax.ODETerm
@@ -41,6 +44,8 @@ class AbstractRosenbrock(diffrax.AbstractAdaptiveSolver):
         return self.tableau.order
 
     def init(self, terms, t0, t1, y0, args):
+        shape = getattr(y0, "shape", type(y0).__name__)
+        require(shape == (), "y0", f"a state of shape {shape}", "one number, of shape ()")
         return None
 
     def func(self, terms, t0, y0, args):
