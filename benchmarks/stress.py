@@ -165,8 +165,8 @@ def refusal(case, spoiled: Spoiled) -> str:
     return "accepted"
 
 
-def refused(count: int, rng) -> None:
-    """Try scenes with one fault."""
+def refused(count: int, rng) -> int:
+    """Try scenes with one fault; how many are not refused as they should be."""
     good: list = []
     while len(good) < 4 * len(hard_scenes.KINDS):
         kind = hard_scenes.KINDS[len(good) % len(hard_scenes.KINDS)]
@@ -191,13 +191,14 @@ def refused(count: int, rng) -> None:
         print(f"- {fault}: {number}")
     for item in wrong[:10]:
         print("- violation:", *item, flush=True)
+    return len(wrong)
 
 
-def tried(count: int, minutes: float, rng) -> None:
-    """Try admissible scenes."""
+def tried(count: int, minutes: float, rng) -> int:
+    """Try admissible scenes; how many violate a guarantee."""
     states: collections.Counter = collections.Counter()
     worst: dict = collections.defaultdict(lambda: (0, -1.0, ""))
-    begun, number = time.time(), 0
+    begun, number, wrong = time.time(), 0, 0
     while number < count and time.time() - begun < 60 * minutes:
         kind = hard_scenes.KINDS[number % len(hard_scenes.KINDS)]
         genes = rng.uniform(size=hard_scenes.GENES)
@@ -219,6 +220,7 @@ def tried(count: int, minutes: float, rng) -> None:
             text = f"{'-'.join(kind)}, eps {case.eps:.3g}, gamma {case.gamma:.3g}"
             worst[check.__name__] = (times + 1, *max((most, _), (value, text)))
             if value > 1:
+                wrong += 1
                 print(f"violation {value:.3g}: {check.__name__}, {text}, scene {number}")
                 print(f"  genes {genes.tolist()}", flush=True)
     print(f"\n{number} admissible scenes in {time.time() - begun:.0f} s\n")
@@ -228,6 +230,7 @@ def tried(count: int, minutes: float, rng) -> None:
     print("|---|---|---|---|")
     for name, (times, most, where) in sorted(worst.items()):
         print(f"| {name} | {times} | {most:.2g} | {where} |")
+    return wrong
 
 
 def main() -> None:
@@ -240,8 +243,8 @@ def main() -> None:
     options = parser.parse_args()
     rng = np.random.default_rng(options.seed)
     bad = options.scenes if options.inadmissible is None else options.inadmissible
-    refused(bad, rng)
-    tried(options.scenes, options.minutes, rng)
+    wrong = refused(bad, rng) + tried(options.scenes, options.minutes, rng)
+    sys.exit(1 if wrong else 0)
 
 
 if __name__ == "__main__":

@@ -80,17 +80,44 @@ def stays_near_the_strip(case: Case, found) -> float:
     Outside the strip of this eps (extremes of V_eps' instead of rho) the distance shrinks
     with `phi dist/eps^gamma` and grows no faster than the edges move, `|l'|/phi`.
     """
+    low, high = strip_of_eps(case)
+    z = np.asarray(found.z)
+    outside = np.maximum(np.maximum(low - z, z - high), 0.0)
+    return float(outside.max() / (outside[0] + lag(case) + 2e-3 * case.eps))
+
+
+def strip_of_eps(case: Case) -> np.ndarray:
+    """States in m that rest at this eps: the strip's edges at TIMES, (2, n)."""
     # 2048 missed the extremes of a steep surface by 5e-4: 0.01 eps on a soft support.
     tips = np.arange(2**15) / 2**15
     force = np.array(case.scene.potential.tip_force(tips, case.eps)[0])
+    return strip_between(case, force.max(), force.min())
+
+
+def strip_between(case: Case, most: float, least: float) -> np.ndarray:
+    """Edges of the strip at TIMES for extreme forces in N, m, (2, n)."""
     load = found_load(case, TIMES)
-    low = np.array([inverse_force(case, f) for f in load - force.max()])
-    high = np.array([inverse_force(case, f) for f in load - force.min()])
-    z = np.asarray(found.z)
-    outside = np.maximum(np.maximum(low - z, z - high), 0.0)
+    return np.array([[inverse_force(case, f) for f in load - rho] for rho in (most, least)])
+
+
+def lag(case: Case) -> float:
+    """The most that z is outside its strip, in m, where it starts inside (Lemma 7)."""
     stiffness = case.numbers["support"]["stiffness"]
-    lag = case.eps**case.gamma * fastest(case) / stiffness**2
-    return float(outside.max() / (outside[0] + lag + 2e-3 * case.eps))
+    return case.eps**case.gamma * fastest(case) / stiffness**2
+
+
+def stays_near_the_limit(case: Case, found) -> float:
+    """`|z_eps - z|` is at most a slip, a lag, and what the two strips are apart, twice.
+
+    By comparison: z_eps slips only at an edge of its strip, by a period at most; z rests
+    inside of its own, or is at that edge. (The start may be outside the strip of eps.)
+    """
+    limit = np.asarray(fx.solve_limit(case.scene, TIMES).z)
+    law = fx.friction(case.scene)
+    own = strip_between(case, float(law.rho_plus), float(law.rho_minus))
+    apart = 1.01 * np.abs(strip_of_eps(case) - own).max()
+    allowed = (1 + 2e-3) * case.eps + lag(case) + 2 * apart
+    return float(np.abs(np.asarray(found.z) - limit).max() / allowed)
 
 
 def fastest(case: Case) -> float:
@@ -171,6 +198,7 @@ ALONE: tuple[Callable, ...] = (
     dissipates,
     balance_closes,
     stays_near_the_strip,
+    stays_near_the_limit,
 )
 COMPARED: tuple[Callable, ...] = (
     is_accurate,

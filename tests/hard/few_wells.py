@@ -32,8 +32,8 @@ SURFACES = {
         shows_surface=True,
     ),
     "flat": Spring(
-        "w' and w'' vanish together",
-        surface=slopes(0.12, -0.06, 0.0, 0.0),
+        "a flat stretch, where w' and its next two derivatives vanish",
+        surface=slopes(0.0375, 0.06, 0.0225, 0.0),
         shows_surface=True,
     ),
     "steep": Spring(
