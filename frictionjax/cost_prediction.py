@@ -1,6 +1,5 @@
 """What a sweep will cost, before anything runs, and which sweep fits a budget."""
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +11,7 @@ from .limit_system import require_start_in_strip
 from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
 from .scene import Scene, require_times, require_told_apart
 from .wiggly.own_methods import OURS, is_ours
-from .wiggly.tolerance import require_accuracy
+from .wiggly.tolerance import accuracies_of, require_accuracy
 from .wiggly.workload import Workload, workload
 
 # Factor that 96% of 96 cells stayed within (`benchmarks/cost_model.py`, nothing else
@@ -142,7 +141,7 @@ def fit_budget(
     seconds: float,
     ts: Any = None,
     method: str = "auto",
-    accuracies: Sequence[float] = ACCURACIES,
+    accuracies: Any = ACCURACIES,
 ) -> Affordable:
     """The tightest of `accuracies` that fits into `seconds`; with fewer eps if none does.
 
@@ -152,9 +151,9 @@ def fit_budget(
     Raises `ValueError` for a budget that is not positive, that nothing fits into, or where
     nothing is known of the cost.
     """
-    require_real("budget", seconds, "budget > 0, s", lambda s: s > 0)
+    require_real("seconds", seconds, "a budget > 0, s", lambda s: s > 0)
     values = grid_of("eps", eps)
-    for accuracy in sorted(accuracies):
+    for accuracy in accuracies_of(accuracies).tolist():
         cost = predict_cost(scene, values, gamma, accuracy, ts, method)
         if not np.isfinite(cost.seconds):
             raise ValueError(f"budget = {seconds:g}: cost {cost}; run without a budget")

@@ -22,7 +22,8 @@ def errors_of(
     `error`: the largest at the times asked for outside slips, in eps; `slip_error`: mean
     over a whole slip period; `end_error`: at the last time; `dissipation_error`: largest
     over the final value, 0 where nothing is dissipated; `mescd`:
-    -log10(|z - z_true|/(eps + |z_true|)) at the last time. NaN where no time counts.
+    -log10(|z - z_true|/(eps + |z_true|)) at the last time. NaN where no time counts, or
+    nothing is known.
     """
     gaps = np.abs(z - true_z) / eps
     counted = gaps[when.asked[~in_slip[when.asked]]]
@@ -30,10 +31,11 @@ def errors_of(
     final = true_dissipation[-1]
     off = np.abs(dissipation - true_dissipation).max()
     nothing = float("nan")
+    share = off / final if final > 0 else 0.0 * (off + final)  # NaN stays
     return {
         "error": float(counted.max()) if counted.size else nothing,
         "slip_error": float(gaps[when.slip].mean()) if when.slip.size else nothing,
         "end_error": float(gaps[-1]),
-        "dissipation_error": float(off / final) if final > 0 else 0.0,
+        "dissipation_error": float(share),
         "mescd": -float(np.log10(np.maximum(relative, _LEAST))),
     }

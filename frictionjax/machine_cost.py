@@ -2,6 +2,7 @@
 
 import json
 import os
+import platform
 import resource
 import sys
 import time
@@ -132,7 +133,9 @@ def _key() -> str:
     """What a measurement holds for."""
     packages = [f"{name} {version(name)}" for name in ("frictionjax", "jax")]
     flags = os.environ.get("XLA_FLAGS", "")
-    return ", ".join([*packages, f"{os.cpu_count()} cores", flags])
+    # A home folder may be shared by machines.
+    machine = f"{platform.node()} {platform.machine()}, {os.cpu_count()} cores"
+    return ", ".join([*packages, machine, flags])
 
 
 def _file(folder: Path | None) -> Path:

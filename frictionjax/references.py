@@ -15,6 +15,8 @@ from .wiggly.trajectory import solve
 # Slips that lanes one after the other (0.4 ms each) and side by side (10 us) may take.
 _ONE_BY_ONE, _EVERY = 2e4, 2e6
 _TIGHTER, _TIGHTEST = 1e-2, 1e-9
+# Accuracies that a reference can judge are larger by this than its own.
+LEAST_JUDGED = 10 * _TIGHTEST
 
 
 class Reference(NamedTuple):
@@ -46,7 +48,8 @@ def reference(
 
     The first of these that succeed: every slip one after the other through diffrax with
     Rodas5P; every slip in lanes; windows; windows ten times tighter still. The first is
-    the reference, the second says how far it can be trusted.
+    the reference, the second says how far it can be trusted. (Beyond 2 million slips there
+    are windows only: `ways` says so.)
     """
     ts, back = when.around(float(scene.duration))
     tight = max(_TIGHTER * accuracy, _TIGHTEST)

@@ -83,20 +83,25 @@ def runner(scene, eps, gamma, ts, accuracy, method, seconds) -> Callable[[], Run
 
 
 def timed(
-    run: Callable[[], Run], repeats: int, seconds: float
+    run: Callable[[], Run], repeats: int, seconds: float, first: float | None = None
 ) -> tuple[Run, dict[str, float]]:
-    """The result of the last of a first run and warm ones, and how long they took."""
-    result, first = _clocked(run)
-    if result.status != Status.OK and first > 0.5 * seconds:
-        return result, _times([first], 0.0)
+    """The result of the last of a first run and warm ones, and how long they took.
+
+    `first`: seconds of a first run that has been, of which only the time is known.
+    """
+    if first is None:
+        result, first = clocked(run)
+        if result.status != Status.OK and first > 0.5 * seconds:
+            return result, _times([first], 0.0)
     warm: list[float] = []
     while not warm or (len(warm) < repeats and sum(warm) < _ENOUGH):
-        result, spent = _clocked(run)
+        result, spent = clocked(run)
         warm.append(spent)
     return result, _times(warm, max(0.0, first - float(np.median(warm))))
 
 
-def _clocked(run: Callable[[], Any]) -> tuple[Any, float]:
+def clocked(run: Callable[[], Any]) -> tuple[Any, float]:
+    """What a call returns, and its seconds."""
     start = time.perf_counter()
     result = run()
     return result, time.perf_counter() - start

@@ -229,4 +229,4 @@ def test_cost_measures_methods(tmp_path):
 
 def test_cost_refuses_unknown_methods(tmp_path):
     result = run("cost", "--methods", "magic", "--out", tmp_path)
-    assert "method = 'magic'" in error_line(result)
+    assert "methods = 'magic'" in error_line(result)

@@ -1,11 +1,13 @@
 """What accuracy costs: errors are those of the run, failures keep their place."""
 
+import diffrax
 import numpy as np
 import pytest
 from reference import System, sine
 from reference import solve as plain_solve
 
 import frictionjax as fx
+from frictionjax.cost_of_accuracy import _Column, _values
 from frictionjax.error_measures import errors_of
 from frictionjax.instants import instants, slips_of
 from frictionjax.plot.work_precision import _front
@@ -167,18 +169,87 @@ def test_slow_runs_end_and_keep_their_place(scene, method):
 
 def test_bad_arguments_are_named(scene):
     for change, message in [
-        ({"methods": "Euler5"}, "method = 'Euler5'"),
+        ({"methods": "Euler5"}, "methods = 'Euler5'"),
+        ({"methods": None}, "methods = 'None'"),
+        ({"methods": 5}, "methods = '5'"),
         ({"methods": []}, "methods = .*at least one"),
         ({"methods": ["auto", "auto"]}, "methods = .*once"),
-        ({"accuracies": [0.0]}, "accuracy = 0"),
+        ({"accuracies": [0.0]}, "accuracies = 0"),
+        ({"accuracies": [1e-2, 1e-9]}, "accuracies = 1e-09: .* 1e-08"),
+        ({"accuracies": []}, "accuracies = "),
+        ({"accuracies": None}, "accuracies = None"),
+        ({"accuracies": "abc"}, "accuracies = 'abc'"),
+        ({"accuracies": [[1e-2], [1e-3, 1e-4]]}, "accuracies = "),
         ({"eps": -1.0}, "eps = -1"),
         ({"gamma": 0.0}, "gamma = 0"),
         ({"seconds": 0.0}, "seconds = 0"),
         ({"repeats": 0}, "repeats = 0"),
+        ({"repeats": 2.5}, "repeats = 2.5"),
         ({"ts": [5.0]}, "ts = "),
     ]:
         with pytest.raises(ValueError, match=message):
             fx.work_precision(scene, **{"eps": EPS, **change})
+
+
+def test_a_solver_of_the_user_is_one_method(scene):
+    data = fx.work_precision(scene, EPS, 1.0, diffrax.Kvaerno3(), 1e-1, TIMES, repeats=1)
+    assert data.solver.values.tolist() == ["Kvaerno3"]
+    assert int(data.runs[0, 0, 0, 0]) == 1
+    line = cost_sections(data)[0][1].splitlines()[-1].split()
+    assert line[9] == "-"  # one run has no spread
+
+
+def test_what_is_compiled_for_the_reference_is_told_of_the_method():
+    """The reference runs the same programs: clocked after it they seem to be free."""
+    scene = fx.Scene(
+        fx.profiles.Fourier([0.0, 0.002, 0.0], [0.01, 0.0, 0.001]),
+        fx.bristles.SlantedSpring(1.0, 2.0, 1.0, 0.1),
+        fx.supports.Spring(1.0),
+        fx.loads.Triangle(1.0, 3.0),
+        duration=3.0,
+    )
+    data = fx.work_precision(scene, EPS, 1.0, ["auto"], 1e-2, TIMES, repeats=2)
+    first = float(data.compile_seconds[0, 0, 0, 0])
+    assert first > 20 * float(data.seconds[0, 0, 0, 0])
+
+
+def test_nothing_is_known_without_a_reference(scene, when, truth):
+    blank = np.full(when.ts.size, np.nan)
+    none = blank, blank, np.zeros(when.ts.size, dtype=bool)
+    found = errors_of(truth.z, truth.dissipation, *none, when, EPS)
+    assert all(np.isnan(value) for value in found.values()), found
+    still = np.zeros(when.ts.size)
+    found = errors_of(truth.z, still, truth.z, still, truth.in_slip, when, EPS)
+    assert found["dissipation_error"] == 0.0
+
+
+def test_nothing_is_concluded_below_the_error_of_the_reference(scene, when, truth):
+    run = run_scipy(scene, EPS, 1.0, when.ts, 1e-1, "LSODA", 60.0)
+    for unsure, wrong in ((0.0, 1.0), (100.0, 0.0), (np.inf, 0.0)):
+        judge = truth._replace(errors=truth.errors | {"error": unsure})
+        column = _Column(scene, EPS, 1.0, when, judge, "LSODA")
+        values = _values(run, {}, column)
+        assert values["error"] > 0.5
+        assert values["wrong"] == wrong
+
+
+@pytest.mark.parametrize("unsure", [1e-2, 1e2, np.inf])
+def test_a_picture_shades_what_the_reference_cannot_judge(data, unsure):
+    unsure_data = data.assign(reference_error=data.reference_error * 0 + unsure)
+    for axes in fx.plot.draw_work_precision(unsure_data).axes:
+        shades = [p for p in axes.patches if p.get_facecolor()[:3] == (238 / 255,) * 3]
+        low, high = axes.get_ylim()
+        top = max(patch.get_window_extent().y1 for patch in shades)
+        shown = axes.transData.inverted().transform((0.0, top))[1]
+        edge = min(max(min(unsure, 1e3), low), high)
+        assert shown == pytest.approx(edge, rel=1e-6)
+        said = any("no reference" in text.get_text() for text in axes.texts)
+        assert said == np.isinf(unsure)
+
+
+def test_a_picture_of_nothing_but_failures(data):
+    nothing = data.assign(error=data.error * np.nan)
+    fx.plot.draw_work_precision(nothing).canvas.draw()
 
 
 def test_the_front_is_what_no_run_beats():

@@ -230,8 +230,11 @@ def test_bad_arguments_are_named():
     ]:
         with pytest.raises(ValueError, match=message):
             fx.predict_cost(scene_of(), **{"eps": 1e-2, **change})
+    for accuracies in ([], 2.0, "abc", [[1e-2], [1e-3, 1e-4]], None):
+        with pytest.raises(ValueError, match="accuracies = "):
+            fx.fit_budget(scene_of(), 1e-2, 1.0, 1.0, accuracies=accuracies)
     for budget in (0.0, np.nan, [1.0, 2.0]):
-        with pytest.raises(ValueError, match="budget = "):
+        with pytest.raises(ValueError, match="seconds = "):
             fx.fit_budget(scene_of(), 1e-2, 1.0, budget)
 
 

@@ -19,10 +19,12 @@ from .style import (
 )
 
 _MOST = 1e3  # eps: further off is as wrong
+_MIDDLE = {"xycoords": "axes fraction", "ha": "center", "color": "#666666"}
 _LINES = ("-", "--", ":", "-.")
 _KEY = (
     "grey band: Pareto front; crosses: success reported, but in another well; "
-    "errors beyond 1000 eps are drawn there"
+    "errors beyond 1000 eps are drawn there;\n"
+    "shaded below: less than the error of the reference, where nothing is concluded"
 )
 
 
@@ -73,7 +75,8 @@ def _times(axes: Any, cell: xr.Dataset) -> None:
         seconds, errors, wrong = _known(line)
         axes.plot(seconds, errors, **_look(index), label=_label(line, seconds))
         axes.plot(seconds[wrong], errors[wrong], "x", color=LIMIT, markersize=10)
-        points.append(np.stack([seconds, errors]))
+        # Of those below the reference's error none is known to be better.
+        points.append(np.stack([seconds, np.maximum(errors, _floor_of(cell))]))
     front = _front(np.concatenate(points, axis=1))
     if front.size:
         look = {"linewidth": 9, "alpha": 0.35, "color": GUIDE, "zorder": 1}
@@ -81,7 +84,7 @@ def _times(axes: Any, cell: xr.Dataset) -> None:
     axes.set(xscale="log", yscale="log", xlabel="seconds of a warm run")
     axes.set(ylabel="largest error of z outside slips ($\\epsilon$)")
     axes.set_title(f"$\\epsilon$ = {float(cell.eps):.3g} m, $\\gamma$ = {cell.gamma:.3g}")
-    _floor(axes, float(cell.reference_error))
+    _floor(axes, _floor_of(cell))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
 
 
@@ -101,12 +104,23 @@ def _front(points: np.ndarray) -> np.ndarray:
     return ordered[:, better]
 
 
+def _floor_of(cell: xr.Dataset) -> float:
+    """Error of the reference, as it is drawn; that of none is the largest."""
+    error = float(cell.reference_error)
+    return min(error, _MOST) if np.isfinite(error) else _MOST
+
+
 def _floor(axes: Any, error: float) -> None:
     """Below the reference's own error nothing is known."""
     low, high = axes.get_ylim()
-    if low < error < high:
-        axes.axhspan(low, error, color="#eeeeee", zorder=0)
+    if low <= 0:  # nothing is drawn
+        low, high = 1 / _MOST, _MOST
         axes.set_ylim(low, high)
+    if error > low:
+        axes.axhspan(low, min(error, high), color="#eeeeee", zorder=0)
+        axes.set_ylim(low, high)
+    if error >= _MOST:
+        axes.annotate("no reference to judge by", (0.5, 0.5), **_MIDDLE)
 
 
 def _calibration(axes: Any, cell: xr.Dataset) -> None:
@@ -117,6 +131,7 @@ def _calibration(axes: Any, cell: xr.Dataset) -> None:
     ends = np.array([asked.min() / 2, asked.max() * 2])
     axes.plot(ends, ends, color=LIMIT, linewidth=1)
     axes.set(xscale="log", yscale="log", xlim=ends, ylabel="error reached ($\\epsilon$)")
+    _floor(axes, _floor_of(cell))
     low, high = axes.get_ylim()
     axes.fill_between(ends, ends, high, color="#fbe9e1", zorder=0)
     axes.set_ylim(low, high)

@@ -89,9 +89,10 @@ def cost_sections(data: xr.Dataset) -> list[tuple[str, str]]:
 _COLUMNS = (
     "error: largest of z outside slips; slip: mean over one slip period; end: at the\n"
     "last time; all in eps. dissipation: relative. residual: in energies of one slip.\n"
-    "s: median of warm runs, spread: slowest over fastest. field, Jacobian: evaluations,\n"
-    "- where a solver does not tell. 'wrong': success was reported half an eps or more\n"
-    "away. No error below that of the reference means anything."
+    "s: median of warm runs, spread: slowest over fastest of several. compile s: what the\n"
+    "first call took longer; methods share programs. field, Jacobian: evaluations, -\n"
+    "where a solver does not tell. 'wrong': success was reported half an eps or more\n"
+    "away, beyond the error of the reference; below that no error means anything."
 )
 
 
@@ -117,7 +118,7 @@ def cost_table(cell: xr.Dataset) -> str:
 def _row(run: xr.Dataset, names: dict[int, str]) -> tuple[str, ...]:
     errors = ("error", "slip_error", "end_error", "dissipation_error", "residual")
     counts = ("steps", "rejected", "evaluations", "jacobians")
-    known = int(run.runs) > 0
+    known, several = int(run.runs) > 0, int(run.runs) > 1
     status = "wrong" if int(run.wrong) else names[int(run.status)]
     return (
         str(run.solver.item()),
@@ -125,7 +126,7 @@ def _row(run: xr.Dataset, names: dict[int, str]) -> tuple[str, ...]:
         *(_short(float(run[name])) for name in errors),
         f"{float(run.mescd):.1f}" if np.isfinite(run.mescd) else "-",
         number(float(run.seconds)),
-        f"{float(run.seconds_high / run.seconds_low):.2f}" if known else "-",
+        f"{float(run.seconds_high / run.seconds_low):.2f}" if several else "-",
         f"{float(run.compile_seconds):.1f}" if known else "-",
         *(_count(float(run[name])) for name in counts),
         status,

@@ -33,10 +33,10 @@ def known_solvers() -> list[str]:
     return sorted(names)
 
 
-def solver_of(method: object) -> diffrax.AbstractSolver:
+def solver_of(method: object, argument: str = "method") -> diffrax.AbstractSolver:
     """The solver that `method` names: ours, a diffrax name, class or instance.
 
-    Raises `ValueError` with the names allowed.
+    Raises `ValueError` with the names allowed, as of the `argument`.
     """
     if isinstance(method, diffrax.AbstractSolver):
         return method
@@ -46,7 +46,7 @@ def solver_of(method: object) -> diffrax.AbstractSolver:
     candidate: Any = getattr(diffrax, str(method), None) if named else method
     allowed = f"one of {', '.join([*OURS, *known_solvers()])}, or a diffrax solver"
     usable = _is_usable(candidate)
-    require(usable, "method", method if named else repr(method), allowed)
+    require(usable, argument, method if named else repr(method), allowed)
     return candidate()
 
 

@@ -5,8 +5,9 @@ from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
-from ..arguments import Real, require_real
+from ..arguments import Real, known_numbers, require, require_real
 from ..coefficients import Coefficients, coefficients
 from ..loads.steep import steep_times
 from ..scene import Scene, load_range
@@ -41,10 +42,23 @@ _IN_SLIPS = 0.05
 _DOUBLE_SPACING = 2.0**-50  # shortest step over the duration: four spacings of floats
 
 
-def require_accuracy(accuracy: Any) -> None:
+def require_accuracy(accuracy: Any, name: str = "accuracy") -> None:
     """Check the accuracy asked for."""
-    allowed = "1e-10 <= accuracy <= 1 (error of z in units of eps)"
-    require_real("accuracy", accuracy, allowed, lambda a: 1e-10 <= a <= 1)
+    allowed = f"1e-10 <= {name} <= 1 (error of z in units of eps)"
+    require_real(name, accuracy, allowed, lambda a: 1e-10 <= a <= 1)
+
+
+def accuracies_of(accuracies: Any) -> np.ndarray:
+    """Accuracies asked for, one or several, each once and rising.
+
+    Raises `ValueError` where they are none.
+    """
+    known = known_numbers(accuracies)
+    numbers = known.dtype != object and known.ndim <= 1 and known.size > 0
+    require(numbers, "accuracies", accuracies, "one number or a list of them")
+    for value in np.atleast_1d(known):
+        require_accuracy(float(value), "accuracies")
+    return np.unique(known.astype(float))
 
 
 class Plan(NamedTuple):
