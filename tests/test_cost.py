@@ -199,6 +199,7 @@ def test_a_solver_of_the_user_is_one_method(scene):
     assert line[9] == "-"  # one run has no spread
 
 
+@pytest.mark.slow
 def test_what_is_compiled_for_the_reference_is_told_of_the_method():
     """The reference runs the same programs: clocked after it they seem to be free."""
     scene = fx.Scene(

@@ -26,6 +26,7 @@ EARLIER = 4  # times as far back in each round
 MARGIN = 3  # wells: one to fall behind, one to catch up, one to forget
 LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast slides are
 _FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
+_LONGEST = 1.5  # times what its longest job takes: the shortest batch
 _BATCH = 1e5  # wells: a few seconds, between two reports
 
 Report = Callable[[float], None]
@@ -44,12 +45,14 @@ def _seats(count: int, seats: int) -> np.ndarray:
 def _batches(work: np.ndarray, workers: int) -> int:
     """Batches of jobs, as often as a report is wanted and lanes do not idle.
 
-    They do where a batch has less than two jobs a lane, or is done in less than twice the
-    time of its longest. (Every slip of 48 cells, the tiles of gamma = 1/2 in four batches:
-    1.4 to 1.5 times as long.)
+    They do where a batch has less than two jobs a lane, or is done in hardly more time than
+    its longest takes. (Every slip of 48 cells, the tiles of gamma = 1/2 in four batches:
+    1.2 to 1.5 times as long. Fewer than need be: larger tables, and another loop to
+    compile.)
     """
-    lanes = 2 * workers * WIDTH
-    most = min(work.size // lanes, int(work.sum() / (lanes * work.max(initial=1.0))))
+    lanes = workers * WIDTH
+    longest = _LONGEST * work.max(initial=1.0)
+    most = min(work.size // (2 * lanes), int(work.sum() / (lanes * longest)))
     return max(min(int(np.ceil(work.sum() / _BATCH)), most), 1)
 
 
