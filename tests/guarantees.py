@@ -110,13 +110,16 @@ def stays_near_the_limit(case: Case, found) -> float:
     """`|z_eps - z|` is at most a slip, a lag, and what the two strips are apart, twice.
 
     By comparison: z_eps slips only at an edge of its strip, by a period at most; z rests
-    inside of its own, or is at that edge. (The start may be outside the strip of eps.)
+    inside of its own, or is at that edge. (The start may be outside the strip of eps; the
+    limit starts where its own strip is nearest.)
     """
-    limit = np.asarray(fx.solve_limit(case.scene, TIMES).z)
     law = fx.friction(case.scene)
     own = strip_between(case, float(law.rho_plus), float(law.rho_minus))
+    start = float(np.clip(case.numbers["z0"], *own[:, 0]))
+    limit = np.asarray(fx.solve_limit(case.change(z0=start).scene, TIMES).z)
     apart = 1.01 * np.abs(strip_of_eps(case) - own).max()
     allowed = (1 + 2e-3) * case.eps + lag(case) + 2 * apart
+    allowed += abs(case.numbers["z0"] - start)
     return float(np.abs(np.asarray(found.z) - limit).max() / allowed)
 
 
