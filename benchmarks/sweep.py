@@ -148,14 +148,14 @@ def main() -> None:
 
     # Before the references, so that the first calls of the first sweep compile.
     whole = [sweep(chosen.gamma, method) for method in chosen.methods]
-    alone_ = [[sweep(group, method) for method in chosen.methods] for group in groups]
+    solo = [[sweep(group, method) for method in chosen.methods] for group in groups]
     cells = np.tile(eps, len(chosen.gamma)), every
     truths = [own(one, float(e), float(g)) for e, g in zip(*cells, strict=True)]
     errors = [
         report(run, *cells, truths, method)
         for run, method in zip(whole, chosen.methods, strict=True)
     ]
-    for group, runs in zip(groups, alone_, strict=True):
+    for group, runs in zip(groups, solo, strict=True):
         mine = np.flatnonzero(np.isin(every, group))
         rows = cells[0][mine], every[mine], [truths[i] for i in mine]
         for run, method in zip(runs, chosen.methods, strict=True):
@@ -166,7 +166,7 @@ def main() -> None:
         rows = [truths[i] for i in mine], errors[0][mine], share
         fastest[mine] = table(contest, eps, gamma, *rows)
     print()
-    for group, runs in zip(groups, alone_, strict=True):
+    for group, runs in zip(groups, solo, strict=True):
         mine = np.isin(every, group)
         name = "gamma " + ", ".join(f"{g:g}" for g in group)
         compare(name, fastest[mine], share * mine.sum(), runs[0])

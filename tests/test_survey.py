@@ -140,7 +140,7 @@ def burst():
     ],
 )
 def test_a_short_fast_stretch_is_not_stepped_over(burst, eps, gamma, method):
-    """Suprema were a hundredth, and eleven times, of what they are, with a good status."""
+    """Suprema were half as much again as they are, and a twelfth, with a good status."""
     scene, ts, limit = burst
     states = fx.solve(scene, eps, gamma, ts, 1e-4, dissipation=False).z
     dense = np.abs(np.asarray(states) - limit).max()

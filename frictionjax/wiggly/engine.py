@@ -18,7 +18,6 @@ from .needs import Needs
 from .path import Path, path_of
 from .planning import (
     LOOSEST,
-    NODES,
     TABLEAU,
     TILES,
     lane_scene,
@@ -29,6 +28,7 @@ from .rosenbrock import Tableau
 from .rounds import CLOSED, WORKERS, Report, Rounds, collect
 from .starts import Ground
 from .status import Status
+from .survey import NODES
 
 _MOST_NODES, _SURVEYS = 65, 3
 # Wells that one lane alone goes through at most: a minute or two.

@@ -19,26 +19,9 @@ from ..programs import Program, in_chunks
 from ..roots import find_root
 from ..scene import Scene
 from ..strip import CHUNK, strips_at
-from .survey import nodes_of, through_nodes
+from .probes import NO_PROBES, Probes, nodes_inside, unseen_of
 
 _PIECES = 16  # of the load, in a compiled call
-NODES = 17  # periods measured in a slide
-_ASIDE = 1e-9  # of a piece
-
-
-class Probes(NamedTuple):
-    """Where the speed of the path on each piece has been looked at, P pieces.
-
-    `times` (P, n): s, the steepest of the load among them; `speeds` (P, n): m/s. `unseen`
-    (P,): by how much a polynomial through a few nodes misses them, of the largest.
-    """
-
-    times: np.ndarray
-    speeds: np.ndarray
-    unseen: np.ndarray
-
-
-_NO_PROBES = Probes(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0))
 
 
 class Path(NamedTuple):
@@ -47,9 +30,8 @@ class Path(NamedTuple):
     `edges` (P+1,): times in s. `states` (P+1,): of the path, in m. `direction` (P,): 1, -1
     or 0 where the path rests. `touch` (P,): time at which a slide begins, the piece's end
     where none does. `travel` (P+1,): way so far, in m. `rho` (P,): force of friction in N
-    on the slide. `speed`, `stiffness`: largest speed of slides in m/s, smallest Phi''.
-    `probes`: speeds on the way.
-    `rho_plus`, `rho_minus`: in N.
+    on the slide. `rho_plus`, `rho_minus`: in N. `speed`, `stiffness`: largest speed of
+    slides in m/s, smallest Phi''. `probes`: speeds on the way.
     """
 
     edges: np.ndarray
@@ -62,7 +44,7 @@ class Path(NamedTuple):
     rho_minus: float
     speed: float = 0.0
     stiffness: float = 1.0
-    probes: Probes = _NO_PROBES
+    probes: Probes = NO_PROBES
 
     @property
     def width(self) -> float:
@@ -173,25 +155,6 @@ def _looked_at(scene: Scene, path: Path) -> Path:
         stiffness=float(np.min(stiffness)),
         probes=Probes(steep, seen, np.where(path.direction == 0, 0.0, unseen)),
     )
-
-
-def nodes_inside(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Nodes of [low, high] (n,) in s, (n, NODES): at the ends from inside, where slides
-    begin and pieces meet."""
-    share = np.clip(nodes_of(0.0, 1.0, NODES), _ASIDE, 1 - _ASIDE)
-    return low[:, None] + (high - low)[:, None] * share
-
-
-def unseen_of(low, high, known, times, speeds) -> np.ndarray:
-    """By how much a polynomial through `known` (n, nodes) misses speeds (n, m), at most.
-
-    Of the largest speed there; only times in [low, high] (n,) count.
-    """
-    inside = (times >= low[:, None]) & (times <= high[:, None])
-    long = np.where(high > low, high, low + 1.0)
-    gaps = np.abs(through_nodes(low, long, known, times) - speeds) * inside
-    size = np.maximum(np.abs(known).max(axis=1), np.max(np.abs(speeds) * inside, axis=1))
-    return gaps.max(axis=1) / np.maximum(size, 1e-300)
 
 
 def path_of(scene: Scene) -> Path | None:

@@ -18,12 +18,13 @@ from .forgetting import lag_forces
 from .landscape import Folds
 from .lane import LaneScene
 from .needs import Needs, cost_of, wells_of
-from .path import NODES, Path
+from .path import Path
 from .rodas5p import RODAS5P
 from .rounds import LONG_MEMORY, MARGIN
 from .series_bristle import series_of
 from .slow_ends import slow_ends
 from .starts import Ground
+from .survey import NODES
 from .tolerance import Plan as StepPlan
 from .tolerance import plan_steps, pull_of
 

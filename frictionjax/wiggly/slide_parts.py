@@ -6,7 +6,8 @@ import numpy as np
 
 from ..scene import Scene
 from .needs import TAIL, Needs, inner_wells
-from .path import Path, nodes_inside, speeds_at, states_at, times_at, unseen_of
+from .path import Path, speeds_at, states_at, times_at
+from .probes import nodes_inside, unseen_of
 from .survey import nodes_of
 
 # Wells of a part for each node that is measured in it. On fewer, nodes moved to whole wells
@@ -137,7 +138,7 @@ def _graded(scene: Scene, path: Path, eps, needs: Needs, some: Parts) -> list[Pa
     """Parts halved until their nodes see the path's speed; short ones are left out.
 
     A load that rises by 0.04 N within 6 ms of 3 s was stepped over by all 17 nodes, and
-    the largest deviation was a hundredth of what it is there.
+    the largest deviation was a twelfth of what it is there.
     """
     done = []
     for _ in range(_HALVINGS):

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+NODES = 17  # periods measured in a slide, unless it takes more
 _FINE = 257  # points at which extremes of the fitted curves are looked for
 WORK, VISCOUS, RESIDUAL = range(3)  # rows of what is summed
 AHEAD, BEHIND, SURPLUS, DEFICIT = range(4)  # rows of what has extremes
