@@ -121,6 +121,12 @@ def require_whole(name: str, value: Any, least: int = 1) -> None:
     require(whole and value >= least, name, value, f"a whole number >= {least}")
 
 
+def require_flags(**flags: Any) -> None:
+    """Check what is on or off: `"no"` would be on."""
+    for name, value in flags.items():
+        require(isinstance(value, bool | np.bool_), name, value, "True or False")
+
+
 def require_function(name: str, fn: Any, what: str) -> None:
     """Check that `fn` takes one number to one number."""
     require(callable(fn), name, fn, what)

@@ -248,6 +248,8 @@ def cost(
     folder = require_folder(out)
     job = read_job(scene, **surface)
     if order_within is not None:
+        if methods or accuracies:
+            raise click.UsageError("--methods and --accuracies: not with --order-within")
         given = {"eps": eps, "gamma": gamma}
         some = {k: number_list(k, v) for k, v in given.items() if v is not None}
         job = job._replace(study=job.study | some)

@@ -9,7 +9,7 @@ import xarray as xr
 from tqdm import tqdm
 
 from .admissibility import require_reach
-from .arguments import require, require_real, require_whole, require_x64
+from .arguments import require, require_flags, require_real, require_whole, require_x64
 from .coefficients import coefficients_jit
 from .error_measures import MEASURES, errors_of
 from .grids import grid_of
@@ -217,6 +217,7 @@ def work_precision(
     (2008).
     """
     require_x64(scene)
+    require_flags(progress=progress)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     names, labels, asked = _required(methods, accuracies, repeats, seconds)
     require_reach(scene.potential, eps)

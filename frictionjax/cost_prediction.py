@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .admissibility import require_reach
-from .arguments import as_real, require, require_real, require_x64
+from .arguments import as_real, require, require_flags, require_real, require_x64
 from .grids import cells_of, grid_of
 from .limit_system import require_start_in_strip
 from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
@@ -116,6 +116,7 @@ def predict_cost(
     require_x64(scene)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
+    require_flags(measure=measure)
     require(is_ours(method), "method", method, f"one of {', '.join(OURS)}")
     ts = require_times(scene, ts)
     require_start_in_strip(scene)

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .arguments import require, require_real
+from .arguments import require, require_flags, require_real
 from .cost_prediction import predict_cost
 from .grids import grid_of
 from .orders import fit_order
@@ -86,6 +86,7 @@ def order_cost(
     known = grid_of("eps", eps)
     require(known.size >= 2, "eps", known, "a largest and a smallest")
     require_real("within", within, "within > 0", lambda w: w > 0)
+    require_flags(measure=measure)
     require_real("gamma", gamma, "gamma > 0, one number", lambda g: g > 0)
     pilot = np.geomspace(known[0], known[-1], _PILOT)
     ts = float(scene.duration) * np.linspace(0, 1, _TIMES)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .admissibility import require_reach
-from .arguments import as_real, require_x64
+from .arguments import as_real, require_flags, require_x64
 from .coefficients import coefficients_jit
 from .grids import cells_of, grid_of
 from .limit_system import (
@@ -96,6 +96,7 @@ def sweep(
     require_x64(scene)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
+    require_flags(progress=progress, dissipation=dissipation, suprema=suprema)
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
     require_reach(scene.potential, eps)

@@ -143,6 +143,7 @@ def test_help_without_a_command():
         (["study", "--heights", "none.txt"], "none.txt: No such file"),
         (["study", "--row", "1"], "row = 1: needs --heights FILE"),
         (["friction", "--bristle", "soft"], "'soft' is not one of 'slanted', 'angular'"),
+        (["cost", "--order-within", "0.1", "--methods", "auto"], "not with --order-within"),
         (["friction", "a", "b"], "unexpected extra argument (b)"),
     ],
 )

@@ -186,6 +186,7 @@ def test_bad_arguments_are_named(scene):
         ({"seconds": 0.0}, "seconds = 0"),
         ({"repeats": 0}, "repeats = 0"),
         ({"repeats": 2.5}, "repeats = 2.5"),
+        ({"progress": "no"}, "progress = 'no'"),
         ({"ts": [5.0]}, "ts = "),
     ]:
         with pytest.raises(ValueError, match=message):

@@ -227,6 +227,7 @@ def test_bad_arguments_are_named():
         ({"accuracy": 0.0}, "accuracy = 0"),
         ({"method": "Kvaerno5"}, "method = 'Kvaerno5': needs one of auto"),
         ({"ts": [4.0]}, "ts = "),
+        ({"measure": "no"}, "measure = 'no'"),
     ]:
         with pytest.raises(ValueError, match=message):
             fx.predict_cost(scene_of(), **{"eps": 1e-2, **change})

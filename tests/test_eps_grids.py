@@ -81,6 +81,7 @@ def test_bad_arguments_are_named(scene):
         ({"within": 0.0}, "within = 0"),
         ({"gamma": [1.0, 2.0]}, "gamma = "),
         ({"accuracy": -1.0}, "accuracy = -1"),
+        ({"measure": 1}, "measure = 1"),
     ]:
         with pytest.raises(ValueError, match=message):
             fx.order_cost(scene, **{"eps": RANGE, **change})

@@ -95,6 +95,7 @@ def test_lanes_go_on_below_the_spacing_of_floats(scene):
         ({"eps": np.nan}, "eps = nan"),
         ({"gamma": -1.0}, "gamma = -1"),
         ({"accuracy": 0.0}, "accuracy = 0"),
+        ({"dissipation": "no"}, "dissipation = 'no': needs True or False"),
         ({"ts": [0.2, 0.1]}, "ts = .*do not decrease"),
         ({"ts": [0.0, 4.0]}, r"ts = .*\[0, 3\]"),
     ],

@@ -112,6 +112,19 @@ def test_a_rough_surplus_is_an_error_of_the_dissipation():
         assert lost == pytest.approx(wobble / (0.1 * 4.0), rel=0.05)
 
 
+def test_an_unknown_error_of_a_survey_is_not_forgotten():
+    """`max(0.0, nan)` is 0: the largest of errors must be asked of NumPy."""
+    path = Path(*[np.zeros(2)] * 5, rho=np.full(1, 0.1), rho_plus=0.1, rho_minus=-0.1)
+    layout = SimpleNamespace(
+        windows=SimpleNamespace(begin=np.zeros(2), owner=np.arange(2)),
+    )
+    unknown = rough_survey(1.0, 0.0)._replace(error_work=np.nan)
+    cell, stops = way(unknown)
+    of = layout, np.array([0]), 0.0, np.zeros(1), path, 1e-3
+    *_, lost = energetics(cell, stops, *of)
+    assert np.isnan(lost)
+
+
 def bursting(t):
     """Rises by 1 N a second, and by 0.036 N more within some milliseconds."""
     return t + 0.018 * (1 + jnp.tanh((t - 1.437) / 0.003))

@@ -163,6 +163,9 @@ def test_progress_goes_to_standard_error(capsys):
         ({"gamma": [np.inf]}, r"gamma = \[inf\]"),
         ({"accuracy": 2.0}, "accuracy = 2"),
         ({"method": "magic"}, "method = 'magic'"),
+        ({"dissipation": 0}, "dissipation = 0: needs True or False"),
+        ({"suprema": None}, "suprema = None: needs True or False"),
+        ({"progress": "no"}, "progress = 'no': needs True or False"),
     ],
 )
 def test_bad_arguments_are_named(arguments, message):

@@ -91,13 +91,14 @@ def energetics(cell, stops, layout, output, energy0, of_path, path, eps):
         # off, and this sum 7e-5.
         spent, gap = running[VISCOUS], float(cell.totals[RESIDUAL, -1])
     worst, change = _worst_dissipation(cell, stops, energy0, beyond)
+    unsure = np.maximum(change, sum(survey.error_work for survey in cell.surveys))
     return (
         spent,
         running[RESIDUAL],
         cell.totals[RESIDUAL, -1],
         gap,
         worst,
-        _share(max(change, sum(survey.error_work for survey in cell.surveys)), final),
+        _share(float(unsure), final),
     )
 
 

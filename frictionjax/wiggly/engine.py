@@ -98,11 +98,12 @@ class _Sweep(NamedTuple):
         return answers, never
 
     def is_rough(self, answers: Answers, eps: np.ndarray) -> np.ndarray:
-        """Cells whose surveys are not good to the accuracy."""
-        rough = answers.survey_error > CLOSED * self.accuracy * eps
+        """Cells whose surveys are not good to the accuracy, or not known to be."""
+        errors = [answers.survey_error / eps]
         if self.wanted.energies:
-            rough |= answers.survey_work_error > CLOSED * self.accuracy
-        return rough
+            errors.append(answers.survey_work_error)
+        worst = np.max(errors, axis=0) / (CLOSED * self.accuracy)
+        return (worst > 1) | (np.isnan(worst) & (answers.status == int(Status.OK)))
 
 
 @quiet_where_extreme

@@ -14,6 +14,7 @@ from ..arguments import (
     is_concrete,
     is_known,
     require,
+    require_flags,
     require_numbers,
     require_whole,
     require_x64,
@@ -183,6 +184,7 @@ def solve(
     allowed = "one number gamma > 0"
     require_numbers("gamma", gamma, allowed, lambda g: (g > 0) & (g.ndim == 0))
     require_accuracy(accuracy)
+    require_flags(dissipation=dissipation)
     require_whole("max_steps", max_steps)
     known = adjoint is None or isinstance(adjoint, diffrax.AbstractAdjoint)
     require(known, "adjoint", type(adjoint).__name__, "None or an adjoint of diffrax")
