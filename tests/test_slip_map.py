@@ -1,4 +1,4 @@
-"""Fast slides (gamma about 1/2 and below) from times of passage of their wells."""
+"""Times of passage of the wells of fast slides, and values that follow from them."""
 
 import math
 from fractions import Fraction
@@ -7,45 +7,18 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from fast_slides import COS, SCENES, SIN, TIMES
 from reference import System, series, sine
 from reference import solve as solve_plainly
 from scipy.integrate import solve_ivp
 
 import frictionjax as fx
-from frictionjax.wiggly import engine, layout, riding, rounds, slip_map
+from frictionjax.wiggly import engine, slip_map
 from frictionjax.wiggly.curve import Curve, Curves
 from frictionjax.wiggly.landscape import Landscape, landscape
 from frictionjax.wiggly.passage import Stretch, passages, pull_at, track_of
 from frictionjax.wiggly.path import path_of
 from frictionjax.wiggly.planning import lane_scene, planned
-from frictionjax.wiggly.rides import Ride
-
-COS, SIN = [0.0, 0.0024, 0.0, 0.0012], [0.0096, 0.0, -0.0024, 0.0006]
-PROFILES = {"sine": fx.profiles.Sine(0.1), "four": fx.profiles.Fourier(COS, SIN)}
-BRISTLES = {
-    "vertical": fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
-    "slanted": fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0),
-    "angular": fx.bristles.AngularSpring(1.0, 1.414, 1.0, 0.3),
-}
-SINE, TRIANGLE = fx.loads.Sine(1.0488, 3.0), fx.loads.Triangle(0.8, 2.2)
-
-
-def scene_of(profile, bristle, load, support=None):
-    support = support or fx.supports.Spring(1.0)
-    return fx.Scene(PROFILES[profile], BRISTLES[bristle], support, load, 3.0)
-
-
-def quartic(z):
-    return z**2 / 2 + z**4 / 4
-
-
-SCENES = {
-    "sine": scene_of("sine", "vertical", SINE),
-    "overshoot": scene_of("sine", "slanted", TRIANGLE),
-    "several folds": scene_of("four", "angular", SINE),
-    "convex": scene_of("four", "slanted", SINE, fx.supports.Convex(quartic)),
-}
-TIMES = np.linspace(0.0, 3.0, 41)
 
 
 def ground_of(scene, eps) -> Landscape:
@@ -225,123 +198,6 @@ def test_small_eps_is_no_harder(name, gamma):
     assert found[1].stats["steps"] < 6e6
 
 
-def test_a_ride_reaches_the_end_of_a_slide_of_a_hundred_million_wells(monkeypatch):
-    """The averaged equation says where: it ended after two percent where steps of T failed.
-
-    Nor is there any lag of the moment behind it, as it ends slow.
-    """
-    rides = []
-
-    def only_rides(rounds, warm):
-        riding.find_rides(rounds, warm)
-        rides.extend(rounds.ground.rides[0])
-        raise InterruptedError
-
-    monkeypatch.setattr(engine, "find_rides", only_rides)
-    cell = np.array([1.3e-8]), np.array([0.5]), TIMES, 1e-3
-    with pytest.raises(InterruptedError):
-        engine.integrate_cells(SCENES["sine"], *cell, "windowed")
-    path = path_of(SCENES["sine"])
-    ways = np.abs(np.diff(path.states)) / 1.3e-8
-    for ride in rides[:2]:
-        assert ride.curve.edges[-1] > 0.98 * ways[ride.piece]
-        assert ride.curve.edges.size < 50
-        assert ride.curve.last < 0.5
-    assert rides[2].end > 3.0 - 1e-6  # with the load's last instant, at full speed
-
-
-def test_lanes_on_rides_have_tolerances_of_their_own(monkeypatch):
-    """Errors of two wells hardly add up; those of a long lane do."""
-    marched = []
-    march = rounds.march
-
-    def spy(lanes, cells, jobs, legs, *rest):
-        way = np.abs(legs.guide1 - legs.guide0)
-        wells = np.add.reduceat(way, jobs.first_leg) / cells.eps[jobs.cell.astype(int)]
-        # The first slide, which the sine's turn at 0.75 slows down.
-        slow = (jobs.origin > 0.1) & (legs.end[jobs.past_leg - 1] <= 0.75)
-        slow &= np.abs(legs.slope0[jobs.first_leg]) < 0.1
-        quick = np.abs(legs.slope0[jobs.first_leg]) > 1.0
-        if cells.tolerance.size > 1:  # some jobs with a tolerance of their own
-            own = cells.tolerance[jobs.cell.astype(int)]
-            marched.append((own, wells, slow, quick))
-        return march(lanes, cells, jobs, legs, *rest)
-
-    monkeypatch.setattr(rounds, "march", spy)
-    cell = np.array([1.3e-6]), np.array([0.4]), TIMES, 1e-3
-    found = engine.integrate_cells(SCENES["sine"], *cell, "windowed")
-    assert found.status == fx.Status.OK
-    rows = zip(*marched, strict=True)
-    tolerance, wells, slow, quick = (np.concatenate(columns) for columns in rows)
-    few, many = wells < 3, wells > 25
-    assert np.median(tolerance[few]) > 30 * found.tolerance[0]
-    # Nor do those of a lane where few wells are remembered.
-    assert np.count_nonzero(many & slow) > 0
-    assert np.all(tolerance[many & slow] > 30 * found.tolerance[0])
-    assert np.count_nonzero(many & quick) > 0
-    assert np.all(tolerance[many & quick] == found.tolerance[0])
-
-
-def test_tiles_end_on_rides():
-    """Every sixteen wells of a ride: lanes set off there at no cost."""
-    edges, none = np.array([0.0, 100.0]), np.zeros((1, 13))
-    series = none + np.eye(13)[1] * 0.5  # a second for a hundred wells
-    series[0, 0] = 0.5
-    curve = Curve(edges, np.array([1.0, 2.0]), series, none[:, 0], none[:, 0] + 0.9, 0.9)
-    ride = Ride(curve, 1.0, 0.0, 0.0, 0, lambda: none[:, 0])
-    times = np.array([0.0, 1.0, 1.15, 1.17, 1.33, 1.9, 2.0, 5.0])
-    assert layout._on_rides((ride,), times).tolist() == [0, 0, 0, 1, 2, 5, 6, 6]
-    assert layout._on_rides((), times).tolist() == [0] * 8
-
-
-@pytest.mark.slow
-def test_lag_follows_the_averaged_equation():
-    """Where gamma is small, `v = eps^-gamma/int dY/(f - W')` gives the lag of a ramp."""
-    load = fx.loads.Ramp(2.0, 0.0)
-    scene = fx.Scene(
-        PROFILES["sine"], BRISTLES["vertical"], fx.supports.Spring(1.0), load, 1.0
-    )
-    eps, gamma = 1e-7, 0.25
-    found = fx.solve(scene, eps, gamma, np.array([0.0, 1.0]))
-    assert found.status == fx.Status.OK
-    # int_0^1 dY/(f - 0.1 cos(2 pi Y)) = 1/sqrt(f^2 - 0.01), and the slide moves at v = 2.
-    force = math.sqrt(0.01 + (2.0 * eps**gamma) ** 2)
-    assert abs(2.0 - force - float(found.z[-1])) < 2 * eps
-
-
-@pytest.mark.slow
-def test_a_ride_alone_equals_the_batch():
-    scene, times = SCENES["sine"], TIMES
-    eps = np.array([1e-2, 2e-4, 3e-5])
-    both = fx.sweep(scene, eps, [0.5, 1.0], times)
-    alone = fx.sweep(scene, eps[1:2], [0.5], times)
-    gap = np.abs(both.z.sel(gamma=0.5, eps=eps[1]) - alone.z.isel(gamma=0, eps=0))
-    assert float(gap.max()) < 1e-6 * eps[1]
-
-
-@pytest.mark.slow
-def test_starts_behind_a_ride_that_ends_fast():
-    """A slide that ends while it lags: what follows must not trust lags of the moment.
-
-    Sixteen wells before t = 1.2, a bracket made from them left the tip out: 6e-2 eps off.
-    """
-    profile = fx.profiles.Fourier(
-        [0.0, 0.00384, 0, 0.00192], [0.01536, 0, -0.00384, 9.6e-4]
-    )
-    bristle = fx.bristles.AngularSpring(1.0, 1.5, 1.0, 0.2)
-    scene = fx.Scene(profile, bristle, fx.supports.Spring(1.0), SINE, 3.0)
-    eps, times = 10**-1.8, np.linspace(0.0, 3.0, 61)
-    cell = np.array([eps]), np.array([0.5]), times, 1e-3
-    few, every = (
-        engine.integrate_cells(scene, *cell, method, balanced=False, suprema=False)
-        for method in ("windowed", "resolved")
-    )
-    assert np.any(few.how == 2)
-    assert not np.any(every.how == 2)
-    still = (times > 1.1) & (times < 1.3)
-    assert np.max(np.abs(few.z - every.z)[0, still]) < 5e-4 * eps
-
-
 def test_errors_of_a_wrong_map_are_seen(monkeypatch):
     """Passages a thousandth too long: lanes disagree, and no bracket closes."""
     right = slip_map.passages
@@ -388,15 +244,6 @@ def test_rounded_times_say_by_how_much():
     off = [float(Fraction(t) - e) for t, e in zip(times, exact, strict=True)]
     assert np.max(np.abs(off)) > 1e-8 * length  # rounding is there, and is told:
     np.testing.assert_allclose(late, off, rtol=0, atol=1e-9 * length)
-
-
-@pytest.mark.slow
-def test_surveys_with_many_nodes_do_not_run_away(monkeypatch):
-    """Chebyshev's points less than a well apart: 129 in 3800 wells made a sup of 6e3."""
-    monkeypatch.setattr(riding, "TAIL", riding.BARE_TAIL)
-    cell = np.array([1.3e-7]), np.array([0.4]), TIMES, 1e-3
-    found = engine.integrate_cells(SCENES["sine"], *cell, "windowed", balanced=False)
-    assert abs(found.sup_error[0] / 7.47784e-5 - 1) < 1e-2
 
 
 @pytest.mark.slow
