@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.roots import increasing_root
+from frictionjax.roots import find_root, increasing_root
 
 KINDS = {
     # Newton goes back and forth between the flanks, inside any bracket.
@@ -18,6 +18,10 @@ KINDS = {
         z + (1 + 1e3 * tall) * wide * jnp.logaddexp(0.0, (z - at) / wide)
     ),
 }
+
+
+def _far(count):
+    return np.full(count, -50.0), np.full(count, 50.0)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -40,6 +44,32 @@ def test_roots_are_where_the_sign_changes(kind):
     assert np.all(np.isfinite(root))
     assert np.all(below <= 0)
     assert np.all(above >= 0)
+
+
+@pytest.mark.parametrize("wide", [1e-4, 1e-7, 1e-9])
+@pytest.mark.parametrize("inside", [False, True])
+def test_steps_far_narrower_than_the_bracket(wide, inside):
+    """Newton's steps are small there and do not shrink, as from rounding of `f`."""
+    rng = np.random.default_rng(1)
+    at, wanted = rng.uniform(-2, 2, (2, 4000))
+    tall = 10 ** rng.uniform(-3, 1, 4000)
+    if inside:
+        wanted = at + 0.9 * tall * np.tanh(rng.uniform(-2, 2, 4000))
+
+    def fn(z):
+        return z + tall * jnp.tanh((z - at) / wide) - wanted
+
+    root = np.asarray(jax.jit(find_root, static_argnums=0)(fn, *_far(4000)))
+    near = 4e-15 * (10 + np.abs(root))
+    assert np.all(fn(root - near) <= 0)
+    assert np.all(fn(root + near) >= 0)
+
+
+@pytest.mark.parametrize("power", [3, 9])
+def test_multiple_roots(power):
+    at = np.linspace(-2, 2, 1000)
+    root = find_root(lambda z: jnp.sign(z - at) * jnp.abs(z - at) ** power, *_far(1000))
+    np.testing.assert_allclose(root, at, atol=1e-12)
 
 
 def test_a_support_with_a_bump_in_its_stiffness():
