@@ -13,8 +13,8 @@ from frictionjax.machine_cost import ELSEWHERE, MachineCost, keep_machine, known
 from frictionjax.report.job import read_job
 from frictionjax.report.study import expected_cost, within_budget
 from frictionjax.wiggly import rounds
+from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.layout import lay_out
-from frictionjax.wiggly.path import path_of
 from frictionjax.wiggly.planning import lane_scene, planned
 from frictionjax.wiggly.workload import _weight_of, workload
 

@@ -9,7 +9,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.loads.steep import steep_times
-from frictionjax.wiggly.path import path_of
+from frictionjax.wiggly.find_path import path_of
 
 T = jnp.linspace(0, 3, 301)
 TABLE = fx.loads.PiecewiseLinear([0.5, 1.0, 2.0], [1.0, 3.0, -1.0])

@@ -9,7 +9,7 @@ from fast_slides import BRISTLES, PROFILES, SCENES, SINE, TIMES
 import frictionjax as fx
 from frictionjax.wiggly import engine, layout, riding, rounds
 from frictionjax.wiggly.curve import Curve
-from frictionjax.wiggly.path import path_of
+from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.rides import Ride
 
 

@@ -15,9 +15,9 @@ from scipy.integrate import solve_ivp
 import frictionjax as fx
 from frictionjax.wiggly import engine, slip_map
 from frictionjax.wiggly.curve import Curve, Curves
+from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.landscape import Landscape, landscape
 from frictionjax.wiggly.passage import Stretch, passages, pull_at, track_of
-from frictionjax.wiggly.path import path_of
 from frictionjax.wiggly.planning import lane_scene, planned
 
 

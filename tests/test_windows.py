@@ -8,7 +8,8 @@ from reference import solve as solve_plainly
 
 import frictionjax as fx
 from frictionjax.wiggly import engine, planning, rounds
-from frictionjax.wiggly.path import path_of, states_at, times_at
+from frictionjax.wiggly.find_path import path_of
+from frictionjax.wiggly.path import states_at, times_at
 from frictionjax.wiggly.starts import starts_of
 
 TIMES = np.linspace(0.0, 3.0, 31)

@@ -11,11 +11,12 @@ import numpy as np
 from ..scene import Scene
 from ..viscosity import quiet_where_extreme, viscosity_of
 from .evaluation import Answers, evaluate
+from .find_path import path_of
 from .lane import Cells, LaneScene, Sums
 from .lanes import Room, prepare
 from .layout import lay_out
 from .needs import Needs
-from .path import Path, path_of
+from .path import Path
 from .planning import (
     LOOSEST,
     TABLEAU,

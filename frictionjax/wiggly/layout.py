@@ -17,6 +17,8 @@ from .windows import Windows, legs_of
 # Eps by which a leg's guide may be off the path, halvings of a leg, and shares of it at
 # which that is looked for: in the middle odd functions vanish.
 _GUIDE, _HALVINGS, _INSIDE = 1e-7, 40, (0.27, 0.62)
+_APART = 1e-12  # of the duration: probes of which each ends a leg
+_ROUNDED = 16.0  # roundings of the path's states, which no leg is too long for
 
 
 class Slide(NamedTuple):
@@ -114,16 +116,28 @@ def _followed(scene, path: Path, eps, cells: list[int], cuts: list[tuple]) -> li
     """Cuts with more stops where the cubic of a leg would leave the path, whose deviation
     it would add to z's. (A load that rises by 0.04 N within 6 ms: legs of 16 wells were
     0.4 eps off the path.)"""
-    found = []
+    found, floor = [], _ROUNDED * _rounding_of(path)
     for cell, (opening, own, _) in zip(cells, cuts, strict=True):
+        allowed = max(_GUIDE * eps[cell], floor)
         for _ in range(_HALVINGS):
             starts, ends = _legs_between(opening, own)
-            off = _off_path(scene, path, starts, ends) > _GUIDE * eps[cell]
+            off = _off_path(scene, path, starts, ends) > allowed
             if not off.any():
                 break
             own = np.union1d(own, 0.5 * (starts + ends)[off])
         found.append((opening, own, np.searchsorted(opening, own, side="left") - 1))
     return found
+
+
+def _rounding_of(path: Path) -> float:
+    """Of the path's states in m: their own, and that of times and forces."""
+    largest = np.max(np.abs(path.states))
+    force = path.stiffness * largest + max(path.rho_plus, -path.rho_minus)
+    return float(
+        np.spacing(largest)
+        + path.speed * np.spacing(path.edges[-1])
+        + np.spacing(force) / path.stiffness
+    )
 
 
 def _legs_between(opening: np.ndarray, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -240,8 +254,9 @@ def _chains(
     lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts, stopped)
     edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
     uneven = uneven_pieces(path)
-    steep = path.probes.times[uneven]
-    fixed = np.unique(np.concatenate([edges, ts, steep.ravel()]))
+    steep = np.unique(path.probes.times[uneven])
+    apart = np.diff(steep, prepend=-np.inf) > _APART * path.edges[-1]
+    fixed = np.unique(np.concatenate([edges, ts, steep[apart]]))
     cuts = [
         _cuts(parts, cell, fixed, lattice_time[lattice_cell == cell]) for cell in chained
     ]

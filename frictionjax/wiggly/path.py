@@ -4,7 +4,6 @@ Lanes measure from it and start by it; what they find does not depend on it, sin
 and known starts decide which values are accepted.
 """
 
-from functools import partial
 from typing import NamedTuple
 
 import jax
@@ -12,16 +11,25 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..coefficients import coefficients_jit
-from ..loads import AbstractLoad
-from ..loads.steep import steep_times
 from ..programs import Program, in_chunks
 from ..roots import find_root
 from ..scene import Scene
 from ..strip import CHUNK, strips_at
-from .probes import NO_PROBES, Probes, nodes_inside, unseen_of
 
-_PIECES = 16  # of the load, in a compiled call
+
+class Probes(NamedTuple):
+    """Where the speed of the path has been looked at on each piece, P pieces.
+
+    `times` (P, n): s, those of the steepest places of the path among them; `speeds` (P, n):
+    m/s. `unseen` (P,): by how much a polynomial through a few nodes misses them, relative.
+    """
+
+    times: np.ndarray
+    speeds: np.ndarray
+    unseen: np.ndarray
+
+
+NO_PROBES = Probes(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0))
 
 
 class Path(NamedTuple):
@@ -55,11 +63,6 @@ class Path(NamedTuple):
         """Index of the piece that holds each time; a turning point opens its piece."""
         found = np.searchsorted(self.edges, times, side="right") - 1
         return np.clip(found, 0, self.direction.size - 1)
-
-
-@Program
-def _turns(scene: Scene) -> Array:
-    return scene.turning_points()
 
 
 @Program
@@ -128,63 +131,12 @@ def slopes_at(
     return np.where(slides, slope / stiffness, 0.0)
 
 
-@Program
-def _steep_times(load: AbstractLoad, start: Float[Array, " n"], end: Float[Array, " n"]):
-    return jax.vmap(partial(steep_times, load))(start, end)
-
-
 def speeds_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
     """The path's speed in m/s at times of any shape."""
     flat = times.ravel()
     return slopes_at(scene, path, flat, states_at(scene, path, flat)).reshape(times.shape)
 
 
-def _looked_at(scene: Scene, path: Path) -> Path:
-    """With the largest speed on slides, sampled, and the smallest stiffness there."""
-    ends = path.touch, path.edges[1:]
-    steep = in_chunks(_steep_times, _PIECES, (scene.load,), ends)
-    times = np.concatenate([steep, nodes_inside(*ends)], axis=1)
-    flat = times.ravel()
-    states = states_at(scene, path, flat)
-    speeds = slopes_at(scene, path, flat, states).reshape(times.shape)
-    _, stiffness = in_chunks(_rates, CHUNK, (scene,), (flat, states))
-    seen, known = speeds[:, : steep.shape[1]], speeds[:, steep.shape[1] :]
-    unseen = unseen_of(*ends, known, steep, seen)
-    return path._replace(
-        speed=float(np.max(np.abs(speeds))),
-        stiffness=float(np.min(stiffness)),
-        probes=Probes(steep, seen, np.where(path.direction == 0, 0.0, unseen)),
-    )
-
-
-def path_of(scene: Scene) -> Path | None:
-    """The path of a scene; None where the load turns more often than there is room for."""
-    turns = np.asarray(_turns(scene))
-    duration = float(scene.duration)
-    if np.any(np.isnan(turns)):
-        return None
-    edges = np.unique(np.concatenate([[0.0], turns[turns < duration], [duration]]))
-    found = coefficients_jit(scene.potential)
-    rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
-    _, lower, upper = strips_at(scene, rho_plus, rho_minus, edges)
-    states = np.empty(edges.size)
-    states[0] = np.clip(float(scene.z0), lower[0], upper[0])
-    for i in range(1, edges.size):
-        states[i] = np.clip(states[i - 1], lower[i], upper[i])
-    moves = np.diff(states)
-    direction = np.sign(moves)
-    rho = np.where(direction > 0, rho_plus, rho_minus)
-    path = Path(
-        edges=edges,
-        states=states,
-        direction=direction,
-        touch=np.where(direction == 0, edges[1:], edges[:-1]),
-        travel=np.concatenate([[0.0], np.cumsum(np.abs(moves))]),
-        rho=rho,
-        rho_plus=rho_plus,
-        rho_minus=rho_minus,
-    )
-    sliding = np.flatnonzero(direction)
-    touch = path.touch.copy()
-    touch[sliding] = times_at(scene, path, sliding, states[sliding])
-    return _looked_at(scene, path._replace(touch=touch))
+def stiffness_at(scene: Scene, states: np.ndarray) -> np.ndarray:
+    """Phi'' in N/m at states (n,) in m."""
+    return in_chunks(_rates, CHUNK, (scene,), (np.zeros_like(states), states))[1]

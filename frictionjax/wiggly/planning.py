@@ -49,7 +49,7 @@ _LONG_SLIDE = 60.0
 # eps to 1e-4, gamma = 1/2, seconds with maps from 1100, 1800, 2500 and 4000 on: 0.35, 0.26,
 # 0.25, 0.39.)
 _MAP = 2200.0
-# Of the largest speed: what panels of a slip map might step over.
+# Of the speed: what panels of a slip map might step over.
 _BURST = 0.1
 WIDEST = 0.125  # reach of a sine, periods
 # Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2, 16
@@ -198,8 +198,9 @@ def _long_memories(
     if method == "resolved":
         return np.zeros(eps.size, dtype=bool), needs
     long = needs.warm > LONG_MEMORY
-    longest = np.max(np.abs(np.diff(path.states)), initial=0.0) / eps
-    ridden = long & (longest > _LONG_SLIDE) & np.all(path.probes.unseen <= _BURST)
+    slides = np.abs(np.diff(path.states)) > _LONG_SLIDE * eps[:, None]
+    bursts = np.any(slides & (path.probes.unseen > _BURST), axis=1)
+    ridden = long & np.any(slides, axis=1) & ~bursts
     if not long.any():
         return ridden, needs
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps

@@ -8,9 +8,10 @@ from ..potentials import BristlePotential
 from ..profiles import Fourier
 from ..scene import Scene
 from ..viscosity import quiet_where_extreme, viscosity_of
+from .find_path import path_of
 from .lane import LaneScene
 from .needs import Needs, cost_of, longest_lane, wells_a_leg, wells_of
-from .path import Path, path_of
+from .path import Path
 from .planning import LOOSEST, WIDEST, lane_scene, planned
 from .series_bristle import SeriesBristle
 from .tolerance import Plan as StepPlan
