@@ -69,9 +69,10 @@ def nodes_inside(low: np.ndarray, high: np.ndarray) -> np.ndarray:
 def unseen_of(low, high, known, times, speeds) -> np.ndarray:
     """By how much a polynomial through `known` (n, nodes) misses speeds (n, m), at most.
 
-    Of the speed there; only times in [low, high] (n,) count.
+    Of the speed there; only times between `low` and `high` (n,) count: at the ends the path
+    rests still, or has the speed of the next piece.
     """
-    inside = (times >= low[:, None]) & (times <= high[:, None])
+    inside = (times > low[:, None]) & (times < high[:, None])
     long = np.where(high > low, high, low + 1.0)
     gaps = np.abs(through_nodes(low, long, known, times) - speeds) * inside
     # Of the largest speed, the slide beside a short burst would count for nothing.
