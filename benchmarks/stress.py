@@ -2,8 +2,9 @@
 
     python benchmarks/stress.py [--scenes 10000] [--seed 0] [--minutes 240]
 
-Admissible scenes: any bristle, support and load, slopes 0.01 to 0.5, supports of 1e-3 to
-1e3 N/m, admissibility by 1e-3 to 1, eps for 3 to some thousand slips, gamma 0.5 to 2.5.
+Admissible scenes: any bristle, support and load, slopes 0.01 to 0.5, supports on
+which the tip follows within 1e-8 to 1 of the time, admissibility by 1e-3 to 1, eps for 3 to
+300 wells under half of the load's range, gamma 0.5 to 2.5.
 Each is checked alone, and against a second solution: every slip at a thousandth of the
 tolerance, a start above, a shift by whole wells, a mirror image, or other units.
 Inadmissible ones: an admissible scene with one fault, from a number that is none to a
@@ -13,6 +14,7 @@ argument.
 
 import argparse
 import collections
+import re
 import sys
 import time
 from pathlib import Path
@@ -90,7 +92,7 @@ def not_positive(case, rng) -> Spoiled:
     spoiled = _changed(case, part, name, value)
     # A support of the user's own has no arguments.
     own = part == "support" and case.kind[1] != "spring"
-    return spoiled._replace(name="support") if own else spoiled
+    return spoiled._replace(name="support.stiffness") if own else spoiled
 
 
 def too_short(case, rng) -> Spoiled | None:
@@ -120,7 +122,7 @@ def too_steep(case, rng) -> Spoiled | None:
 def flat(case, rng) -> Spoiled:
     """A surface without slopes of both signs."""
     none = {"cos": np.zeros(3), "sin": np.zeros(3)}
-    return Spoiled(_copied(case) | none, case.eps, case.gamma, "profile")
+    return Spoiled(_copied(case) | none, case.eps, case.gamma, "profile.cos")
 
 
 def no_force(case, rng) -> Spoiled | None:
@@ -159,7 +161,8 @@ def refusal(case, spoiled: Spoiled) -> str:
         scene = hard_scenes.build(case.kind, spoiled.numbers)
         fx.solve(scene, spoiled.eps, spoiled.gamma, hard_scenes.TIMES[:2])
     except ValueError as error:
-        return "" if spoiled.name in str(error) else f"does not name it: {error}"
+        named = re.search(rf"\b{spoiled.name} = ", str(error))
+        return "" if named else f"does not name it: {error}"
     except Exception as error:  # anything else is a failure to refuse
         return f"another error: {error!r}"
     return "accepted"
@@ -214,12 +217,12 @@ def tried(count: int, minutes: float, rng) -> int:
         checks = (*guarantees.ALONE, other) if found.ok else (guarantees.finite,)
         for check in checks:
             value = float(check(case, found))
-            if np.isnan(value):
-                continue
+            if np.isnan(value) and check is other:
+                continue  # nothing to compare with
             times, most, _ = worst[check.__name__]
             text = f"{'-'.join(kind)}, eps {case.eps:.3g}, gamma {case.gamma:.3g}"
             worst[check.__name__] = (times + 1, *max((most, _), (value, text)))
-            if value > 1:
+            if not value <= 1:
                 wrong += 1
                 print(f"violation {value:.3g}: {check.__name__}, {text}, scene {number}")
                 print(f"  genes {genes.tolist()}", flush=True)

@@ -1,8 +1,8 @@
 """What the mathematics guarantees of any solution, as numbers that may not exceed 1.
 
 Each check takes a case and its solution and returns the violation relative to what is
-allowed. Those that compare two solutions leave out times inside slips, where a shift in
-time that is within the accuracy moves z by a well.
+allowed; NaN where there is nothing to compare with. Those that compare two solutions leave
+out times inside slips, where a shift in time that is within the accuracy moves z by a well.
 """
 
 from collections.abc import Callable
@@ -146,17 +146,28 @@ def inverse_force(case: Case, force: float) -> float:
     return 0.5 * (low + high)
 
 
-def _apart(case: Case, found, other: np.ndarray, factor: float = 2.0) -> float:
-    """Largest distance outside slips over `factor` accuracies."""
-    outside = outside_slips(case)
-    gaps = np.abs(np.asarray(found.z) - other)[outside] / case.eps
-    return float(gaps.max(initial=0.0)) / (factor * ACCURACY)
+def _apart(case: Case, found, other, states: Callable, factor: float = 2.0) -> float:
+    """Largest distance outside slips over `factor` accuracies.
+
+    `states`: of the other solution, in the case's terms.
+    """
+    if not other.ok:
+        return np.nan
+    gaps = np.abs(np.asarray(found.z) - states(np.asarray(other.z))) / case.eps
+    return _largest(case, other, gaps, outside_slips(case)) / (factor * ACCURACY)
+
+
+def _largest(case: Case, other, gaps: np.ndarray, outside: np.ndarray) -> float:
+    """Of the gaps at some times; infinite where a good status comes without numbers."""
+    if finite(case, other) > 0:
+        return np.inf
+    return float(gaps[outside].max()) if outside.any() else np.nan
 
 
 def is_accurate(case: Case, found) -> float:
     """Every slip at a thousandth of the tolerance gives the same."""
     tight = fx.solve(case.scene, case.eps, case.gamma, TIMES, 1e-6, "resolved")
-    return _apart(case, found, np.asarray(tight.z), 1.0) if tight.ok else np.nan
+    return _apart(case, found, tight, lambda z: z, 1.0)
 
 
 def keeps_order(case: Case, found) -> float:
@@ -166,8 +177,8 @@ def keeps_order(case: Case, found) -> float:
     if not other.ok:
         return np.nan
     outside = outside_slips(case) & outside_slips(above)
-    under = (np.asarray(found.z) - np.asarray(other.z))[outside] / case.eps
-    return max(0.0, float(under.max(initial=0.0))) / (2 * ACCURACY)
+    under = (np.asarray(found.z) - np.asarray(other.z)) / case.eps
+    return _largest(case, other, np.maximum(under, 0.0), outside) / (2 * ACCURACY)
 
 
 def knows_no_origin(case: Case, found) -> float:
@@ -178,22 +189,21 @@ def knows_no_origin(case: Case, found) -> float:
     load = dict(case.numbers["load"])
     load["values"] = load["values"] + case.numbers["support"]["stiffness"] * move
     other = solved(case.change(z0=case.numbers["z0"] + move, load=load))
-    return _apart(case, found, np.asarray(other.z) - move) if other.ok else np.nan
+    return _apart(case, found, other, lambda z: z - move)
 
 
 def knows_no_left(case: Case, found) -> float:
     """z -> -z, with the surface, the bristle and the load mirrored."""
     if case.kind[0] == "angular":
         return np.nan
-    other = solved(reflected(case))
-    return _apart(case, found, -np.asarray(other.z)) if other.ok else np.nan
+    return _apart(case, found, solved(reflected(case)), np.negative)
 
 
 def knows_no_units(case: Case, found, length: float = 3.7e-6, force: float = 2.9e-4):
     """Other units of length and force, and of time with them."""
     other, time = scaled(case, length, force)
     there = fx.solve(other.scene, other.eps, other.gamma, time * TIMES, ACCURACY)
-    return _apart(case, found, np.asarray(there.z) / length) if there.ok else np.nan
+    return _apart(case, found, there, lambda z: z / length)
 
 
 ALONE: tuple[Callable, ...] = (

@@ -110,17 +110,19 @@ def draw(kind: tuple[str, str, str], genes: Sequence[float]) -> Case:
     numbers["bristle"] = _bristle(bristle, genes[7:11], steep)
     law = fx.friction(profile, _bristle_of(bristle, numbers["bristle"]))
     width = float(law.rho_plus - law.rho_minus)
-    stiffness = _log(genes[11], 1e-3, 1e3)
-    force = width * _log(genes[12], 0.6, 20.0)
+    force, wells = width * _log(genes[12], 0.6, 20.0), _log(genes[22], 3.0, 300.0)
+    gamma = 0.5 + 2.0 * genes[21]
+    # By how long the tip takes to follow: of supports of 1e-3 to 1e3 N/m every fifth held
+    # it where it was for all of the time.
+    follow = DURATION * _log(genes[11], 1e-8, 1.0)
+    stiffness = ((force / wells) ** gamma / follow) ** (1 / (1 + gamma))
     way = force / stiffness
     numbers["support"] = {"stiffness": stiffness, "size": way * _log(genes[13], 0.1, 10.0)}
     numbers["load"] = _load(load, genes[14:20], force)
     inside = float(law.rho_minus) + genes[20] * width
     start = _start(load, numbers["load"]) - inside
     numbers["z0"] = start / (stiffness * (1.0 if kind[1] == "spring" else 2.0))
-    gamma = 0.5 + 2.0 * genes[21]
-    eps = way / _log(genes[22], 3.0, 300.0)
-    return Case(kind, numbers, eps, gamma)
+    return Case(kind, numbers, way / wells, gamma)
 
 
 def _load(kind: str, genes: Sequence[float], force: float) -> dict[str, Any]:
