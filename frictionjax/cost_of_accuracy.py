@@ -1,7 +1,7 @@
 """What accuracy costs in time: methods, accuracies and cells, measured side by side."""
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -153,8 +153,7 @@ def _measured(
 
 
 def _required(methods: Any, accuracies: Any, repeats: Any, seconds: Any):
-    several = isinstance(methods, Sequence) and not isinstance(methods, str)
-    names = list(methods) if several else [methods]
+    names = [methods] if _is_one(methods) else list(methods)
     require(bool(names), "methods", methods, "at least one method")
     for name in names:
         if name not in SCIPY:
@@ -170,6 +169,10 @@ def _required(methods: Any, accuracies: Any, repeats: Any, seconds: Any):
     return names, labels, asked
 
 
+def _is_one(methods: Any) -> bool:
+    return isinstance(methods, str) or not isinstance(methods, Iterable)
+
+
 def _label(method: Any) -> str:
     return method.__name__ if isinstance(method, type) else type(method).__name__
 
@@ -178,7 +181,7 @@ def work_precision(
     scene: Scene,
     eps: Any = 1e-2,
     gamma: Any = 1.0,
-    methods: Sequence[Any] = METHODS,
+    methods: Any = METHODS,
     accuracies: Any = ACCURACIES,
     ts: Any = None,
     *,
@@ -188,10 +191,10 @@ def work_precision(
 ) -> xr.Dataset:
     """Measure what accuracy costs: time and error of methods, cell by cell.
 
-    `eps` in m and `gamma`: numbers or lists. `methods`: as `method` of `solve`, and
-    SciPy's "LSODA", "BDF" and "Radau" without any guard. `accuracies`: asked of each,
-    rtol and atol (in periods) of SciPy's. `ts`: times in s at which errors are measured,
-    61 evenly spaced ones where None; 32 more over one slip period are added. `repeats`: at
+    `eps` in m and `gamma`: numbers or lists. `methods`: one or several, as `method` of
+    `solve`, and SciPy's "LSODA", "BDF" and "Radau" without any guard. `accuracies`: asked
+    of each, rtol and atol (in periods) of SciPy's. `ts`: times in s at which errors are
+    measured, 61 even ones where None; 32 more over one slip period are added. `repeats`: at
     most so many warm runs are timed. `seconds`: runs that take longer are ended, and
     tighter accuracies of that method are not tried.
 

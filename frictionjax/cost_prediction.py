@@ -139,12 +139,12 @@ def fit_budget(
     scene: Scene,
     eps: Any,
     gamma: Any,
-    seconds: float,
+    budget: float,
     ts: Any = None,
     method: str = "auto",
     accuracies: Any = ACCURACIES,
 ) -> Affordable:
-    """The tightest of `accuracies` that fits into `seconds`; with fewer eps if none does.
+    """The tightest of `accuracies` that fits `budget` (s); with fewer eps if none does.
 
     Compilation is not counted. Where even the loosest does not fit, the dearest eps go
     first, until four are left, the fewest that give an order.
@@ -152,21 +152,21 @@ def fit_budget(
     Raises `ValueError` for a budget that is not positive, that nothing fits into, or where
     nothing is known of the cost.
     """
-    require_real("seconds", seconds, "a budget > 0, s", lambda s: s > 0)
+    require_real("budget", budget, "seconds > 0", lambda s: s > 0)
     values = grid_of("eps", eps)
     for accuracy in accuracies_of(accuracies).tolist():
         cost = predict_cost(scene, values, gamma, accuracy, ts, method)
         if not np.isfinite(cost.seconds):
-            raise ValueError(f"budget = {seconds:g}: cost {cost}; run without a budget")
-        if cost.seconds <= seconds:
+            raise ValueError(f"budget = {budget:g}: cost {cost}; run without a budget")
+        if cost.seconds <= budget:
             return Affordable(values, accuracy, cost)
     while values.size > _LEAST_EPS:
         values = np.delete(values, _dearest(cost))
         cost = predict_cost(scene, values, gamma, accuracy, ts, method)
-        if cost.seconds <= seconds:
+        if cost.seconds <= budget:
             return Affordable(values, accuracy, cost)
     needs = f"at least {cost.seconds:.2g} s, for {values.size} eps at {accuracy:.0e}"
-    raise ValueError(f"budget = {seconds:g}: needs {needs}")
+    raise ValueError(f"budget = {budget:g}: needs {needs}")
 
 
 def _dearest(cost: CostPrediction) -> int:

@@ -21,7 +21,7 @@ def errors_of(
 
     `error`: the largest at the times asked for outside slips, in eps; `slip_error`: mean
     over a whole slip period; `end_error`: at the last time; `dissipation_error`: largest
-    over the final value, 0 where nothing is dissipated; `mescd`:
+    over the true final value, 0 where that is 0; `mescd`:
     -log10(|z - z_true|/(eps + |z_true|)) at the last time. NaN where no time counts, or
     nothing is known.
     """

@@ -130,7 +130,7 @@ def _resident_bytes() -> float:
 
 
 def _key() -> str:
-    """What a measurement holds for."""
+    """What a measurement holds for: versions, machine by its network name, flags."""
     packages = [f"{name} {version(name)}" for name in ("frictionjax", "jax")]
     flags = os.environ.get("XLA_FLAGS", "")
     # A home folder may be shared by machines.

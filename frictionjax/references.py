@@ -15,7 +15,7 @@ from .wiggly.trajectory import solve
 # Slips that lanes one after the other (0.4 ms each) and side by side (10 us) may take.
 _ONE_BY_ONE, _EVERY = 2e4, 2e6
 _TIGHTER, _TIGHTEST = 1e-2, 1e-9
-# Accuracies that a reference can judge are larger by this than its own.
+# Tighter accuracies are not judged: the reference's own would be no tenth of them.
 LEAST_JUDGED = 10 * _TIGHTEST
 
 
@@ -44,7 +44,7 @@ class _Found(NamedTuple):
 def reference(
     scene: Scene, eps: float, gamma: float, when: Instants, accuracy: float
 ) -> Reference:
-    """The reference of one cell, a hundred times tighter than `accuracy`.
+    """The reference of one cell, a hundred times tighter than `accuracy`, 1e-9 at most.
 
     The first of these that succeed: every slip one after the other through diffrax with
     Rodas5P; every slip in lanes; windows; windows ten times tighter still. The first is

@@ -174,6 +174,7 @@ def test_bad_arguments_are_named(scene):
         ({"methods": None}, "methods = 'None'"),
         ({"methods": 5}, "methods = '5'"),
         ({"methods": []}, "methods = .*at least one"),
+        ({"methods": np.array(["auto", "Euler5"])}, "methods = 'Euler5'"),
         ({"methods": ["auto", "auto"]}, "methods = .*once"),
         ({"accuracies": [0.0]}, "accuracies = 0"),
         ({"accuracies": [1e-2, 1e-9]}, "accuracies = 1e-09: .* 1e-08"),

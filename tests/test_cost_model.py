@@ -235,7 +235,7 @@ def test_bad_arguments_are_named():
         with pytest.raises(ValueError, match="accuracies = "):
             fx.fit_budget(scene_of(), 1e-2, 1.0, 1.0, accuracies=accuracies)
     for budget in (0.0, np.nan, [1.0, 2.0]):
-        with pytest.raises(ValueError, match="seconds = "):
+        with pytest.raises(ValueError, match="budget = "):
             fx.fit_budget(scene_of(), 1e-2, 1.0, budget)
 
 

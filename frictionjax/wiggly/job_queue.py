@@ -50,6 +50,14 @@ class Legs(NamedTuple):
     budget: Any
 
 
+def guide_of(legs: Legs, length: Any = None) -> Guide:
+    """The cubics of legs, over their own lengths (s) where no others are given."""
+    length = legs.end - legs.start if length is None else length
+    rise = legs.guide1 - legs.guide0
+    slopes = legs.slope0, legs.slope1
+    return Guide(legs.start, length, legs.guide0, rise, *slopes, legs.friction)
+
+
 class Arrivals(NamedTuple):
     """What lanes found at the end of each leg and on the way, shape (legs,).
 
@@ -138,14 +146,12 @@ def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
     leg = jnp.where(same_job, task.leg + 1, task.leg)
     leg = jnp.where(fresh, first_leg.astype(int), leg)
     leg = jnp.where(wants & ~fresh, legs.shape[0], leg)
-    start, end, guide0, guide1, slope0, slope1, friction, budget = legs[
-        jnp.minimum(leg, legs.shape[0] - 1)
-    ].T
-    length = jnp.where(end > start, end - start, 1.0)
+    own = Legs(*legs[jnp.minimum(leg, legs.shape[0] - 1)].T)
     change = same_job | fresh
-    rise = guide1 - guide0
     origin = jnp.where(fresh, origin, task.origin)
-    guide = Guide(start - origin, length, guide0, rise, slope0, slope1, friction)
+    length = jnp.where(own.end > own.start, own.end - own.start, 1.0)
+    own = own._replace(start=own.start - origin, end=own.end - origin)
+    guide = guide_of(own, length)
     # Positions are counted from the nearest well, so that `tip` keeps its digits.
     tip = jnp.where(fresh, tip, motion.tip)
     shift = jnp.where(jnp.isfinite(tip), jnp.round(tip), 0.0)
@@ -156,8 +162,8 @@ def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
         origin=origin,
         guide=keep(change, guide, task.guide),
         well=jnp.where(fresh, well, task.well) + shift,
-        budget=jnp.where(change, budget, task.budget),
-        stop=jnp.where(change, end - origin, jnp.where(wants, -1.0, task.stop)),
+        budget=jnp.where(change, own.budget, task.budget),
+        stop=jnp.where(change, own.end, jnp.where(wants, -1.0, task.stop)),
     )
     zero = jnp.zeros_like(tip)
     empty = jnp.full_like(tip, jnp.inf)

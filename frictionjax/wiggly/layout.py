@@ -1,24 +1,20 @@
 """Which stretches of time each cell measures: all of them, or a few periods of slides."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..scene import Scene
 from .curve import Curves
-from .extent import Guide
+from .leg_ends import Cut, followed, segments_of
 from .needs import WELLS_A_LEG, Needs, wells_a_leg
 from .path import Path, states_at, times_at
 from .rides import last_begun
 from .slide_parts import Parts, inner_parts, level_at, sampled, uneven_pieces
 from .starts import way_at
-from .windows import Windows, legs_of
+from .windows import Windows
 
-# Eps by which a leg's guide may be off the path, halvings of a leg, and shares of it at
-# which that is looked for: in the middle odd functions vanish.
-_GUIDE, _HALVINGS, _INSIDE = 1e-7, 40, (0.27, 0.62)
 _APART = 1e-12  # of the duration: probes of which each ends a leg
-_ROUNDED = 16.0  # roundings of the path's states, which no leg is too long for
 
 
 class Slide(NamedTuple):
@@ -95,11 +91,8 @@ def _outside(path: Path, slide: int, eps: float, leg: float, way: float, lows, h
     return np.concatenate(gaps)
 
 
-def _cuts(parts: Parts, cell: int, fixed: np.ndarray, lattice: np.ndarray):
-    """Where a cell's segments open, its stops in the chain, and the segment of each.
-
-    Inner parts are left out: a segment begins where the one before it ends.
-    """
+def _cut(parts: Parts, cell: int, fixed: np.ndarray, lattice: np.ndarray) -> Cut:
+    """A cell's chain. Inner parts are left out: a segment begins where one ends."""
     mine = np.flatnonzero(parts.cell == cell)
     mine = mine[np.argsort(parts.low[mine])]
     low, high = parts.low[mine], parts.high[mine]
@@ -108,58 +101,7 @@ def _cuts(parts: Parts, cell: int, fixed: np.ndarray, lattice: np.ndarray):
     hole = np.searchsorted(low, own) - 1  # of those that begin before
     inside = (hole >= 0) & (own < np.append(high, 0.0)[hole])
     own = own[~inside & (own > 0)]
-    opening = np.concatenate([[0.0], high])
-    return opening, own, np.searchsorted(opening, own, side="left") - 1
-
-
-def _followed(scene, path: Path, eps, cells: list[int], cuts: list[tuple]) -> list[tuple]:
-    """Cuts with more stops where the cubic of a leg would leave the path, whose deviation
-    it would add to z's. (A load that rises by 0.04 N within 6 ms: legs of 16 wells were
-    0.4 eps off the path.)"""
-    found, floor = [], _ROUNDED * _rounding_of(path)
-    for cell, (opening, own, _) in zip(cells, cuts, strict=True):
-        allowed = max(_GUIDE * eps[cell], floor)
-        for _ in range(_HALVINGS):
-            starts, ends = _legs_between(opening, own)
-            off = _off_path(scene, path, starts, ends) > allowed
-            if not off.any():
-                break
-            own = np.union1d(own, 0.5 * (starts + ends)[off])
-        found.append((opening, own, np.searchsorted(opening, own, side="left") - 1))
-    return found
-
-
-def _rounding_of(path: Path) -> float:
-    """Of the path's states in m: their own, and that of times and forces."""
-    largest = np.max(np.abs(path.states))
-    force = path.stiffness * largest + max(path.rho_plus, -path.rho_minus)
-    return float(
-        np.spacing(largest)
-        + path.speed * np.spacing(path.edges[-1])
-        + np.spacing(force) / path.stiffness
-    )
-
-
-def _legs_between(opening: np.ndarray, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Starts and ends in s of the legs between stops, from where segments open."""
-    segment = np.searchsorted(opening, own, side="left") - 1
-    starts = np.maximum(opening[segment], np.concatenate([[0.0], own[:-1]]))
-    long = own > starts
-    return starts[long], own[long]
-
-
-def _off_path(scene, path: Path, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """How far the cubics of legs are off the path at some times inside, in m."""
-    legs = legs_of(scene, path, starts, ends)
-    rise = legs.guide1 - legs.guide0
-    cubics: Any = starts, ends - starts, legs.guide0, rise, legs.slope0, legs.slope1
-    guide = Guide(*cubics, friction=legs.friction)
-    worst = np.zeros(starts.size)
-    for share in _INSIDE:
-        times = starts + share * (ends - starts)
-        gap = guide(times) - states_at(scene, path, times)
-        worst = np.maximum(worst, np.abs(gap))
-    return worst
+    return Cut(np.concatenate([[0.0], high]), own)
 
 
 def _tiles(segment: np.ndarray, tile: np.ndarray) -> list[np.ndarray]:
@@ -258,16 +200,20 @@ def _chains(
     apart = np.diff(steep, prepend=-np.inf) > _APART * path.edges[-1]
     fixed = np.unique(np.concatenate([edges, ts, steep[apart]]))
     cuts = [
-        _cuts(parts, cell, fixed, lattice_time[lattice_cell == cell]) for cell in chained
+        _cut(parts, cell, fixed, lattice_time[lattice_cell == cell]) for cell in chained
     ]
     if summed and uneven.any():
-        cuts = _followed(scene, path, eps, chained, cuts)
+        cuts = [
+            followed(scene, path, float(eps[cell]), cut)
+            for cell, cut in zip(chained, cuts, strict=True)
+        ]
     # Of all cells at once: a call each took 0.1 ms.
-    times = [t for opening, own, _ in cuts for t in (opening, own)]
+    times = [t for cut in cuts for t in cut]
     every = way_at(scene, path, np.concatenate([*times, np.zeros(0)]))
     ways = np.split(every, np.cumsum([t.size for t in times]))
     chain = [np.zeros(0, dtype=int)] * eps.size
-    for k, (cell, (opening, own, segment)) in enumerate(zip(chained, cuts, strict=True)):
+    for k, (cell, (opening, own)) in enumerate(zip(chained, cuts, strict=True)):
+        segment = segments_of(opening, own)
         since = (ways[2 * k + 1] - ways[2 * k][segment]) / eps[cell]
         tile = np.floor(since / needs.tile[cell] - 1e-9) + _on_rides(rides[cell], own)
         tile += np.searchsorted(path.edges[1:][needs.cut[cell]], own)

@@ -105,7 +105,10 @@ def _last_of_pieces(path: Path, rides: tuple) -> list:
 
 
 def inner_parts(scene: Scene, path: Path, eps, needs: Needs, rides: np.ndarray) -> Parts:
-    """All inner parts, none of which hides a short fast stretch between its nodes."""
+    """All inner parts; on slides without rides none hides a fast stretch between nodes.
+
+    (Rides are known from panels that follow the slide wherever they are fast.)
+    """
     parts = [_path_parts(scene, path, eps, needs, rides)]
     ridden = _ridden_parts(needs, rides)
     if ridden:
