@@ -137,3 +137,24 @@ def test_surveys_with_many_nodes_do_not_run_away(monkeypatch):
     cell = np.array([1.3e-7]), np.array([0.4]), TIMES, 1e-3
     found = engine.integrate_cells(SCENES["sine"], *cell, "windowed", balanced=False)
     assert abs(found.sup_error[0] / 7.47784e-5 - 1) < 1e-2
+
+
+@pytest.mark.slow
+def test_brackets_that_stay_open_from_rides_end_in_one_lane():
+    """A tip that forgets in a second: brackets 0.05 eps wide had a good status."""
+    scene = fx.Scene(
+        fx.profiles.Fourier([-1.99e-3, -1.7e-4, -6.2e-4], [1.48e-3, 4.3e-4, -8.1e-4]),
+        fx.bristles.AngularSpring(1.096, 1.526, 1.0, 0.127),
+        fx.supports.Spring(0.00752),
+        fx.loads.Sine(0.2874, 1.371),
+        2.0,
+        -0.6735,
+    )
+    ts = np.linspace(0.0, 2.0, 41)
+    plain = fx.solve(scene, 0.137, 2.412, ts, method="Kvaerno5")
+    assert plain.ok
+    for method in ("auto", "resolved"):
+        found = fx.solve(scene, 0.137, 2.412, ts, method=method)
+        assert found.ok
+        assert np.abs(found.z - plain.z).max() < 1e-4 * 0.137
+        assert np.all(found.stats["bracket"] < 1e-3)

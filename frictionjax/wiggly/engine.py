@@ -287,10 +287,13 @@ def _from_the_start(
     if chosen.size == 0:
         return
     some = _some(every, chosen)
+    # From a ride it would set off as far from the tip as the brackets that stayed open.
+    some.ground.rides.fill(())
     forever, none = np.full(chosen.size, np.inf), np.zeros(chosen.size)
     uncut = np.zeros_like(some.needs.cut)
     needs = some.needs._replace(
         warm=forever, settle=none, tile=forever, nodes=none, cut=uncut
     )
-    part, _ = sweep.attempt(some._replace(needs=needs))
+    part, open_ = sweep.attempt(some._replace(needs=needs))
     _put(answers, part, chosen)
+    answers.status[chosen[open_]] = int(Status.OPEN_BRACKET)
