@@ -154,6 +154,7 @@ def _measured(
 
 def _required(methods: Any, accuracies: Any, repeats: Any, seconds: Any):
     names = [methods] if _is_one(methods) else list(methods)
+    names = [str(n) if isinstance(n, str) else n for n in names]  # NumPy's print otherwise
     require(bool(names), "methods", methods, "at least one method")
     for name in names:
         if name not in SCIPY:
