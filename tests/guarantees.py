@@ -170,6 +170,12 @@ def is_accurate(case: Case, found) -> float:
     return _apart(case, found, tight, lambda z: z, 1.0)
 
 
+def closes_brackets(case: Case, found) -> float:
+    """Lanes from below and above have met within the accuracy."""
+    gaps = np.asarray(found.stats["bracket"])[outside_slips(case)]
+    return float(gaps.max()) / ACCURACY if gaps.size else np.nan
+
+
 def keeps_order(case: Case, found) -> float:
     """Solutions never cross: one that starts above stays above."""
     above = case.change(z0=case.numbers["z0"] + 0.3 * case.eps)
@@ -215,6 +221,7 @@ ALONE: tuple[Callable, ...] = (
 )
 COMPARED: tuple[Callable, ...] = (
     is_accurate,
+    closes_brackets,
     keeps_order,
     knows_no_origin,
     knows_no_left,

@@ -86,6 +86,11 @@ def beyond(case, z):
     return np.append(z[0], (z + high - low + case.eps / 80)[1:])
 
 
+def opened():
+    """All brackets closed but those from half of the time on."""
+    return np.where(guarantees.TIMES < 1, 0.0, 1.1e-3)
+
+
 class Changed:
     """A solution, one field of which is wrong."""
 
@@ -97,7 +102,8 @@ class Changed:
         value = getattr(self._found, name)
         if name != self._field:
             return value
-        return self._change(self._case, np.asarray(value))
+        value = value if isinstance(value, dict) else np.asarray(value)
+        return self._change(self._case, value)
 
 
 @pytest.mark.parametrize(
@@ -109,6 +115,7 @@ class Changed:
         (guarantees.stays_near_the_strip, "z", beyond),
         (guarantees.stays_near_the_limit, "z", lambda case, z: z + 2.1 * case.eps),
         (guarantees.is_accurate, "z", lambda case, z: z + 2e-3 * case.eps),
+        (guarantees.closes_brackets, "stats", lambda case, s: {"bracket": opened()}),
         (guarantees.keeps_order, "z", lambda case, z: z + 1.01 * case.eps),
         (guarantees.knows_no_origin, "z", lambda case, z: z + 4e-3 * case.eps),
         (guarantees.knows_no_left, "z", lambda case, z: z + 4e-3 * case.eps),
