@@ -296,4 +296,6 @@ def _from_the_start(
     )
     part, open_ = sweep.attempt(some._replace(needs=needs))
     _put(answers, part, chosen)
-    answers.status[chosen[open_]] = int(Status.OPEN_BRACKET)
+    left = chosen[open_]  # lanes that failed say why
+    good = answers.status[left] == int(Status.OK)
+    answers.status[left[good]] = int(Status.OPEN_BRACKET)
