@@ -44,7 +44,7 @@ class _Found(NamedTuple):
 def reference(
     scene: Scene, eps: float, gamma: float, when: Instants, accuracy: float
 ) -> Reference:
-    """The reference of one cell, a hundred times tighter than `accuracy`, 1e-9 at most.
+    """The reference of one cell, a hundred times tighter than `accuracy` down to 1e-9.
 
     The first of these that succeed: every slip one after the other through diffrax with
     Rodas5P; every slip in lanes; windows; windows ten times tighter still. The first is

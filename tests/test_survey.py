@@ -213,7 +213,7 @@ def test_surveys_grow_finer_towards_a_short_fast_stretch(burst, eps):
     found = fx.sweep(burst[0], eps, 1.0).isel(gamma=0, eps=0)
     assert int(found.status) == fx.Status.OK
     assert float(found.sampled) > 0.999
-    assert float(found.steps) < 4e5
+    assert float(found.steps) < 2e5
     assert 0.9 * eps < float(found.sup_error) < 1.1 * eps
 
 

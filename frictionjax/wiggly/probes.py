@@ -66,13 +66,18 @@ def nodes_inside(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     return np.clip(times, *(end[:, None] for end in ends))
 
 
+def strictly_between(low: np.ndarray, high: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Which times (n, m) are inside: at the ends the path rests still, or has the speed of
+    the next piece."""
+    return (times > low[:, None]) & (times < high[:, None])
+
+
 def unseen_of(low, high, known, times, speeds) -> np.ndarray:
     """By how much a polynomial through `known` (n, nodes) misses speeds (n, m), at most.
 
-    Of the speed there; only times between `low` and `high` (n,) count: at the ends the path
-    rests still, or has the speed of the next piece.
+    Of the speed there; only times between `low` and `high` (n,) count.
     """
-    inside = (times > low[:, None]) & (times < high[:, None])
+    inside = strictly_between(low, high, times)
     long = np.where(high > low, high, low + 1.0)
     gaps = np.abs(through_nodes(low, long, known, times) - speeds) * inside
     # Of the largest speed, the slide beside a short burst would count for nothing.

@@ -7,7 +7,7 @@ import numpy as np
 from ..scene import Scene
 from .needs import TAIL, Needs, inner_wells
 from .path import Path, speeds_at, states_at, times_at
-from .probes import FEWER, nodes_inside, probes_of, unseen_of
+from .probes import FEWER, nodes_inside, probes_of, strictly_between, unseen_of
 from .survey import nodes_of
 
 # Wells of a part for each node that is measured in it. On fewer, nodes moved to whole wells
@@ -171,7 +171,7 @@ def _is_known(scene: Scene, path: Path, some: Parts) -> np.ndarray:
     probes = [speeds_at(scene, path, own), path.probes.speeds[some.piece]]
     speeds = np.concatenate(probes, axis=1)
     unseen = unseen_of(*ends, nodes, times, speeds)
-    inside = (times >= some.low[:, None]) & (times <= some.high[:, None])
+    inside = strictly_between(*ends, times)
     sizes = np.abs(np.concatenate([nodes, np.where(inside, speeds, nodes[:, :1])], axis=1))
     return (unseen <= _EVEN) & (sizes.max(axis=1) <= _STEADY * sizes.min(axis=1))
 
