@@ -176,6 +176,38 @@ def closes_brackets(case: Case, found) -> float:
     return float(gaps.max()) / ACCURACY if gaps.size else np.nan
 
 
+def knows_its_suprema(case: Case, found) -> float:
+    """Largest deviations over [0, T] are those of every slip at a thousandth of the
+    tolerance, whatever the times asked for, and no smaller than at some times.
+
+    Of z in eps, or in the largest where that is more; of the dissipation in all of it. The
+    start is moved into the strip.
+    """
+    law = fx.friction(case.scene)
+    edges = strip_between(case, float(law.rho_plus), float(law.rho_minus))[:, 0]
+    inside = case.change(z0=float(np.clip(case.numbers["z0"], *edges)))
+    few = swept(inside, TIMES[[0, -1]], ACCURACY, "auto")
+    every = swept(inside, TIMES, 1e-6, "resolved")
+    if few.status != 0 or every.status != 0:
+        return np.nan
+    size = max(case.eps, float(every.sup_error))
+    spent = float(every.dissipation[-1])
+    seen = float(np.abs(every.z - every.z_limit).max())
+    gaps = (
+        (seen - few.sup_error) / size,
+        abs(few.sup_error - every.sup_error) / size,
+        abs(few.strip_excess - every.strip_excess) / size,
+        abs(few.dissipation_error - every.dissipation_error) / spent,
+    )
+    return max(np.inf if np.isnan(gap) else float(gap) for gap in gaps) / ACCURACY
+
+
+def swept(case: Case, ts, accuracy: float, method: str):
+    """The case as the only cell of a sweep."""
+    cells = fx.sweep(case.scene, case.eps, case.gamma, ts, accuracy, method)
+    return cells.isel(eps=0, gamma=0)
+
+
 def keeps_order(case: Case, found) -> float:
     """Solutions never cross: one that starts above stays above."""
     above = case.change(z0=case.numbers["z0"] + 0.3 * case.eps)
@@ -222,6 +254,7 @@ ALONE: tuple[Callable, ...] = (
 COMPARED: tuple[Callable, ...] = (
     is_accurate,
     closes_brackets,
+    knows_its_suprema,
     keeps_order,
     knows_no_origin,
     knows_no_left,

@@ -85,9 +85,8 @@ class _Sweep(NamedTuple):
     def attempt(self, cells: _Cellwise) -> tuple[Answers, np.ndarray]:
         """Answers of some cells, and which of them have a bracket that stays open."""
         rides, whole = cells.ground.rides, any(self.wanted) or self.every_slip
-        layout = lay_out(
-            self.scene, self.path, cells.eps, self.ts, cells.needs, rides, whole
-        )
+        cut = self.ts, cells.needs, rides, self.accuracy
+        layout = lay_out(self.scene, self.path, cells.eps, *cut, whole)
         rounds = self.rounds(cells)
         found, open_ = collect(rounds, layout, cells.needs)
         start = cells.ground.start_well, cells.ground.start_tip

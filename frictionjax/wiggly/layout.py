@@ -165,9 +165,12 @@ def lay_out(
     ts: np.ndarray,
     needs: Needs,
     rides: np.ndarray,
+    accuracy: float,
     summed: bool = True,
 ) -> Layout:
     """Windows that give every requested time, and sums and extremes over [0, T].
+
+    Legs are short enough for extremes good to `accuracy`, in eps.
 
     Outside the inner parts of slides everything is measured, in tiles that follow each
     other; inside, some periods, and one window for each requested time. Where nothing is
@@ -177,7 +180,7 @@ def lay_out(
     parts = inner_parts(scene, path, eps, needs, rides)
     rows, output = _Rows(), np.full((eps.size, ts.size), -1)
     cells = scene, path, eps, needs, rides
-    chain = _chains(*cells, parts, ts, summed, rows, output)
+    chain = _chains(*cells, accuracy, parts, ts, summed, rows, output)
     measured = parts if summed else Parts(*(column[:0] for column in parts))
     slides = _slides(*cells, measured, rows)
     _show(*cells, ts, rows, output)
@@ -185,7 +188,17 @@ def lay_out(
 
 
 def _chains(
-    scene, path: Path, eps, needs: Needs, rides, parts: Parts, ts, summed, rows, output
+    scene,
+    path: Path,
+    eps,
+    needs: Needs,
+    rides,
+    accuracy,
+    parts: Parts,
+    ts,
+    summed,
+    rows,
+    output,
 ) -> list[np.ndarray]:
     """Tiles outside the inner parts of slides: the stops of each cell that follow each
     other. Requested times among them are put into `output`."""
@@ -195,18 +208,14 @@ def _chains(
     stopped = [c for c in chained if summed or np.isfinite(needs.tile[c])]
     lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts, stopped)
     edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
-    uneven = uneven_pieces(path)
-    steep = np.unique(path.probes.times[uneven])
+    steep = np.unique(path.probes.times[uneven_pieces(path)])
     apart = np.diff(steep, prepend=-np.inf) > _APART * path.edges[-1]
     fixed = np.unique(np.concatenate([edges, ts, steep[apart]]))
     cuts = [
         _cut(parts, cell, fixed, lattice_time[lattice_cell == cell]) for cell in chained
     ]
-    if summed and uneven.any():
-        cuts = [
-            followed(scene, path, float(eps[cell]), cut)
-            for cell, cut in zip(chained, cuts, strict=True)
-        ]
+    if summed:
+        cuts = followed(scene, path, eps[chained], accuracy, cuts)
     # Of all cells at once: a call each took 0.1 ms.
     times = [t for cut in cuts for t in cut]
     every = way_at(scene, path, np.concatenate([*times, np.zeros(0)]))

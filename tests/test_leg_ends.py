@@ -1,0 +1,66 @@
+"""Legs of a chain follow the path, and suprema are those of the trajectory."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax.wiggly.find_path import path_of
+from frictionjax.wiggly.job_queue import guide_of
+from frictionjax.wiggly.leg_ends import Cut, followed
+from frictionjax.wiggly.path import states_at
+from frictionjax.wiggly.windows import legs_of
+
+BRISTLE = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
+
+
+def scene_under(load, duration=3.0):
+    support = fx.supports.Spring(1.0)
+    return fx.Scene(fx.profiles.Sine(0.1), BRISTLE, support, load, duration)
+
+
+@pytest.mark.parametrize(
+    ("period", "duration", "eps", "gamma"),
+    [(0.3, 3.0, 0.1, 1.0), (0.3, 0.6, 0.01, 2.0), (3.0, 3.0, 0.01, 1.0)],
+)
+def test_suprema_are_those_of_many_times(period, duration, eps, gamma):
+    """With two times asked for, they were 1.5 to 2.2 times the accuracy off, status good."""
+    scene = scene_under(fx.loads.Sine(1.0488, period), duration)
+    found = fx.sweep(scene, eps, gamma, [0.0, duration]).isel(gamma=0, eps=0)
+    ts = np.linspace(0, duration, 40001)
+    states = np.asarray(fx.solve(scene, eps, gamma, ts, 1e-6, dissipation=False).z)
+    dense = np.abs(states - np.asarray(fx.solve_limit(scene, jnp.asarray(ts)).z)).max()
+    assert int(found.status) == fx.Status.OK
+    assert abs(float(found.sup_error) - dense) < 1e-3 * max(eps, dense)
+
+
+@pytest.fixture(scope="module")
+def path():
+    scene = scene_under(fx.loads.Sine(1.0488, 1.0))
+    return scene, path_of(scene)
+
+
+def off_path(scene, path, stops, shares):
+    """How far cubics between the stops leave the path inside, m."""
+    legs = legs_of(scene, path, np.append(0.0, stops[:-1]), stops)
+    off = []
+    for share in shares:
+        times = legs.start + share * (legs.end - legs.start)
+        off.append(np.abs(guide_of(legs)(times) - states_at(scene, path, times)))
+    return np.max(off)
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6])
+def test_cubics_of_legs_follow_the_path(path, accuracy):
+    scene, path = path
+    eps = np.array([0.1, 1e-3])
+    fixed = np.unique(np.concatenate([path.edges[1:], path.touch[path.touch < 3]]))
+    cuts = [Cut(np.zeros(1), fixed), Cut(np.zeros(1), np.union1d(fixed, [0.1, 2.9]))]
+    assert off_path(scene, path, fixed, [0.5]) > 1e-3
+    found = followed(scene, path, eps, accuracy, cuts)
+    for size, before, after in zip(eps, cuts, found, strict=True):
+        assert np.all(np.isin(before.stops, after.stops))
+        worst = off_path(scene, path, after.stops, np.linspace(0.02, 0.98, 25))
+        assert worst < 0.06 * accuracy * size
+        (alone,) = followed(scene, path, np.array([size]), accuracy, [before])
+        assert np.array_equal(alone.stops, after.stops)
