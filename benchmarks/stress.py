@@ -5,11 +5,11 @@
 Admissible scenes: any bristle, support and load, slopes 0.01 to 0.5, supports on
 which the tip follows within 1e-8 to 1 of the time, admissibility by 1e-3 to 1, eps for 3 to
 300 wells under half of the load's range, gamma 0.5 to 2.5.
-Each is checked alone, and by one of these: its brackets, or a second solution of every slip
-at a thousandth of the tolerance, its suprema, a start above, a shift by whole wells, a mirror
-image, or other units. Inadmissible ones: an admissible scene with one fault, from a number that is
-none to a surface that is too steep by 1e-9; each has to be refused with an error that names
-the argument.
+Each is checked alone, and by one of these: its brackets, its suprema, a second solution of
+every slip at a thousandth of the tolerance, a start above, a shift by whole wells, a mirror
+image, or other units. Inadmissible ones: an admissible scene with one fault, from a number
+that is none to a surface that is too steep by 1e-9; each has to be refused with an error
+that names the argument.
 """
 
 import argparse
