@@ -207,7 +207,7 @@ def test_errors_of_a_wrong_map_are_seen(monkeypatch):
         return found._replace(length=found.length * (1 + 1e-4))
 
     scene, eps, gamma = SCENES["sine"], 1e-6, 0.5
-    monkeypatch.setattr(engine, "_AFFORDABLE", 0.0)
+    monkeypatch.setattr(engine, "AFFORDABLE", 0.0)
     monkeypatch.setattr(slip_map, "passages", wrong)
     found = fx.solve(scene, eps, gamma, TIMES)
     assert found.status != fx.Status.OK or np.max(found.stats["bracket"]) > 5e-4

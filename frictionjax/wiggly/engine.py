@@ -15,15 +15,9 @@ from .find_path import path_of
 from .lane import Cells, LaneScene, Sums
 from .lanes import Room, prepare
 from .layout import lay_out
-from .needs import Needs
+from .needs import AFFORDABLE, Needs
 from .path import Path
-from .planning import (
-    LOOSEST,
-    TABLEAU,
-    TILES,
-    lane_scene,
-    planned,
-)
+from .planning import LOOSEST, TABLEAU, TILES, lane_scene, planned
 from .riding import find_rides
 from .rosenbrock import Tableau
 from .rounds import CLOSED, WORKERS, Report, Rounds, collect
@@ -32,8 +26,6 @@ from .status import Status
 from .survey import NODES
 
 _MOST_NODES, _SURVEYS = 65, 3
-# Wells that one lane alone goes through at most: a minute or two.
-_AFFORDABLE = 2e5
 _FEW = 500  # values that are worth a guess at rooms
 
 
@@ -269,7 +261,7 @@ def _prepare(lanes: LaneScene, cells: int, times: int, wanted: Sums) -> None:
 
 
 def _affordable(path: Path, cells: _Cellwise) -> np.ndarray:
-    return path.travel[-1] / cells.eps <= _AFFORDABLE
+    return path.travel[-1] / cells.eps <= AFFORDABLE
 
 
 def _from_the_start(

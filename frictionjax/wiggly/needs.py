@@ -8,6 +8,8 @@ from .path import Path
 
 WELLS_A_LEG = 16
 _LEG = 0.02  # of the whole way: the guide is a cubic on each leg
+# Wells that one lane alone goes through at most: a minute or two.
+AFFORDABLE = 2e5
 TAIL = 4  # wells before a turning point that are always measured
 
 

@@ -6,11 +6,13 @@ import numpy as np
 
 from ..scene import Scene
 from .job_queue import Jobs, Legs
+from .needs import AFFORDABLE
 from .path import Path, slopes_at, states_at
 from .starts import ASIDE, FASTER, Ground, Starts
 
 # Steps are 10 to 200 a well; lags let lanes pass through more wells than the path.
 _STEPS_A_WELL, _SOME_WELLS = 2000, 100
+_STEPS_BEHIND = 500  # of a well that tips are behind by, which they pass fast
 _BRIEF = 20.0  # wells of a lane whose errors hardly add up, or that it remembers, twice
 
 
@@ -121,7 +123,11 @@ def plan_windows(
     far = np.where(
         np.concatenate([starts.known[lanes[0][0]], part.known[lanes[1][0]]]), far, 0
     )
-    legs = legs._replace(budget=_STEPS_A_WELL * (wells + far + _SOME_WELLS))
+    # Nor does the path pass through those that a lane has to catch up with after a jump.
+    late = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
+    late = np.minimum(late, np.minimum(path.travel[-1] / ground.eps, AFFORDABLE))[cell]
+    budget = _STEPS_A_WELL * (wells + far + _SOME_WELLS) + _STEPS_BEHIND * late
+    legs = legs._replace(budget=budget)
     behind, ahead = np.full(windows.stop.size, -1), np.full(windows.stop.size, -1)
     meet_behind, meet_ahead = np.full(count, -1), np.full(count, -1)
     index = np.arange(mark.size)
