@@ -191,7 +191,8 @@ def knows_its_suprema(case: Case, found) -> float:
     if few.status != 0 or every.status != 0:
         return np.nan
     size = max(case.eps, float(every.sup_error))
-    spent = float(every.dissipation[-1])
+    # Where next to nothing is dissipated, the limit's is what both are compared with.
+    spent = max(float(every.dissipation[-1]), float(every.dissipation_error))
     seen = float(np.abs(every.z - every.z_limit).max())
     gaps = (
         (seen - few.sup_error) / size,

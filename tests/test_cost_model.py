@@ -93,7 +93,7 @@ def test_tables_grow_with_the_times_and_not_their_square():
     plan = planned(scene_of(), lanes, path, *cell, ts.size, 1e-3, "resolved")
     tracemalloc.start()
     parts = scene_of(), path, cell[0], ts, plan.needs, plan.ground.rides
-    found = lay_out(*parts)
+    found = lay_out(*parts, 1e-3)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert most < 1000 * ts.size, most / ts.size
