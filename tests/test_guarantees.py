@@ -131,6 +131,25 @@ def test_checks_see_what_is_wrong(known, check, field, change):
         assert check(case, Changed(case, found, field, change)) > 1
 
 
+@pytest.mark.parametrize("name", ["sup_error", "strip_excess", "dissipation_error"])
+def test_suprema_that_are_wrong_are_seen(known, monkeypatch, name):
+    """By two accuracies, of the larger of eps and the supremum."""
+    case, found = known
+    right = guarantees.swept
+
+    def wrong(case, ts, accuracy, method):
+        cell = right(case, ts, accuracy, method)
+        if accuracy != guarantees.ACCURACY:
+            return cell
+        size = max(case.eps, float(cell.sup_error))
+        if name == "dissipation_error":
+            size = max(float(cell.dissipation[-1]), float(cell[name]))
+        return cell.assign({name: cell[name] + 2.1e-3 * size})
+
+    monkeypatch.setattr(guarantees, "swept", wrong)
+    assert guarantees.knows_its_suprema(case, found) > 1
+
+
 def test_no_numbers_are_no_agreement(known):
     case, found = known
     lost = Changed(case, found, "z", lambda case, z: z * np.nan)

@@ -12,7 +12,7 @@ from .starts import ASIDE, FASTER, Ground, Starts
 
 # Steps are 10 to 200 a well; lags let lanes pass through more wells than the path.
 _STEPS_A_WELL, _SOME_WELLS = 2000, 100
-_STEPS_BEHIND = 500  # of a well that tips are behind by, which they pass fast
+_STEPS_BEHIND = 500  # a well that tips are behind by, which took 130 (gamma = 3/4)
 _BRIEF = 20.0  # wells of a lane whose errors hardly add up, or that it remembers, twice
 
 
