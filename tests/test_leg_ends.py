@@ -1,10 +1,12 @@
 """Legs of a chain follow the path, and suprema are those of the trajectory."""
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.wiggly.extent import Guide
 from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.job_queue import guide_of
 from frictionjax.wiggly.leg_ends import Cut, followed
@@ -32,6 +34,38 @@ def test_suprema_are_those_of_many_times(period, duration, eps, gamma):
     dense = np.abs(states - np.asarray(fx.solve_limit(scene, jnp.asarray(ts)).z)).max()
     assert int(found.status) == fx.Status.OK
     assert abs(float(found.sup_error) - dense) < 1e-3 * max(eps, dense)
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "period", "eps"), [(1e3, 3.0, 0.1), (100.0, 1.0, 0.1), (100.0, 3.0, 0.01)]
+)
+def test_suprema_on_stiff_supports_are_those_of_every_slip(stiffness, period, eps):
+    """With the mean slope of a leg's guide they were up to 21 times the accuracy off.
+
+    And those of 117 wells, 57 of them measured, 98 eps: an interpolation that swung.
+    """
+    support, load = fx.supports.Spring(stiffness), fx.loads.Sine(1.0488 * stiffness, period)
+    scene = fx.Scene(fx.profiles.Sine(0.1), BRISTLE, support, load, 3.0)
+    cells = [("auto", 1e-3), ("windowed", 1e-3), ("resolved", 1e-6)]
+    found = [fx.sweep(scene, eps, 2.4, [0.0, 3.0], a, method=m) for m, a in cells]
+    *rough, fine = (cell.isel(gamma=0, eps=0) for cell in found)
+    for cell in rough:
+        assert int(cell.status) == fx.Status.OK
+        for name in ("sup_error", "strip_excess"):
+            assert abs(float(cell[name] - fine[name])) < 1e-3 * eps
+        off = float(cell.dissipation_error - fine.dissipation_error)
+        assert abs(off) < 1e-3 * float(fine.dissipation_error)
+        spent, exact = float(cell.dissipation[-1]), float(fine.dissipation[-1])
+        assert spent == pytest.approx(exact, rel=1e-3)
+
+
+def test_guides_move_as_fast_as_they_come_further():
+    guide = Guide(0.3, 0.7, 1.0, -0.2, 0.5, -1.1, 0.0)
+    for t in (0.3, 0.5, 0.77, 1.0):
+        exact = float(jax.grad(guide.way)(t))
+        assert float(guide.slope(t)) == pytest.approx(exact, rel=1e-12)
+    ends = float(guide.slope(0.3)), float(guide.slope(1.0))
+    assert ends == pytest.approx((0.5, -1.1))
 
 
 @pytest.fixture(scope="module")

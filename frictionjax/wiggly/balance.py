@@ -6,6 +6,7 @@ from typing import NamedTuple
 import jax.numpy as jnp
 
 from ..arguments import Real
+from . import hermite
 from .field import Point, TipField
 
 # Distance in periods from its equilibrium up to which a rest counts as one: tolerances are
@@ -114,12 +115,8 @@ def advance(
 
 def _cubic(s: float, step: Real, y0: Real, y1: Real, slope0: Real, slope1: Real):
     """Value and slope of the cubic Hermite interpolant at the share s of the step."""
-    chord = (y1 - y0) / step
-    first, last = slope0 - chord, slope1 - chord
-    bump = s * (1 - s) * step
-    y = y0 + s * (y1 - y0) + bump * ((1 - s) * first - s * last)
-    slope = chord + (1 - s) * (1 - 3 * s) * first + s * (3 * s - 2) * last
-    return y, slope
+    ends = y1 - y0, step * slope0, step * slope1
+    return y0 + hermite.way(s, *ends), hermite.slope(s, *ends) / step
 
 
 def at_rest() -> Balance:

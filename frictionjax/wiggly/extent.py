@@ -5,6 +5,7 @@ from typing import NamedTuple
 import jax.numpy as jnp
 
 from ..arguments import Real
+from . import hermite
 
 
 class Guide(NamedTuple):
@@ -24,10 +25,15 @@ class Guide(NamedTuple):
 
     def way(self, t: Real) -> Real:
         """How far it has come at time `t`, in m."""
-        s = (t - self.start) / self.length
-        first = self.slope0 * self.length - self.rise
-        last = self.slope1 * self.length - self.rise
-        return s * self.rise + s * (1 - s) * ((1 - s) * first - s * last)
+        return hermite.way((t - self.start) / self.length, *self._ends())
+
+    def slope(self, t: Real) -> Real:
+        """How fast it moves at time `t`, in m/s."""
+        return hermite.slope((t - self.start) / self.length, *self._ends()) / self.length
+
+    def _ends(self) -> tuple[Real, Real, Real]:
+        """The rise, and the slopes at both ends over all of the length, in m."""
+        return self.rise, self.slope0 * self.length, self.slope1 * self.length
 
     def __call__(self, t: Real) -> Real:
         return self.value + self.way(t)
@@ -51,7 +57,8 @@ def widen(
     """
     gap0, gap1 = gaps
     rise = gap1 - gap0
-    first, last = slopes[0] * step - rise, slopes[1] * step - rise
+    ends = rise, step * slopes[0], step * slopes[1]
+    first, last = ends[1] - rise, ends[2] - rise
     # Where the cubic's derivative, a s^2 + b s + c, is zero.
     a, b, c = 3 * (first + last), -2 * (2 * first + last), first + rise
     root = jnp.sqrt(jnp.maximum(b * b - 4 * a * c, 0.0))
@@ -65,7 +72,7 @@ def widen(
     for top, bottom in ((q, a), (c, q)):
         inside = (top * bottom > 0) & (jnp.abs(top) < jnp.abs(bottom))
         s = jnp.where(inside, top / jnp.where(inside, bottom, 1.0), 0.0)
-        value = gap0 + s * rise + s * (1 - s) * ((1 - s) * first - s * last)
+        value = gap0 + hermite.way(s, *ends)
         high = jnp.maximum(high, jnp.minimum(value, top_most))
         low = jnp.minimum(low, jnp.maximum(value, bottom_most))
     return extent._replace(

@@ -157,10 +157,12 @@ def _extent(
     task: Task, motion: Motion, step: Real, time: Real, tip: Real, end: Point, sums: Balance
 ) -> Extent:
     guide, eps = task.guide, task.cell.eps
-    pace = guide.rise / guide.length
     start = motion.point
     slope0, slope1, _ = slopes_between(start, end, step, tip - motion.tip)
-    slopes = eps * start.stretch * slope0 - pace, eps * end.stretch * slope1 - pace
+    slopes = (
+        eps * start.stretch * slope0 - guide.slope(motion.time),
+        eps * end.stretch * slope1 - guide.slope(time),
+    )
     gaps = start.state - guide(motion.time), end.state - guide(time)
     extent = widen(motion.extent, step, gaps, slopes)
     return spend(extent, sums.viscous - guide.friction * guide.way(time))

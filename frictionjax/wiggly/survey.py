@@ -8,6 +8,10 @@ from numpy.polynomial import chebyshev
 
 NODES = 17  # periods measured in a slide, unless it takes more
 _FINE = 257  # points at which extremes of the fitted curves are looked for
+# By what a fit may magnify errors of what was measured, places at which that is looked for,
+# for each coefficient, and what the number of these is multiplied by until it does not.
+_MAGNIFIED, _PLACES, _FEWER = 30.0, 4, 0.85
+_LAST, _UNCERTAIN = 3, 5.0  # coefficients looked at; errors over them where not all fit
 WORK, VISCOUS, RESIDUAL = range(3)  # rows of what is summed
 AHEAD, BEHIND, SURPLUS, DEFICIT = range(4)  # rows of what has extremes
 
@@ -32,6 +36,7 @@ class Survey(NamedTuple):
     work: np.ndarray
     extremes: np.ndarray
     error_work: float
+    error_viscous: float
     error_extreme: float
     error_surplus: float
 
@@ -73,14 +78,60 @@ def through_nodes(low, high, values: np.ndarray, times: np.ndarray) -> np.ndarra
     return np.einsum("nmk,nk->nm", basis, series)
 
 
-def _tails(series: np.ndarray) -> np.ndarray:
+def _tails(series: np.ndarray, fits: np.ndarray) -> np.ndarray:
     """Size of the last coefficients: what a shorter series would have missed."""
-    return np.max(np.abs(series[..., -3:]), axis=-1)
+    count = fits.shape[-1]
+    used = np.sum(np.any(fits != 0, axis=2), axis=1)
+    last = np.maximum(used[:, None] - _LAST, 0) + np.arange(_LAST)
+    found = np.abs(np.take_along_axis(series, last[:, None], axis=2)).max(axis=2)
+    return np.where(used < count, _UNCERTAIN, 1.0)[:, None] * found
 
 
 @lru_cache
 def _fine_basis(count: int) -> np.ndarray:
     return chebyshev.chebvander(np.linspace(-1.0, 1.0, _FINE), count - 1)
+
+
+@lru_cache
+def _places(count: int) -> np.ndarray:
+    return chebyshev.chebvander(nodes_of(-1.0, 1.0, _PLACES * count + 1), count - 1)
+
+
+def _fit_at(scaled: np.ndarray) -> np.ndarray:
+    """Matrices (n, count, count) from values at `scaled` (n, count) to Chebyshev series.
+
+    Of as many coefficients as magnify errors by `_MAGNIFIED` at most, the others 0. (Where
+    nodes moved to whole periods are no Chebyshev points any more, interpolation swung by
+    100 eps in 117 wells of which 57 were measured, with last coefficients of 2e-4 eps.)
+    """
+    number, count = scaled.shape
+    fits = np.zeros((number, count, count))
+    left, size = np.arange(number), count
+    while left.size and size > 1:
+        basis = chebyshev.chebvander(scaled[left], size - 1)
+        # (The inverse of all takes a tenth of the time of as many pseudo-inverses.)
+        apart = size == count and np.all(np.diff(scaled) > 0)
+        fits[left, :size] = np.linalg.inv(basis) if apart else np.linalg.pinv(basis)
+        fits[left, size:] = 0.0
+        magnified = np.abs(_places(size) @ fits[left, :size]).sum(axis=2).max(axis=1)
+        left = left[magnified > _MAGNIFIED]
+        size = int(_FEWER * size)
+    return fits
+
+
+def _densities(means: np.ndarray, scaled, length, fits) -> np.ndarray:
+    """Densities at the middles of periods, of which `means` (n, 3, count) are known.
+
+    A mean is more by what the curvature adds to it: a relative 7e-5 of the work with 117
+    wells in a third of a load's period, and of the energies dissipated there a sixteenth.
+    """
+    count = scaled.shape[1]
+    if count < 3:
+        return means
+    second = chebyshev.chebder(np.eye(count), 2, axis=0)
+    basis = chebyshev.chebvander(scaled, count - 3) @ (second @ fits)
+    bent = means @ basis.swapaxes(1, 2)
+    return means - bent * (length**2 / 24)[:, None]
 
 
 def surveys_of(
@@ -95,26 +146,26 @@ def surveys_of(
 
     `low`, `high` (slides,); `starts`, `ends` (slides, n). `sums` (slides, 3, n): over each
     period, J; `extremes` (slides, 4, n): in each. A sum over all periods is the integral of
-    their density: the midpoint of a period stands for it up to its length squared. All
-    slides at once: a loop over them took 0.2 ms each.
+    their density. All slides at once: a loop over them took 0.2 ms each.
     """
     middle, length = 0.5 * (starts + ends), ends - starts
     scaled = 2 * (middle - low[:, None]) / (high - low)[:, None] - 1
     count = scaled.shape[1]
-    matrix = chebyshev.chebvander(scaled, count - 1)
+    half, fits = 0.5 * (high - low), _fit_at(scaled)
     with np.errstate(invalid="ignore", divide="ignore"):  # slips shorter than floats: NaN
-        columns = np.concatenate([sums / length[:, None], extremes], axis=1)
-    series = np.linalg.solve(matrix, columns.swapaxes(1, 2)).swapaxes(1, 2)
-    half = 0.5 * (high - low)
+        means = sums / length[:, None]
+        densities = _densities(means, scaled, length / half[:, None], fits)
+        columns = np.concatenate([densities, extremes], axis=1)
+    series = columns @ fits.swapaxes(1, 2)
     primitives = half[:, None, None] * chebyshev.chebint(series[:, :3], lbnd=-1, axis=2)
     whole = primitives.sum(axis=2)
-    times, residual = _residuals(low, high, middle, columns[:, RESIDUAL])
+    times, residual = _residuals(low, high, middle, means[:, RESIDUAL])
     whole[:, RESIDUAL] = residual[:, -1]
     basis = _fine_basis(count + 1)
     fine = series[:, 3:] @ basis[:, :count].T
     work = primitives[:, WORK] @ basis.T
-    tails = _tails(series)
-    errors = 2 * half * tails[:, WORK] / count
+    tails = _tails(series, fits)
+    errors = 2 * half[:, None] * tails[:, :RESIDUAL] / count
     extreme, surplus = (np.max(tails[:, k : k + 2], axis=1) for k in (3, 5))
     return [
         Survey(*row)
@@ -127,7 +178,8 @@ def surveys_of(
             residual,
             work,
             fine,
-            errors.tolist(),
+            errors[:, WORK].tolist(),
+            errors[:, VISCOUS].tolist(),
             extreme.tolist(),
             surplus.tolist(),
             strict=True,
