@@ -28,6 +28,20 @@ def test_solve_where_some_arguments_are_traced(name, value):
     assert abs(float(run(value)) - float(_end())) < 1e-3 * 0.05
 
 
+def test_traced_numbers_that_are_none_end_at_once():
+    """Steps of NaN were made until there was room for no more, for minutes."""
+
+    def run(eps, gamma):
+        found = fx.solve(_SCENE, eps, gamma, _TIMES)
+        return found.z, found.status_code
+
+    eps, gamma = jnp.array([0.05, -1.0, jnp.nan, 0.0, 0.05]), jnp.ones(5).at[4].set(jnp.nan)
+    z, codes = jax.jit(jax.vmap(run))(eps, gamma)
+    assert codes.tolist() == [fx.Status.OK] + 4 * [fx.Status.NOT_FINITE]
+    assert np.all(np.isnan(z[1:]))
+    assert abs(float(z[0, -1] - _end())) < 1e-3 * 0.05
+
+
 def test_friction_of_known_parts():
     run = jax.jit(lambda x: x * fx.friction(_PROFILE, _BRISTLE).rho_plus)
     assert float(run(1.0)) == pytest.approx(float(fx.friction(_PROFILE, _BRISTLE).rho_plus))

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import frictionjax as fx
-from frictionjax.wiggly.cell_sums import CellWay, deviations, energetics
+from frictionjax.wiggly.cell_sums import CellWay, _since_begin, deviations, energetics
 from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.path import Path
 from frictionjax.wiggly.stops import Stops
@@ -161,6 +161,22 @@ def test_an_unknown_error_of_a_survey_is_not_forgotten():
         unknown = rough_survey(1.0, 0.0)._replace(**{name: np.nan})
         *_, lost = energetics(*way(unknown, spent=spent), *of)
         assert np.isnan(lost)
+
+
+def test_times_in_a_rest_of_the_path_share_a_window():
+    """On a ride such times are inside a survey: 4% of the dissipation was lost, status OK."""
+    windows = SimpleNamespace(owner=np.array([0, 1, 1, 1, 2]))
+    sums = np.arange(15.0).reshape(3, 5)
+    stops = SimpleNamespace(sums=sums)
+    chosen = np.array([0, 3, 1, 4, 2])
+    expected = [
+        sums[:, 0],
+        sums[:, 1:4].sum(1),
+        sums[:, 1],
+        sums[:, 4],
+        sums[:, 1:3].sum(1),
+    ]
+    assert np.array_equal(_since_begin(windows, stops, chosen), np.stack(expected, axis=1))
 
 
 class Bursts(eqx.Module):

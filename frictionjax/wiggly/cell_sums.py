@@ -4,10 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .balance import is_smooth
 from .layout import Layout, Slide
 from .path import Path
 from .stops import Stops
 from .survey import AHEAD, BEHIND, DEFICIT, RESIDUAL, SURPLUS, VISCOUS, WORK, Survey
+from .windows import Windows
 
 
 class CellWay(NamedTuple):
@@ -57,14 +59,33 @@ def _outputs(cell: CellWay, stops: Stops, layout: Layout, output: np.ndarray) ->
     return _Outputs(output, place[output], survey, begin)
 
 
-def _running(cell: CellWay, stops: Stops, outputs: _Outputs) -> np.ndarray:
+def _since_begin(windows: Windows, stops: Stops, chosen: np.ndarray) -> np.ndarray:
+    """Integrals in J over the windows of the chosen stops, up to these, (3, n).
+
+    Times in a rest of the path share a window, and lanes sum from one stop to the next.
+    """
+    owner = windows.owner[chosen]
+    first = np.searchsorted(windows.owner, owner)
+    found = stops.sums[:, chosen]
+    later = np.flatnonzero(chosen > first)
+    for window in np.unique(owner[later]):
+        mine = later[owner[later] == window]
+        begin = first[mine[0]]
+        running = np.cumsum(stops.sums[:, begin : chosen[mine].max() + 1], axis=1)
+        found[:, mine] = running[:, chosen[mine] - begin]
+    return found
+
+
+def _running(
+    cell: CellWay, stops: Stops, windows: Windows, outputs: _Outputs
+) -> np.ndarray:
     """Integrals in J from 0 to each requested time, (3, n)."""
     in_chain = (outputs.place >= 0) & (outputs.stop >= 0)
     found = np.where(in_chain, cell.totals[:, np.maximum(outputs.place, 0)], 0.0)
     for k, survey in enumerate(cell.surveys):
         mine = np.flatnonzero(~in_chain & (outputs.stop >= 0) & (outputs.survey == k))
         done = survey.integrals(outputs.begin[mine])
-        own = stops.sums[:, outputs.stop[mine]]
+        own = _since_begin(windows, stops, outputs.stop[mine])
         found[:, mine] = cell.before[k][:, None] + done + own
     return found
 
@@ -79,9 +100,9 @@ def energetics(cell, stops, layout, output, energy0, of_path, path, eps):
     z - path add to it; the direct sum is an independent second value.
     """
     outputs = _outputs(cell, stops, layout, output)
-    running = _running(cell, stops, outputs)
+    running = _running(cell, stops, layout.windows, outputs)
     beyond = energy0 - stops.energy[cell.chain] - cell.totals[WORK]
-    if cell.totals[VISCOUS, -1] < eps * path.width:
+    if is_smooth(cell.totals[VISCOUS, -1], eps * path.width, eps, path.pulled):
         spent, rest = running[VISCOUS], _without_slips(cell, stops, energy0, beyond)
     else:
         energy = np.where(output >= 0, stops.energy[output], energy0)

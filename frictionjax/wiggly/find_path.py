@@ -46,7 +46,7 @@ def path_of(scene: Scene) -> Path | None:
     edges = np.unique(np.concatenate([[0.0], turns[turns < duration], [duration]]))
     found = coefficients_jit(scene.potential)
     rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
-    _, lower, upper = strips_at(scene, rho_plus, rho_minus, edges)
+    loads, lower, upper = strips_at(scene, rho_plus, rho_minus, edges)
     states = np.empty(edges.size)
     states[0] = np.clip(float(scene.z0), lower[0], upper[0])
     for i in range(1, edges.size):
@@ -63,6 +63,7 @@ def path_of(scene: Scene) -> Path | None:
         rho=rho,
         rho_plus=rho_plus,
         rho_minus=rho_minus,
+        pulled=float(np.abs(np.diff(loads)).sum()),
     )
     sliding = np.flatnonzero(direction)
     touch = path.touch.copy()

@@ -42,9 +42,15 @@ class Front(NamedTuple):
 
 
 def front_at_start(y: tuple, plan: Plan, tally: PyTree = ()) -> Front:
-    """The front at t = 0 with the tip and what follows it, `y`."""
-    none = jnp.asarray(0)
-    code, zero = jnp.asarray(int(Status.OK)), jnp.zeros_like(y[0])
+    """The front at t = 0 with the tip and what follows it, `y`.
+
+    Traced numbers are not looked at before: with an eps of -1 steps of NaN were made, and
+    no error of one ends a solve before its last step.
+    """
+    none, zero = jnp.asarray(0), jnp.zeros_like(y[0])
+    numbers = jnp.stack([y[0], plan.first_step, plan.tolerance, plan.reach])
+    known = jnp.all(jnp.isfinite(numbers))
+    code = jnp.where(known, int(Status.OK), int(Status.NOT_FINITE))
     return Front(zero, y, plan.first_step, code, none, none, tally)
 
 

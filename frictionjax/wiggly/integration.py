@@ -10,7 +10,7 @@ from jaxtyping import Array, Float, Int, PyTree
 from ..arguments import Real
 from ..coefficients import coefficients
 from ..scene import Scene
-from .balance import Balance, dissipated
+from .balance import Balance, dissipated, is_smooth
 from .field import TipField
 from .fronts import controller_of, first_of, front_at_start, fronts_at, stops_of
 from .methods import with_tolerance
@@ -83,9 +83,12 @@ def integrate(
         final = last.y[1]
         spent = dissipated(field, final, last.t, last.y[0], start_energy)
         gap = jnp.abs(final.viscous - spent)
-        dissipation = blank + jax.vmap(
+        lost = jax.vmap(
             lambda t, y, balance: dissipated(field, balance, t, y, start_energy)
         )(ts, tips, memories[0])
+        pulled = _pulled(scene, turns, until)
+        smooth = is_smooth(final.viscous, _slip_energy(scene, eps), eps, pulled)
+        dissipation = blank + jnp.where(smooth, memories[0].viscous, lost)
         residual = memories[0].residual + blank
     status = _status(last.code, z, turns)
     if final is not None:
@@ -112,10 +115,20 @@ def _status(code: Array, z: Float[Array, " n"], turns: Array) -> Array:
     return jnp.where((code != Status.OK) & (found != Status.TOO_MANY_TURNS), code, found)
 
 
+def _pulled(scene: Scene, turns: Float[Array, " m"], until: Real) -> Real:
+    """What the load goes up and down in all, N."""
+    ends = jnp.stack([jnp.zeros_like(until), until])
+    edges = jnp.sort(jnp.concatenate([ends, jnp.minimum(turns, until)]))
+    return jnp.sum(jnp.abs(jnp.diff(jax.vmap(scene.load)(edges))))
+
+
+def _slip_energy(scene: Scene, eps: Real) -> Real:
+    law = coefficients(scene.potential)
+    return eps * (law.rho_plus - law.rho_minus)
+
+
 def _with_balance(status: Array, scene: Scene, eps: Real, final: Balance) -> Array:
     """A residual of more than a share of the energy of every slip made is a failure."""
-    law = coefficients(scene.potential)
-    slip = eps * (law.rho_plus - law.rho_minus)
-    allowed = _RESIDUAL_SHARE * (slip + final.viscous)
+    allowed = _RESIDUAL_SHARE * (_slip_energy(scene, eps) + final.viscous)
     closes = final.residual <= allowed
     return jnp.where((status == Status.OK) & ~closes, int(Status.UNBALANCED), status)

@@ -156,13 +156,20 @@ def step_of_lane(
 def _extent(
     task: Task, motion: Motion, step: Real, time: Real, tip: Real, end: Point, sums: Balance
 ) -> Extent:
-    guide, eps = task.guide, task.cell.eps
-    start = motion.point
-    slope0, slope1, _ = slopes_between(start, end, step, tip - motion.tip)
-    slopes = (
-        eps * start.stretch * slope0 - guide.slope(motion.time),
-        eps * end.stretch * slope1 - guide.slope(time),
-    )
+    guide, eps, start = task.guide, task.cell.eps, motion.point
+    slopes = slopes_between(start, end, step, tip - motion.tip)
+    speeds = eps * start.stretch * slopes[0], eps * end.stretch * slopes[1]
+    ahead = guide.slope(motion.time), guide.slope(time)
     gaps = start.state - guide(motion.time), end.state - guide(time)
-    extent = widen(motion.extent, step, gaps, slopes)
-    return spend(extent, sums.viscous - guide.friction * guide.way(time))
+    away = speeds[0] - ahead[0], speeds[1] - ahead[1]
+    extent = widen(motion.extent, step, gaps, away)
+    viscosity, friction = task.cell.viscosity, guide.friction
+    beyond = (
+        motion.sums.viscous - friction * guide.way(motion.time),
+        sums.viscous - friction * guide.way(time),
+    )
+    rates = (
+        viscosity * speeds[0] ** 2 - friction * ahead[0],
+        viscosity * speeds[1] ** 2 - friction * ahead[1],
+    )
+    return spend(extent, step, beyond, rates)

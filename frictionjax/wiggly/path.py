@@ -39,7 +39,8 @@ class Path(NamedTuple):
     or 0 where the path rests. `touch` (P,): time at which a slide begins, the piece's end
     where none does. `travel` (P+1,): way so far, in m. `rho` (P,): force of friction in N
     on the slide. `rho_plus`, `rho_minus`: in N. `speed`, `stiffness`: largest speed of
-    slides in m/s, smallest Phi''. `probes`: speeds on the way.
+    slides in m/s, smallest Phi''. `pulled`: what the load goes up and down in all, N.
+    `probes`: speeds on the way.
     """
 
     edges: np.ndarray
@@ -52,6 +53,7 @@ class Path(NamedTuple):
     rho_minus: float
     speed: float = 0.0
     stiffness: float = 1.0
+    pulled: float = 0.0
     probes: Probes = NO_PROBES
 
     @property
