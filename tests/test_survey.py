@@ -164,7 +164,7 @@ def test_an_unknown_error_of_a_survey_is_not_forgotten():
 
 
 def test_times_in_a_rest_of_the_path_share_a_window():
-    """On a ride such times are inside a survey: 4% of the dissipation was lost, status OK."""
+    """On a ride such times are inside a survey: 4% of the dissipation was lost."""
     windows = SimpleNamespace(owner=np.array([0, 1, 1, 1, 2]))
     sums = np.arange(15.0).reshape(3, 5)
     stops = SimpleNamespace(sums=sums)
