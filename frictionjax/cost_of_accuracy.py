@@ -37,10 +37,10 @@ _RUN = {
     "compile_seconds": ("s", "what the first run took longer: tracing and compilation"),
     "error": ("1", "largest error of z outside slips, in eps"),
     "slip_error": ("1", "mean error of z over a whole slip period, in eps"),
-    "end_error": ("1", "error of z at the last time, in eps"),
-    "dissipation_error": ("1", "largest error of the dissipation over its final value"),
+    "end_error": ("1", "error of z at the last time asked for, in eps"),
+    "dissipation_error": ("1", "largest error of the dissipation over its last value"),
     "residual": ("1", "residual of the energy-dissipation balance over that of one slip"),
-    "mescd": ("1", "-log10(|z - z_ref|/(eps + |z_ref|)) at the last time"),
+    "mescd": ("1", "-log10(|z - z_ref|/(eps + |z_ref|)) at the last time asked for"),
     "steps": ("1", "steps tried"),
     "rejected": ("1", "steps rejected"),
     "evaluations": ("1", "evaluations of the field"),
@@ -51,8 +51,9 @@ _RUN = {
 _REFERENCE = {
     "reference_error": ("1", "distance of the reference from a second one, in eps"),
     "reference_slip_error": ("1", "the same over a whole slip period"),
-    "reference_end_error": ("1", "the same at the last time"),
+    "reference_end_error": ("1", "the same at the last time asked for"),
     "reference_dissipation_error": ("1", "the same for the dissipation"),
+    "reference_mescd": ("1", "mescd of the second one"),
     "reference_ways": (None, "methods of the two references"),
 }
 _COORDINATES = {
@@ -195,7 +196,8 @@ def work_precision(
     `eps` in m and `gamma`: numbers or lists. `methods`: one or several, as `method` of
     `solve`, and SciPy's "LSODA", "BDF" and "Radau" without any guard. `accuracies`: asked
     of each, rtol and atol (in periods) of SciPy's. `ts`: times in s at which errors are
-    measured, 61 even ones where None; 32 more over one slip period are added. `repeats`: at
+    measured, 61 even ones where None; 32 more over one slip period are added where one of
+    them has a whole one ahead. `repeats`: at
     most so many warm runs are timed. `seconds`: runs that take longer are ended, and
     tighter accuracies of that method are not tried.
 
@@ -203,8 +205,9 @@ def work_precision(
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took
     longer: methods share programs, and what this process has compiled before, or loads from
     a cache, is not compiled again); errors `error` (largest
-    outside slips, in eps), `slip_error`, `end_error`, `dissipation_error`, `mescd` (as the
-    Test Set for IVP Solvers, with atol/rtol = eps); `residual` of the energy-dissipation
+    outside slips, in eps), `slip_error` (NaN without a whole slip period), `end_error` and
+    `mescd` at the last of `ts` (as the Test Set for IVP Solvers, with atol/rtol = eps),
+    `dissipation_error`; `residual` of the energy-dissipation
     balance, for all along cubics through the ends of steps; `steps`, `rejected`,
     `evaluations` and `jacobians`: of all attempts, by the method itself, without what
     energies take. What a solver does not tell of these is found after the timed runs: for

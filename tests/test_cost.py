@@ -92,6 +92,39 @@ def test_a_scene_that_rests_has_no_slip():
     assert instants(still, EPS, np.linspace(0, 1, 5)).slip.size == 0
 
 
+@pytest.mark.parametrize("ts", [[2.99], [0.745], [2.98, 2.99]])
+def test_a_slip_period_that_is_cut_off_is_none(scene, ts):
+    """By the end of the scene, or of the slide: the load turns at 0.75."""
+    assert instants(scene, EPS, np.array(ts)).slip.size == 0
+
+
+def test_a_slip_period_begins_where_a_whole_one_is_left(scene):
+    when = instants(scene, EPS, np.array([1.2, 2.99]))
+    assert when.slip.size == 32
+    begin, end = when.ts[when.slip[[0, -1]]]
+    assert 1.2 < begin < end < 1.25
+    assert when.ts[when.asked[-1]] == 2.99
+
+
+def test_errors_at_the_end_are_those_of_the_last_time_asked_for(scene):
+    """The slip period after it is no part of what was asked."""
+    when = instants(scene, EPS, np.array([0.0, 0.5]))
+    assert when.ts[-1] > 0.5
+    true_z, spent = 0.1 + when.ts, 2.0 * when.ts
+    z, other = true_z.copy(), spent.copy()
+    z[when.asked[-1]] += 0.25 * EPS
+    other[when.asked[0]] += 0.1  # of the 1 J at 0.5 s
+    after = when.ts > 0.5
+    z[after] += 7 * EPS
+    other[after] += 3.0
+    calm = np.zeros(when.ts.size, dtype=bool)
+    found = errors_of(z, other, true_z, spent, calm, when, EPS)
+    assert found["end_error"] == pytest.approx(0.25)
+    assert found["mescd"] == pytest.approx(-np.log10(0.25 * EPS / (EPS + 0.6)))
+    assert found["dissipation_error"] == pytest.approx(0.1)
+    assert found["slip_error"] == pytest.approx(7.0)
+
+
 def test_errors_are_what_was_put_in(when, truth):
     shifted = truth.z + 0.25 * EPS
     found = errors_of(shifted, 1.5 * truth.dissipation, *true_of(truth), when, EPS)
