@@ -17,11 +17,11 @@ from .instants import Instants, instants
 from .provenance import explain, origin
 from .references import LEAST_JUDGED, Reference, reference
 from .scene import Scene, require_times, require_told_apart
-from .timed_runs import ENDED, accounted, clocked, runner, timed
+from .timed_runs import accounted, clocked, runner, timed
 from .wiggly.general import SCIPY, Run
 from .wiggly.methods import solver_of
 from .wiggly.own_methods import is_ours
-from .wiggly.status import Status
+from .wiggly.status import ENDED, Status
 from .wiggly.tolerance import accuracies_of
 
 METHODS = ("auto", "windowed", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau")

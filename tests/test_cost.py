@@ -320,3 +320,39 @@ def test_cells_of_a_study_that_are_measured(scene):
     assert len(chosen) == 3
     assert np.all(slips < 4e4)
     assert np.all(slips > 30)
+
+
+def table_of(data):
+    """Lines about the one cell, and the rows of its table by solver and accuracy."""
+    lines = cost_sections(data)[0][1].splitlines()
+    start = next(i for i, line in enumerate(lines) if line.startswith("solver"))
+    head, *rows = (line.split() for line in lines[start:])
+    return lines, {(row[0], row[1]): dict(zip(head, row, strict=False)) for row in rows}
+
+
+def test_the_table_prints_nothing_below_the_error_of_the_reference(data):
+    """1.6e-9 was printed where the reference was 3.3e-9 off, and nothing said so."""
+    floors = {
+        "reference_error": 3.3e-3,
+        "reference_slip_error": 4.4e-3,
+        "reference_end_error": 5.5e-3,
+        "reference_dissipation_error": 6.6e-3,
+        "reference_mescd": 1.2,
+    }
+    unsure = data.assign({name: data[name] * 0 + v for name, v in floors.items()})
+    lines, rows = table_of(unsure)
+    ours, lost = rows["auto", "1e-04"], rows["LSODA", "1e-01"]
+    names = ("error", "slip", "end", "dissipation", "mescd")
+    marked = [ours[name] for name in names]
+    assert marked == ["<3.3e-03", "<4.4e-03", "<5.5e-03", "<6.6e-03", ">1.2"]
+    assert lost["error"] == f"{float(data.error.sel(solver='LSODA')[0, 0, 0]):.1e}"
+    said = "error 3.3e-03, slip 4.4e-03, end 5.5e-03, dissipation 6.6e-03, mescd 1.2"
+    assert any(line.startswith("reference:") and said in line for line in lines)
+
+
+def test_the_table_prints_no_error_without_a_second_reference(data):
+    names = ("error", "slip_error", "end_error", "dissipation_error", "mescd")
+    worst = {f"reference_{name}": np.inf for name in names} | {"reference_mescd": -np.inf}
+    none = data.assign({name: data.error[:, :, 0, 0] * 0 + v for name, v in worst.items()})
+    _, rows = table_of(none)
+    assert [rows["auto", "1e-04"][name] for name in ("error", "end", "mescd")] == ["-"] * 3
