@@ -1,7 +1,7 @@
 """What accuracy costs in time: methods, accuracies and cells, measured side by side."""
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Set
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,14 +9,14 @@ import xarray as xr
 from tqdm import tqdm
 
 from .admissibility import require_reach
-from .arguments import require, require_flags, require_real, require_whole, require_x64
+from .arguments import require, require_flags, require_real, require_whole
 from .coefficients import coefficients_jit
 from .error_measures import MEASURES, errors_of
 from .grids import grid_of
 from .instants import Instants, instants
 from .provenance import explain, origin
 from .references import LEAST_JUDGED, Reference, reference
-from .scene import Scene, require_times, require_told_apart
+from .scene import Scene, require_scene, require_times, require_told_apart
 from .timed_runs import accounted, clocked, runner, timed
 from .wiggly.general import SCIPY, Run
 from .wiggly.methods import solver_of
@@ -154,18 +154,18 @@ def _measured(
 
 
 def _required(methods: Any, accuracies: Any, repeats: Any, seconds: Any):
+    ordered = not isinstance(methods, Mapping | Set)
+    require(ordered, "methods", methods, "a name, a solver, or a list of them")
     names = [methods] if _is_one(methods) else list(methods)
     names = [str(n) if isinstance(n, str) else n for n in names]  # NumPy's print otherwise
     require(bool(names), "methods", methods, "at least one method")
     for name in names:
-        if name not in SCIPY:
-            solver_of(name, "methods")
+        if not isinstance(name, str) or name not in SCIPY:
+            solver_of(name, "methods", SCIPY)
     labels = [m if isinstance(m, str) else _label(m) for m in names]
     unique = len(set(labels)) == len(labels)
     require(unique, "methods", ", ".join(labels), "each method once")
-    asked = accuracies_of(accuracies)[::-1]
-    judged = f"accuracies >= {LEAST_JUDGED:.0e}, which a reference can judge"
-    require(asked[-1] >= LEAST_JUDGED, "accuracies", asked[-1], judged)
+    asked = accuracies_of(accuracies, LEAST_JUDGED)[::-1]
     require_whole("repeats", repeats)
     require_real("seconds", seconds, "seconds > 0", lambda s: s > 0)
     return names, labels, asked
@@ -223,7 +223,7 @@ def work_precision(
     Mazzia and C. Magherini, Test Set for Initial Value Problem Solvers, release 2.4
     (2008).
     """
-    require_x64(scene)
+    require_scene(scene)
     require_flags(progress=progress)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     names, labels, asked = _required(methods, accuracies, repeats, seconds)

@@ -17,7 +17,8 @@ class Instants(NamedTuple):
     """Times in s, sorted; `asked` and `slip` pick from them.
 
     `asked`: those the user named; `slip`: of a whole slip period, empty where none of the
-    user's times begins one. `shift`: half the time around each in which a slip is looked for, 0 at rest.
+    user's times begins one. `shift`: half the time around each in which a slip is looked
+    for, 0 at rest.
     """
 
     ts: np.ndarray

@@ -20,6 +20,7 @@ from .cost_runs import (
 from .style import LIMIT
 
 _FEW = 6  # values that are ticks themselves
+_MARGIN = 0.1  # decades beyond the outer points
 _NAMES = {"eps": "$\\epsilon$ (m)", "gamma": "$\\gamma$"}
 _SCALES = {"eps": "log", "gamma": "linear"}
 
@@ -31,21 +32,19 @@ def columns_below(dataset: xr.Dataset) -> int:
     return 1 if dataset.gamma.size > 1 else 0
 
 
-def draw_cells(rows: list[Any], dataset: xr.Dataset) -> None:
+def draw_cells(place: Any, dataset: xr.Dataset) -> None:
     """Seconds, and error over accuracy, at the accuracy in the middle.
 
-    Against eps, one panel for each gamma; with one eps against gamma. `rows`: where: one
-    place in which the two panels of a single column stand side by side, else two.
+    Against eps, one panel for each gamma; with one eps against gamma. `place`: of a grid;
+    the two panels of a single column stand side by side.
     """
     middle = dataset.isel(accuracy=dataset.accuracy.size // 2)
     if dataset.eps.size > 1:
         along, groups = "eps", [middle.sel(gamma=g) for g in dataset.gamma.values]
     else:
         along, groups = "gamma", [middle.isel(eps=0)]
-    if len(groups) == 1:
-        panels = rows[0].subgridspec(1, 2).subplots()[:, None]
-    else:
-        panels = np.stack([row.subgridspec(1, len(groups)).subplots() for row in rows])
+    shape = (1, 2) if len(groups) == 1 else (2, len(groups))
+    panels = place.subgridspec(*shape).subplots().reshape(2, -1)
     asked = f"{float(middle.accuracy):.0e}"
     _row(panels[0], groups, along, _seconds, f"Time at accuracy {asked}")
     _row(panels[1], groups, along, _errors, f"Is the accuracy {asked} kept?")
@@ -81,12 +80,14 @@ def _row(panels: Any, groups: list, along: str, draw: Callable, title: str) -> N
 
 
 def _limits(extents: np.ndarray) -> tuple[float, float]:
-    """Half decades that hold all extents, three at least, for two labels and more."""
+    """Half decades that hold all extents and markers, and two powers of ten for labels."""
     known = extents[np.isfinite(extents) & (extents > 0)]
     if not known.size:  # nothing is drawn
         return 0.1, 10.0
-    low, high = np.floor(2 * np.log10(known.min())), np.ceil(2 * np.log10(known.max()))
-    return float(10 ** (0.5 * low)), float(10 ** (0.5 * max(high, low + 3)))
+    low = np.floor(2 * (np.log10(known.min()) - _MARGIN))
+    high = np.ceil(2 * (np.log10(known.max()) + _MARGIN))
+    second = 2 * np.ceil(0.5 * high) - 4  # of the powers of ten below the upper end
+    return float(10 ** (0.5 * min(low, second))), float(10 ** (0.5 * high))
 
 
 def _ticks(low: float, high: float) -> np.ndarray:

@@ -12,7 +12,7 @@ from .style import LIMIT, colour, marker
 MOST = 1e3  # eps: further off is as wrong
 TOO_LITTLE = "#fbe9e1"  # behind accuracies that are not kept
 UNKNOWN = "#eeeeee"  # behind errors that the reference cannot judge
-NOT_DONE: dict[str, Any] = {"marker": 6, "linestyle": "none", "markersize": 6}  # carets
+NOT_DONE: dict[str, Any] = {"marker": "^", "linestyle": "none", "markersize": 5}
 WRONG: dict[str, Any] = {"marker": "x", "linestyle": "none", "color": LIMIT}
 WRONG |= {"markersize": 9, "markeredgewidth": 1.6, "zorder": 5}
 _LEAST = 1e-10  # eps: two references that agree to the last digit are not better
@@ -88,11 +88,13 @@ def _room(values: np.ndarray, scale: str) -> tuple[np.ndarray, Any, float]:
     return places, back, float(np.diff(known).min()) if known.size > 1 else 1.0
 
 
-def mark_failed(panels: list[Any], failed: list[list[np.ndarray]]) -> None:
+def mark_failed(
+    panels: list[Any], failed: list[list[np.ndarray]], levels: bool = False
+) -> None:
     """Places of runs that are not done along the upper edge, for each panel and method.
 
-    The panels of a row get the same limits. To be called last: above the line y has no
-    meaning.
+    The panels of a row get the same limits. `levels`: one for each method, where places
+    may be the same. To be called last: above the line y has no meaning.
     """
     if not any(places.size for methods in failed for places in methods):
         return
@@ -107,8 +109,8 @@ def mark_failed(panels: list[Any], failed: list[list[np.ndarray]]) -> None:
         axes.axhline(high, color=LIMIT, linewidth=0.8, zorder=2.6)
         along_edge = {"transform": axes.get_xaxis_transform(), "zorder": 5}
         for index, places in enumerate(methods):
-            share = 0.25 + 0.5 * (1 - index / max(1, len(methods) - 1))
-            height = np.full(places.size, 1 - _STRIP + share * _STRIP)
+            level = index / max(1, len(methods) - 1) if levels else 0.5
+            height = np.full(places.size, 1 - (0.2 + 0.6 * level) * _STRIP)
             axes.plot(places, height, color=colour(index), **NOT_DONE, **along_edge)
     where = {"xycoords": "axes fraction", "annotation_clip": False}
     text = {"ha": "right", "va": "center", "color": LIMIT, "fontsize": 8}

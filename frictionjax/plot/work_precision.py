@@ -52,17 +52,16 @@ def draw(
     smallest = float(dataset.eps.min())
     chosen = smallest if eps is None else float(choose_eps(dataset, gamma, eps)[0])
     columns = columns_below(dataset)
-    rows = 1 + min(columns, 2)
-    width = max(11.0, 3.4 * columns)
-    figure = Picture(figsize=(width, 1.3 + 4.2 + 3.3 * (rows - 1)), layout="constrained")
-    heights = [4.2] + [3.3] * (rows - 1)
-    first, *below = figure.add_gridspec(rows, 1, height_ratios=heights)
+    heights = [4.2] + [3.3 * min(columns, 2)] * (columns > 0)  # inches
+    size = max(11.0, 3.4 * columns), 1.3 + sum(heights)
+    figure = Picture(figsize=size, layout="constrained")
+    grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
     cell = dataset.sel(gamma=gamma, eps=chosen)
-    left, right = first.subgridspec(1, 2).subplots()
+    left, right = grid[0].subgridspec(1, 2).subplots()
     _times(left, cell)
     _calibration(right, cell)
     if columns:
-        draw_cells(below, dataset)
+        draw_cells(grid[1], dataset)
     _legends(figure, dataset)
     return figure
 
@@ -88,7 +87,7 @@ def _times(axes: Any, cell: xr.Dataset) -> None:
     where = f"$\\epsilon$ = {float(cell.eps):.3g} m, $\\gamma$ = {float(cell.gamma):.3g}"
     axes.set_title(f"What accuracy costs: lower left is better  ({where})")
     _floor(axes, float(floor_of(cell)))
-    mark_failed([axes], [failed])
+    mark_failed([axes], [failed], levels=True)
 
 
 def _front(points: np.ndarray) -> np.ndarray:
@@ -145,10 +144,17 @@ def _legends(figure: Any, dataset: xr.Dataset) -> None:
         label = f"{name} ({failed} of {count} not done)" if failed else name
         methods.append(Line2D([], [], label=label, **look(name, index)))
     figure.legend(handles=methods, loc="outside upper center", ncols=4)
-    signs = [
-        Line2D([], [], **_FRONT | _SMALL, label="nothing is both faster and more accurate"),
-        Line2D([], [], **WRONG, label="success reported, but in another well"),
-        Line2D([], [], color=LIMIT, **NOT_DONE, label="not done: too slow, or failed"),
+    signs: list[Any] = [
+        Line2D([], [], **_FRONT | _SMALL, label="nothing is both faster and more accurate")
+    ]
+    if np.any(dataset.wrong > 0):
+        signs.append(Line2D([], [], **WRONG, label="success reported, but in another well"))
+    if np.any(failed_runs(dataset)):
+        sign = Line2D(
+            [], [], color=LIMIT, **NOT_DONE, label="not done: too slow, or failed"
+        )
+        signs.append(sign)
+    signs += [
         Patch(color=TOO_LITTLE, label="less accurate than asked for"),
         Patch(color=UNKNOWN, label="below the error of the reference"),
     ]

@@ -88,9 +88,9 @@ def cost_sections(data: xr.Dataset) -> list[tuple[str, str]]:
 
 _COLUMNS = (
     "error: largest of z outside slips; slip: mean over one slip period; end: at the last\n"
-    "time asked for; all in eps. dissipation: relative. residual: in energies of one slip.\n"
-    "mescd: right digits at the end. '<': below what the reference can judge, which is\n"
-    "printed instead ('>' of mescd). s: median of warm runs, spread: slowest over fastest of\n"
+    "time asked for; all in eps. dissipation: relative. residual: in energies of a slip.\n"
+    "mescd: right digits at the end. '<': below the error of the reference, which is what\n"
+    "is printed ('>' of mescd). s: median of warm runs, spread: slowest over fastest of\n"
     "several. compile s: what the first call took longer; methods share programs. field,\n"
     "Jacobian: evaluations, - where a solver does not tell. 'wrong': success was reported\n"
     "half an eps or more away, beyond the error of the reference."
