@@ -15,9 +15,11 @@ UNKNOWN = "#eeeeee"  # behind errors that the reference cannot judge
 NOT_DONE: dict[str, Any] = {"marker": "^", "linestyle": "none", "markersize": 5}
 WRONG: dict[str, Any] = {"marker": "x", "linestyle": "none", "color": LIMIT}
 WRONG |= {"markersize": 9, "markeredgewidth": 1.6, "zorder": 5}
+_EDGE: dict[str, Any] = {"markeredgecolor": "white", "markeredgewidth": 0.7}
 _LEAST = 1e-10  # eps: two references that agree to the last digit are not better
 _STRIP = 0.1  # of the height of a panel: for runs that are not done
-_SPREAD = 0.5  # of the distance of two places: what methods are moved apart
+_SPREAD, _STEP = 0.5, 0.1  # of the distance of two places: for all methods, between two
+_SIZES = {"auto": 12.0, "resolved": 9.0, "windowed": 6.0}
 
 
 class Runs(NamedTuple):
@@ -54,23 +56,24 @@ def floor_of(cells: xr.Dataset) -> np.ndarray:
 
 
 def look(name: str, index: int) -> dict[str, Any]:
-    """The library's own methods filled, the later the smaller; general solvers open.
+    """The library's own methods filled, of three sizes; general solvers open.
 
     Where own methods do the same, all are seen, one inside the other.
     """
     shade = colour(index)
     common = {"color": shade, "marker": marker(index), "zorder": 3}
     if is_ours(name):
-        own = {"markersize": max(5.0, 10.0 - 2.0 * index), "markeredgecolor": "white"}
-        return common | own | {"linewidth": 2.4, "markeredgewidth": 0.7, "zorder": 4}
+        size = _SIZES[name]
+        own = {"markersize": size, "zorder": 5 - 0.1 * size}  # smaller ones on top
+        return common | own | {"linewidth": 2.4, **_EDGE}
     return common | {"markerfacecolor": "white", "markersize": 6, "linewidth": 1.2}
 
 
 def apart(values: np.ndarray, count: int, scale: str = "log") -> list[np.ndarray]:
     """For each of `count` methods the places, moved to the side on such an axis."""
     places, back, room = _room(values, scale)
-    steps = (np.arange(count) - 0.5 * (count - 1)) / count
-    return [back(places + _SPREAD * room * step) for step in steps]
+    steps = min(_STEP, _SPREAD / count) * (np.arange(count) - 0.5 * (count - 1))
+    return [back(places + room * step) for step in steps]
 
 
 def set_places(axes: Any, values: np.ndarray, scale: str = "log") -> None:
@@ -81,11 +84,11 @@ def set_places(axes: Any, values: np.ndarray, scale: str = "log") -> None:
 
 
 def _room(values: np.ndarray, scale: str) -> tuple[np.ndarray, Any, float]:
-    """Places along the axis, the way back to values, and the least distance."""
+    """Places along the axis, the way back to values, and the least distance, at most 1."""
     there, back = (np.log10, lambda v: 10**v) if scale == "log" else (np.array, np.array)
     places = there(values)
     known = np.unique(places)
-    return places, back, float(np.diff(known).min()) if known.size > 1 else 1.0
+    return places, back, float(np.diff(known).min(initial=1.0))
 
 
 def mark_failed(

@@ -26,8 +26,9 @@ from .cost_runs import (
 from .style import LIMIT, Picture, choose_eps, choose_gamma, styled
 
 _MIDDLE = {"xycoords": "axes fraction", "ha": "center", "color": "#666666"}
-_FRONT: dict[str, Any] = {"color": "#F0E442", "alpha": 0.75, "linewidth": 11}
-_FRONT |= {"marker": "o", "markersize": 17, "markeredgewidth": 0}
+_FRONT: dict[str, Any] = {"color": "#F0E442", "alpha": 0.75, "linewidth": 12}
+_FRONT |= {"marker": "o", "markersize": 20, "markeredgewidth": 0}
+_CAP: dict[str, Any] = {"color": LIMIT, "linestyle": ":", "linewidth": 1}
 _SMALL = {"linewidth": 5, "markersize": 9}  # in the legend
 
 
@@ -86,6 +87,8 @@ def _times(axes: Any, cell: xr.Dataset) -> None:
     axes.set_ylabel("largest error of z outside slips ($\\epsilon$)")
     where = f"$\\epsilon$ = {float(cell.eps):.3g} m, $\\gamma$ = {float(cell.gamma):.3g}"
     axes.set_title(f"What accuracy costs: lower left is better  ({where})")
+    if np.any(cell.error > MOST):
+        axes.axhline(MOST, **_CAP)
     _floor(axes, float(floor_of(cell)))
     mark_failed([axes], [failed], levels=True)
 
@@ -126,6 +129,8 @@ def _calibration(axes: Any, cell: xr.Dataset) -> None:
         axes.plot(where[wrong], runs.errors[wrong], **WRONG)
         failed.append(where[runs.failed])
     axes.plot(ends, ends, color=LIMIT, linewidth=1)
+    if np.any(cell.error > MOST):
+        axes.axhline(MOST, **_CAP)
     _floor(axes, float(floor_of(cell)))
     low, high = axes.get_ylim()
     axes.fill_between(ends, ends, high, color=TOO_LITTLE, zorder=0)
@@ -149,6 +154,8 @@ def _legends(figure: Any, dataset: xr.Dataset) -> None:
     ]
     if np.any(dataset.wrong > 0):
         signs.append(Line2D([], [], **WRONG, label="success reported, but in another well"))
+    if np.any(dataset.error > MOST):
+        signs.append(Line2D([], [], **_CAP, label="1000 $\\epsilon$ and more"))
     if np.any(failed_runs(dataset)):
         sign = Line2D(
             [], [], color=LIMIT, **NOT_DONE, label="not done: too slow, or failed"
