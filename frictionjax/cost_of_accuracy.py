@@ -204,18 +204,17 @@ def work_precision(
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took
     longer: methods share programs, and what this process has compiled before, or loads from
-    a cache, is not compiled again); errors `error` (largest
-    outside slips, in eps), `slip_error` (NaN without a whole slip period), `end_error` and
-    `mescd` at the last of `ts` (as the Test Set for IVP Solvers, with atol/rtol = eps),
-    `dissipation_error`; `residual` of the energy-dissipation
-    balance, for all along cubics through the ends of steps; `steps`, `rejected`,
-    `evaluations` and `jacobians`: of all attempts, by the method itself, without what
-    energies take. What a solver does not tell of these is found after the timed runs: for
-    diffrax's by a run that counts (NaN where the timed one failed, or for other methods
-    than Runge-Kutta's), for SciPy's from the times of its calls. `status`, and `wrong`:
-    success reported half an eps or more off. Over (gamma, eps) what is known of the
-    reference: `reference_error` and so on is its distance from a second one, made otherwise
-    as `reference_ways` says; no error below it means anything.
+    a cache, is not compiled again); errors `error` (largest outside slips, in eps),
+    `slip_error` (NaN without a whole slip period), `end_error` and `mescd` at the last of
+    `ts` (as the Test Set for IVP Solvers, with atol/rtol = eps), `dissipation_error`;
+    `residual` of the energy-dissipation balance, for all along cubics through the ends of
+    steps; `steps`, `rejected`, `evaluations` and `jacobians`: of all attempts, by the
+    method itself, without what energies take. What a solver does not tell of these is found
+    after the timed runs: for diffrax's by a run that counts (NaN where the timed one
+    failed, or for other methods than Runge-Kutta's), for SciPy's from the times of its
+    calls. `status`, and `wrong`: success reported half an eps or more off. Over (gamma,
+    eps) what is known of the reference: `reference_error` and so on is its distance from a
+    second one, made otherwise as `reference_ways` says; no error below it means anything.
 
     Failures stay in the table with their status and errors of NaN.
 

@@ -14,7 +14,7 @@ from frictionjax.error_measures import errors_of
 from frictionjax.instants import instants, slips_of
 from frictionjax.plot.style import colour
 from frictionjax.plot.work_precision import _front
-from frictionjax.references import reference
+from frictionjax.references import _compared, reference
 from frictionjax.report.cost import chosen_eps, cost_sections
 from frictionjax.wiggly.general import run_scipy, told
 
@@ -272,6 +272,13 @@ def test_nothing_is_known_without_a_reference(scene, when, truth):
     still = np.zeros(when.ts.size)
     found = errors_of(truth.z, still, truth.z, still, truth.in_slip, when, EPS)
     assert found["dissipation_error"] == 0.0
+
+
+def test_without_a_second_method_the_reference_is_as_bad_as_can_be(when):
+    """Of mescd more is better: inf would be the best."""
+    errors = _compared(when, EPS, 3.0, []).errors
+    assert errors.pop("mescd") == -np.inf
+    assert set(errors.values()) == {np.inf}
 
 
 def test_nothing_is_concluded_below_the_error_of_the_reference(scene, when, truth):
