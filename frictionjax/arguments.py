@@ -154,12 +154,12 @@ def require_x64(*trees: Any) -> None:
 
 
 def require_numbers(name: str, value: Any, allowed: str, test) -> None:
-    """Check one number or an array of them."""
+    """Check one number or an array of them; True is none, though NumPy takes it for 1."""
     if not is_known(value):
         return
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {as_text(value)}: needs {allowed}") from None
+    array = known_numbers(value)
+    parts = jax.tree_util.tree_leaves(value)
+    truths = any(isinstance(part, bool | np.bool_) for part in parts)
+    require(_is_numeric(array) and not truths, name, value, allowed)
     good = array.size > 0 and np.all(np.isfinite(array)) and bool(np.all(test(array)))
     require(good, name, value, allowed)

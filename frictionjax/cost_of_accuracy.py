@@ -1,7 +1,7 @@
 """What accuracy costs in time: methods, accuracies and cells, measured side by side."""
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Set
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,19 +9,19 @@ import xarray as xr
 from tqdm import tqdm
 
 from .admissibility import require_reach
-from .arguments import require, require_flags, require_real, require_whole, require_x64
+from .arguments import require, require_flags, require_real, require_whole
 from .coefficients import coefficients_jit
 from .error_measures import MEASURES, errors_of
 from .grids import grid_of
 from .instants import Instants, instants
 from .provenance import explain, origin
 from .references import LEAST_JUDGED, Reference, reference
-from .scene import Scene, require_times, require_told_apart
-from .timed_runs import ENDED, accounted, clocked, runner, timed
+from .scene import Scene, require_scene, require_times, require_told_apart
+from .timed_runs import accounted, clocked, runner, timed
 from .wiggly.general import SCIPY, Run
 from .wiggly.methods import solver_of
 from .wiggly.own_methods import is_ours
-from .wiggly.status import Status
+from .wiggly.status import ENDED, Status
 from .wiggly.tolerance import accuracies_of
 
 METHODS = ("auto", "windowed", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau")
@@ -37,10 +37,10 @@ _RUN = {
     "compile_seconds": ("s", "what the first run took longer: tracing and compilation"),
     "error": ("1", "largest error of z outside slips, in eps"),
     "slip_error": ("1", "mean error of z over a whole slip period, in eps"),
-    "end_error": ("1", "error of z at the last time, in eps"),
-    "dissipation_error": ("1", "largest error of the dissipation over its final value"),
+    "end_error": ("1", "error of z at the last time asked for, in eps"),
+    "dissipation_error": ("1", "largest error of the dissipation over its last value"),
     "residual": ("1", "residual of the energy-dissipation balance over that of one slip"),
-    "mescd": ("1", "-log10(|z - z_ref|/(eps + |z_ref|)) at the last time"),
+    "mescd": ("1", "-log10(|z - z_ref|/(eps + |z_ref|)) at the last time asked for"),
     "steps": ("1", "steps tried"),
     "rejected": ("1", "steps rejected"),
     "evaluations": ("1", "evaluations of the field"),
@@ -51,8 +51,9 @@ _RUN = {
 _REFERENCE = {
     "reference_error": ("1", "distance of the reference from a second one, in eps"),
     "reference_slip_error": ("1", "the same over a whole slip period"),
-    "reference_end_error": ("1", "the same at the last time"),
+    "reference_end_error": ("1", "the same at the last time asked for"),
     "reference_dissipation_error": ("1", "the same for the dissipation"),
+    "reference_mescd": ("1", "mescd of the second one"),
     "reference_ways": (None, "methods of the two references"),
 }
 _COORDINATES = {
@@ -153,18 +154,18 @@ def _measured(
 
 
 def _required(methods: Any, accuracies: Any, repeats: Any, seconds: Any):
+    ordered = not isinstance(methods, Mapping | Set)
+    require(ordered, "methods", methods, "a name, a solver, or a list of them")
     names = [methods] if _is_one(methods) else list(methods)
     names = [str(n) if isinstance(n, str) else n for n in names]  # NumPy's print otherwise
     require(bool(names), "methods", methods, "at least one method")
     for name in names:
-        if name not in SCIPY:
-            solver_of(name, "methods")
+        if not isinstance(name, str) or name not in SCIPY:
+            solver_of(name, "methods", SCIPY)
     labels = [m if isinstance(m, str) else _label(m) for m in names]
     unique = len(set(labels)) == len(labels)
     require(unique, "methods", ", ".join(labels), "each method once")
-    asked = accuracies_of(accuracies)[::-1]
-    judged = f"accuracies >= {LEAST_JUDGED:.0e}, which a reference can judge"
-    require(asked[-1] >= LEAST_JUDGED, "accuracies", asked[-1], judged)
+    asked = accuracies_of(accuracies, LEAST_JUDGED)[::-1]
     require_whole("repeats", repeats)
     require_real("seconds", seconds, "seconds > 0", lambda s: s > 0)
     return names, labels, asked
@@ -195,24 +196,25 @@ def work_precision(
     `eps` in m and `gamma`: numbers or lists. `methods`: one or several, as `method` of
     `solve`, and SciPy's "LSODA", "BDF" and "Radau" without any guard. `accuracies`: asked
     of each, rtol and atol (in periods) of SciPy's. `ts`: times in s at which errors are
-    measured, 61 even ones where None; 32 more over one slip period are added. `repeats`: at
+    measured, 61 even ones where None; 32 more over one slip period are added where one of
+    them has a whole one ahead. `repeats`: at
     most so many warm runs are timed. `seconds`: runs that take longer are ended, and
     tighter accuracies of that method are not tried.
 
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took
     longer: methods share programs, and what this process has compiled before, or loads from
-    a cache, is not compiled again); errors `error` (largest
-    outside slips, in eps), `slip_error`, `end_error`, `dissipation_error`, `mescd` (as the
-    Test Set for IVP Solvers, with atol/rtol = eps); `residual` of the energy-dissipation
-    balance, for all along cubics through the ends of steps; `steps`, `rejected`,
-    `evaluations` and `jacobians`: of all attempts, by the method itself, without what
-    energies take. What a solver does not tell of these is found after the timed runs: for
-    diffrax's by a run that counts (NaN where the timed one failed, or for other methods
-    than Runge-Kutta's), for SciPy's from the times of its calls. `status`, and `wrong`:
-    success reported half an eps or more off. Over (gamma, eps) what is known of the
-    reference: `reference_error` and so on is its distance from a second one, made otherwise
-    as `reference_ways` says; no error below it means anything.
+    a cache, is not compiled again); errors `error` (largest outside slips, in eps),
+    `slip_error` (NaN without a whole slip period), `end_error` and `mescd` at the last of
+    `ts` (as the Test Set for IVP Solvers, with atol/rtol = eps), `dissipation_error`;
+    `residual` of the energy-dissipation balance, for all along cubics through the ends of
+    steps; `steps`, `rejected`, `evaluations` and `jacobians`: of all attempts, by the
+    method itself, without what energies take. What a solver does not tell of these is found
+    after the timed runs: for diffrax's by a run that counts (NaN where the timed one
+    failed, or for other methods than Runge-Kutta's), for SciPy's from the times of its
+    calls. `status`, and `wrong`: success reported half an eps or more off. Over (gamma,
+    eps) what is known of the reference: `reference_error` and so on is its distance from a
+    second one, made otherwise as `reference_ways` says; no error below it means anything.
 
     Failures stay in the table with their status and errors of NaN.
 
@@ -220,7 +222,7 @@ def work_precision(
     Mazzia and C. Magherini, Test Set for Initial Value Problem Solvers, release 2.4
     (2008).
     """
-    require_x64(scene)
+    require_scene(scene)
     require_flags(progress=progress)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     names, labels, asked = _required(methods, accuracies, repeats, seconds)

@@ -20,22 +20,23 @@ def errors_of(
     """Errors of states (m) and dissipation (J) at the instants, all of shape (n,).
 
     `error`: the largest at the times asked for outside slips, in eps; `slip_error`: mean
-    over a whole slip period; `end_error`: at the last time; `dissipation_error`: largest
-    over the true final value, 0 where that is 0; `mescd`:
-    -log10(|z - z_true|/(eps + |z_true|)) at the last time. NaN where no time counts, or
-    nothing is known.
+    over a whole slip period; `end_error`: at the last time asked for; `dissipation_error`:
+    largest at the times asked for, over the true value at the last of them, 0 where that
+    is 0; `mescd`: -log10(|z - z_true|/(eps + |z_true|)) at the last time asked for. NaN
+    where no time counts, or nothing is known.
     """
+    asked, last = when.asked, when.asked[-1]
     gaps = np.abs(z - true_z) / eps
-    counted = gaps[when.asked[~in_slip[when.asked]]]
-    relative = eps * gaps[-1] / (eps + abs(true_z[-1]))
-    final = true_dissipation[-1]
-    off = np.abs(dissipation - true_dissipation).max()
+    counted = gaps[asked[~in_slip[asked]]]
+    relative = eps * gaps[last] / (eps + abs(true_z[last]))
+    final = true_dissipation[last]
+    off = np.abs(dissipation - true_dissipation)[asked].max()
     nothing = float("nan")
     share = off / final if final > 0 else 0.0 * (off + final)  # NaN stays
     return {
         "error": float(counted.max()) if counted.size else nothing,
         "slip_error": float(gaps[when.slip].mean()) if when.slip.size else nothing,
-        "end_error": float(gaps[-1]),
+        "end_error": float(gaps[last]),
         "dissipation_error": float(share),
         "mescd": -float(np.log10(np.maximum(relative, _LEAST))),
     }

@@ -10,10 +10,11 @@ from .arguments import require_numbers
 def grid_of(name: str, values: Any) -> np.ndarray:
     """Values of eps, falling, or of gamma, rising, each once.
 
-    Raises `ValueError` where one is not a number > 0.
+    Raises `ValueError` where one is not a number > 0, or for lists of lists.
     """
-    require_numbers(name, values, f"{name} > 0, a number or a list", lambda v: v > 0)
-    array = np.unique(np.atleast_1d(np.asarray(values, dtype=float)).ravel())
+    allowed = f"{name} > 0, a number or a list"
+    require_numbers(name, values, allowed, lambda v: (v > 0) & (v.ndim <= 1))
+    array = np.unique(np.atleast_1d(np.asarray(values, dtype=float)))
     return array[::-1] if name == "eps" else array
 
 

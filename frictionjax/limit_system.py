@@ -8,11 +8,11 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .arguments import Real, is_concrete, require, require_x64
+from .arguments import Real, is_concrete, require
 from .coefficients import Coefficients, coefficients_jit
 from .friction_law import dissipation_potential
 from .programs import Program
-from .scene import Scene, require_times
+from .scene import Scene, require_scene, require_times
 from .strip import strip_of, strips_at
 from .supports import AbstractSupport
 
@@ -97,7 +97,7 @@ def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     allowed interval). Source: the play operator, see A. Mielke and T. Roubicek,
     Rate-Independent Systems (2015).
     """
-    require_x64(scene)
+    require_scene(scene)
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
     return _solve(scene, coefficients_jit(scene.potential), ts)

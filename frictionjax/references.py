@@ -22,7 +22,8 @@ LEAST_JUDGED = 10 * _TIGHTEST
 class Reference(NamedTuple):
     """States (m) and dissipation (J) at the instants, and how far they can be trusted.
 
-    `errors`: what `errors_of` says of a second method, by name; inf where there is none.
+    `errors`: what `errors_of` says of a second method, by name; as bad as can be, inf and
+    for mescd -inf, where there is none.
     `ways`: the two methods.
     """
 
@@ -74,7 +75,7 @@ def _ways(slips: float, tight: float) -> Iterator[tuple]:
 
 
 def _compared(when: Instants, eps: float, end: float, found: list[_Found]) -> Reference:
-    unknown = dict.fromkeys(MEASURES, float("inf"))
+    unknown = dict.fromkeys(MEASURES, float("inf")) | {"mescd": -float("inf")}
     if not found:
         blank = np.full(when.ts.size, np.nan)
         return Reference(blank, blank, np.zeros(when.ts.size, dtype=bool), unknown, "none")

@@ -19,6 +19,7 @@ from .arguments import (
     known_numbers,
     require,
     require_real,
+    require_x64,
 )
 from .bristles import AbstractBristle
 from .loads import AbstractLoad
@@ -168,6 +169,13 @@ def _farthest(scene: Scene) -> Real:
     forces = jnp.stack(load_range(scene))
     states = jax.vmap(scene.support.state_of)(forces)
     return jnp.maximum(jnp.max(jnp.abs(states)), jnp.abs(scene.z0))
+
+
+def require_scene(scene: Any) -> None:
+    """Check that it is a scene, in 64 bits."""
+    needs = "a Scene, as frictionjax.Scene or load_scene make it"
+    require(isinstance(scene, Scene), "scene", type(scene).__name__, needs)
+    require_x64(scene)
 
 
 def require_told_apart(scene: Scene, eps: Any) -> None:

@@ -15,13 +15,11 @@ from .wiggly.methods import solver_of
 from .wiggly.own_methods import is_ours
 from .wiggly.planning import TABLEAU
 from .wiggly.rosenbrock import Tableau
-from .wiggly.status import Status
+from .wiggly.status import ENDED, Status
 from .wiggly.trajectory import solve
 
 _FAST_STEP = 3e-6  # s of the fastest step through diffrax: bounds the number of steps
 _ENOUGH = 0.5  # s of warm runs: what takes longer is timed once
-# How runs end that have come to their end.
-ENDED = (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY)
 
 
 def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:

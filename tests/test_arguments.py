@@ -63,6 +63,38 @@ def test_wrong_arguments_are_named(call, message):
         call()
 
 
+@pytest.mark.parametrize("scene", [None, "scene.toml"])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda scene: fx.solve(scene, 1e-2),
+        lambda scene: fx.solve_limit(scene),
+        lambda scene: fx.sweep(scene, 1e-2, 1.0),
+        lambda scene: fx.work_precision(scene),
+        lambda scene: fx.predict_cost(scene, 1e-2),
+        lambda scene: fx.fit_budget(scene, 1e-2, 1.0, 10.0),
+        lambda scene: fx.order_cost(scene, [1e-2, 1e-3]),
+        lambda scene: fx.certify(scene, 1e-2, 1.0, [0.0, 1.0], [0.0, 0.0]),
+        lambda scene: fx.fit_trace(None, scene, 1e-2),
+    ],
+)
+def test_what_is_no_scene_is_named(call, scene):
+    kind = type(scene).__name__
+    with pytest.raises(ValueError, match=rf"scene = '{kind}': needs a Scene"):
+        call(scene)
+
+
+@pytest.mark.parametrize("value", [True, [True, 0.1], [[0.1]], "0.1", {0.1: 1}, {0.1}])
+def test_eps_that_is_no_number_nor_list_is_named(value):
+    for call in (
+        lambda: fx.sweep(SCENE, value, 1.0),
+        lambda: fx.solve(SCENE, value),
+        lambda: fx.predict_cost(SCENE, value, measure=False),
+    ):
+        with pytest.raises(ValueError, match=r"eps = .*: needs "):
+            call()
+
+
 @pytest.mark.parametrize(
     "call",
     [

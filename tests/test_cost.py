@@ -3,6 +3,7 @@
 import diffrax
 import numpy as np
 import pytest
+import xarray as xr
 from reference import System, sine
 from reference import solve as plain_solve
 
@@ -11,8 +12,9 @@ from frictionjax import cost_of_accuracy
 from frictionjax.cost_of_accuracy import _Column, _values
 from frictionjax.error_measures import errors_of
 from frictionjax.instants import instants, slips_of
+from frictionjax.plot.style import colour
 from frictionjax.plot.work_precision import _front
-from frictionjax.references import reference
+from frictionjax.references import _compared, reference
 from frictionjax.report.cost import chosen_eps, cost_sections
 from frictionjax.wiggly.general import run_scipy, told
 
@@ -90,6 +92,39 @@ def test_a_scene_that_rests_has_no_slip():
     )
     assert slips_of(still, EPS) == 0
     assert instants(still, EPS, np.linspace(0, 1, 5)).slip.size == 0
+
+
+@pytest.mark.parametrize("ts", [[2.99], [0.745], [2.98, 2.99]])
+def test_a_slip_period_that_is_cut_off_is_none(scene, ts):
+    """By the end of the scene, or of the slide: the load turns at 0.75."""
+    assert instants(scene, EPS, np.array(ts)).slip.size == 0
+
+
+def test_a_slip_period_begins_where_a_whole_one_is_left(scene):
+    when = instants(scene, EPS, np.array([1.2, 2.99]))
+    assert when.slip.size == 32
+    begin, end = when.ts[when.slip[[0, -1]]]
+    assert 1.2 < begin < end < 1.25
+    assert when.ts[when.asked[-1]] == 2.99
+
+
+def test_errors_at_the_end_are_those_of_the_last_time_asked_for(scene):
+    """The slip period after it is no part of what was asked."""
+    when = instants(scene, EPS, np.array([0.0, 0.5]))
+    assert when.ts[-1] > 0.5
+    true_z, spent = 0.1 + when.ts, 2.0 * when.ts
+    z, other = true_z.copy(), spent.copy()
+    z[when.asked[-1]] += 0.25 * EPS
+    other[when.asked[0]] += 0.1  # of the 1 J at 0.5 s
+    after = when.ts > 0.5
+    z[after] += 7 * EPS
+    other[after] += 3.0
+    calm = np.zeros(when.ts.size, dtype=bool)
+    found = errors_of(z, other, true_z, spent, calm, when, EPS)
+    assert found["end_error"] == pytest.approx(0.25)
+    assert found["mescd"] == pytest.approx(-np.log10(0.25 * EPS / (EPS + 0.6)))
+    assert found["dissipation_error"] == pytest.approx(0.1)
+    assert found["slip_error"] == pytest.approx(7.0)
 
 
 def test_errors_are_what_was_put_in(when, truth):
@@ -176,13 +211,20 @@ def test_bad_arguments_are_named(scene):
         ({"methods": []}, "methods = .*at least one"),
         ({"methods": np.array(["auto", "Euler5"])}, "methods = 'Euler5'"),
         ({"methods": ["auto", "auto"]}, "methods = .*once"),
+        ({"methods": "lsoda"}, "methods = 'lsoda': .*resolved, .*LSODA, BDF, Radau, "),
+        ({"methods": {"auto": 1}}, "methods = .*: needs a name, .* or a list"),
+        ({"methods": {"auto", "LSODA"}}, "methods = .*: needs a name, .* or a list"),
         ({"accuracies": [0.0]}, "accuracies = 0"),
-        ({"accuracies": [1e-2, 1e-9]}, "accuracies = 1e-09: .* 1e-08"),
+        ({"accuracies": [1e-2, 1e-9]}, "accuracies = 1e-09: needs 1e-08 <= acc"),
+        ({"accuracies": 1e-12}, "accuracies = 1e-12: needs 1e-08 <= accuracies <= 1"),
         ({"accuracies": []}, "accuracies = "),
         ({"accuracies": None}, "accuracies = None"),
         ({"accuracies": "abc"}, "accuracies = 'abc'"),
         ({"accuracies": [[1e-2], [1e-3, 1e-4]]}, "accuracies = "),
         ({"eps": -1.0}, "eps = -1"),
+        ({"eps": True}, "eps = True: needs eps > 0, a number or a list"),
+        ({"eps": [[0.1]]}, r"eps = \[\[0\.1\]\]: needs .*a number or a list"),
+        ({"gamma": [[1.0], [2.0]]}, r"gamma = \[\[1\.\]\n .*a number or a list"),
         ({"gamma": 0.0}, "gamma = 0"),
         ({"seconds": 0.0}, "seconds = 0"),
         ({"repeats": 0}, "repeats = 0"),
@@ -232,6 +274,13 @@ def test_nothing_is_known_without_a_reference(scene, when, truth):
     assert found["dissipation_error"] == 0.0
 
 
+def test_without_a_second_method_the_reference_is_as_bad_as_can_be(when):
+    """Of mescd more is better: inf would be the best."""
+    errors = _compared(when, EPS, 3.0, []).errors
+    assert errors.pop("mescd") == -np.inf
+    assert set(errors.values()) == {np.inf}
+
+
 def test_nothing_is_concluded_below_the_error_of_the_reference(scene, when, truth):
     run = run_scipy(scene, EPS, 1.0, when.ts, 1e-1, "LSODA", 60.0)
     for unsure, wrong in ((0.0, 1.0), (100.0, 0.0), (np.inf, 0.0)):
@@ -256,9 +305,150 @@ def test_a_picture_shades_what_the_reference_cannot_judge(data, unsure):
         assert said == np.isinf(unsure)
 
 
+METHODS = "auto", "windowed", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau"
+
+
+def cells_like(eps, gamma):
+    """A data set as of `work_precision` with known numbers, 8 methods, 3 accuracies.
+
+    Radau is never done, and BDF in another well at the loosest accuracy.
+    """
+    asked = np.array([1e-1, 1e-2, 1e-3])
+    shape = len(gamma), len(eps), len(METHODS), asked.size
+    seconds = 0.01 / np.array(eps)[:, None, None] * np.arange(1, 9)[:, None]
+    error = np.broadcast_to(0.1 * asked, shape).copy()
+    status, wrong = np.zeros(shape, dtype=int), np.zeros(shape)
+    status[..., 7, :] = int(fx.Status.TOO_SLOW)
+    error[..., 7, :] = np.nan
+    error[..., 6, 0], wrong[..., 6, 0] = 30.0, 1.0
+    dims = "gamma", "eps", "solver", "accuracy"
+    values = {
+        "seconds": np.broadcast_to(seconds - np.log(asked), shape).copy(),
+        "error": error,
+        "status": status,
+        "wrong": wrong,
+    }
+    data = xr.Dataset({name: (dims, value) for name, value in values.items()})
+    data["reference_error"] = dims[:2], np.full(shape[:2], 1e-6)
+    coords = {"gamma": gamma, "eps": eps, "solver": list(METHODS), "accuracy": asked}
+    return data.assign_coords(coords)
+
+
+def legend_of(figure):
+    return [t.get_text() for legend in figure.legends for t in legend.get_texts()]
+
+
+def lines_in(axes, shade):
+    """Numbers of the lines of a colour that have points."""
+    return [
+        np.array(line.get_data(), dtype=float)
+        for line in axes.lines
+        if line.get_color() == shade and np.size(line.get_xdata())
+    ]
+
+
+@pytest.mark.parametrize(
+    ("eps", "gamma", "panels", "along"),
+    [
+        ([0.1], [1.0], 0, None),
+        ([0.1, 0.05, 0.01], [1.0], 2, "eps"),
+        ([0.1], [0.5, 1.0, 1.5], 2, "gamma"),
+        ([0.1, 0.01], [0.5, 1.0, 1.5], 6, "eps"),
+    ],
+)
+def test_a_picture_shows_every_cell(eps, gamma, panels, along):
+    """With one eps and several gamma only one gamma was drawn."""
+    figure = fx.plot.draw_work_precision(cells_like(eps, gamma))
+    figure.draw_without_rendering()
+    below = figure.axes[2:]
+    assert len(below) == panels
+    values = {"eps": eps, "gamma": gamma, None: []}[along]
+    for axes in below:
+        assert axes.get_xlabel().startswith({"eps": "$\\eps", "gamma": "$\\gam"}[along])
+        ((x, _),) = lines_in(axes, colour(0))
+        assert x.size == len(values)
+        for index in range(len(METHODS)):
+            inside = lines_in(axes, colour(index))[0][0]
+            low, high = axes.get_xlim()
+            assert np.all((low < inside) & (inside < high))
+    if panels == 6:
+        for name, axes in zip(2 * gamma, below, strict=True):
+            assert f"$\\gamma$ = {name:.3g})" in axes.get_title(loc="left")
+        ((_, seconds),) = lines_in(below[0], colour(0))
+        assert seconds == pytest.approx(0.01 / np.array(eps) - np.log(1e-2))
+
+
+def test_each_method_has_a_colour_of_its_own():
+    assert len({colour(index) for index in range(len(METHODS))}) == len(METHODS)
+
+
+def test_methods_that_do_the_same_do_not_hide_each_other():
+    axes = fx.plot.draw_work_precision(cells_like([0.1], [1.0])).axes[1]
+    places = [lines_in(axes, colour(index))[0][0] for index in range(len(METHODS))]
+    assert np.all(np.diff(places, axis=0) != 0)
+    spread = np.ptp(np.log10(places), axis=0)
+    assert np.all(spread < 0.5)  # of the decade between accuracies
+
+
+def test_what_is_wrong_is_crossed_out_in_both_panels():
+    for axes in fx.plot.draw_work_precision(cells_like([0.1], [1.0])).axes:
+        crosses = [x for x in axes.lines if x.get_marker() == "x" and x.get_xdata().size]
+        assert [cross.get_ydata().tolist() for cross in crosses] == [[30.0]]
+
+
+def test_what_is_not_done_stands_above_the_upper_edge():
+    figure = fx.plot.draw_work_precision(cells_like([0.1, 0.01], [0.5, 1.0]))
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        radau = [x for x in axes.lines if x.get_color() == colour(7)]
+        (line,) = (x for x in radau if np.size(x.get_xdata()))
+        assert np.all(np.asarray(line.get_ydata()) > 0.9)
+        assert line.get_transform() == axes.get_xaxis_transform()
+        shown = [x for x in axes.lines if x.get_transform() == axes.transData]
+        highest = max(np.max(x.get_ydata()) for x in shown if np.size(x.get_ydata()))
+        to_axes = axes.transData + axes.transAxes.inverted()
+        assert to_axes.transform((1.0, highest))[1] <= 0.9 + 1e-9
+    assert "Radau (12 of 12 not done)" in legend_of(figure)
+
+
+def test_runs_are_counted_as_not_done_by_their_status():
+    """An error of 0, or of NaN where no time is outside slips, is no failure."""
+    cells = cells_like([0.1], [1.0])
+    cells.error[0, 0, 0] = [0.0, np.nan, 1e-9]
+    figure = fx.plot.draw_work_precision(cells)
+    assert legend_of(figure)[0] == "auto"
+    ((_, errors),) = lines_in(figure.axes[0], colour(0))
+    assert errors.tolist() == [1e-6, 1e-6]  # what the reference can judge
+
+
+def test_a_front_of_one_point_is_seen():
+    cells = cells_like([0.1], [1.0])
+    cells.seconds[0, 0, 1:] = 100.0
+    cells.seconds[0, 0, 0] = [3.0, 2.0, 1.0]  # the most accurate is the fastest
+    axes = fx.plot.draw_work_precision(cells).axes[0]
+    (front,) = (line for line in axes.lines if line.get_zorder() == 1)
+    assert front.get_xdata().tolist() == [1.0]
+    assert front.get_marker() == "o"
+    assert front.get_markersize() > 10
+
+
+@pytest.mark.parametrize("cells", [([0.1], [1.0]), ([0.1, 0.05, 0.01], [0.5, 1.0, 1.5])])
+def test_legends_cover_nothing(cells):
+    figure = fx.plot.draw_work_precision(cells_like(*cells))
+    figure.draw_without_rendering()
+    legends = [legend.get_window_extent() for legend in figure.legends]
+    assert len(legends) == 2
+    for axes in figure.axes:
+        assert axes.get_legend() is None
+        assert not any(axes.get_tightbbox().overlaps(legend) for legend in legends)
+    for legend in legends:
+        assert figure.bbox.x0 <= legend.x0
+        assert legend.x1 <= figure.bbox.x1
+
+
 def test_a_picture_of_nothing_but_failures(data):
     nothing = data.assign(error=data.error * np.nan)
-    fx.plot.draw_work_precision(nothing).canvas.draw()
+    fx.plot.draw_work_precision(nothing).draw_without_rendering()
 
 
 def test_the_front_is_what_no_run_beats():
@@ -274,7 +464,7 @@ def test_the_front_is_what_no_run_beats():
 def test_picture(data):
     picture = fx.plot.draw_work_precision(data)
     assert len(picture.axes) == 2
-    assert "LSODA" in " ".join(t.get_text() for t in picture.axes[0].get_legend().texts)
+    assert "LSODA" in " ".join(legend_of(picture))
     with pytest.raises(ValueError, match=r"eps = 0\.3: .*one of 0\.045"):
         fx.plot.draw_work_precision(data, eps=0.3)
     assert len(fx.plot.draw_work_precision(data, eps=EPS).axes) == 2
@@ -287,3 +477,39 @@ def test_cells_of_a_study_that_are_measured(scene):
     assert len(chosen) == 3
     assert np.all(slips < 4e4)
     assert np.all(slips > 30)
+
+
+def table_of(data):
+    """Lines about the one cell, and the rows of its table by solver and accuracy."""
+    lines = cost_sections(data)[0][1].splitlines()
+    start = next(i for i, line in enumerate(lines) if line.startswith("solver"))
+    head, *rows = (line.split() for line in lines[start:])
+    return lines, {(row[0], row[1]): dict(zip(head, row, strict=False)) for row in rows}
+
+
+def test_the_table_prints_nothing_below_the_error_of_the_reference(data):
+    """1.6e-9 was printed where the reference was 3.3e-9 off, and nothing said so."""
+    floors = {
+        "reference_error": 3.3e-3,
+        "reference_slip_error": 4.4e-3,
+        "reference_end_error": 5.5e-3,
+        "reference_dissipation_error": 6.6e-3,
+        "reference_mescd": 1.2,
+    }
+    unsure = data.assign({name: data[name] * 0 + v for name, v in floors.items()})
+    lines, rows = table_of(unsure)
+    ours, lost = rows["auto", "1e-04"], rows["LSODA", "1e-01"]
+    names = ("error", "slip", "end", "dissipation", "mescd")
+    marked = [ours[name] for name in names]
+    assert marked == ["<3.3e-03", "<4.4e-03", "<5.5e-03", "<6.6e-03", ">1.2"]
+    assert lost["error"] == f"{float(data.error.sel(solver='LSODA')[0, 0, 0]):.1e}"
+    said = "error 3.3e-03, slip 4.4e-03, end 5.5e-03, dissipation 6.6e-03, mescd 1.2"
+    assert any(line.startswith("reference:") and said in line for line in lines)
+
+
+def test_the_table_prints_no_error_without_a_second_reference(data):
+    names = ("error", "slip_error", "end_error", "dissipation_error", "mescd")
+    worst = {f"reference_{name}": np.inf for name in names} | {"reference_mescd": -np.inf}
+    none = data.assign({name: data.error[:, :, 0, 0] * 0 + v for name, v in worst.items()})
+    _, rows = table_of(none)
+    assert [rows["auto", "1e-04"][name] for name in ("error", "end", "mescd")] == ["-"] * 3

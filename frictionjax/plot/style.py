@@ -12,9 +12,13 @@ from matplotlib.figure import Figure
 
 from ..arguments import as_text, require
 
-# Okabe and Ito: told apart by colour-blind readers, in this order.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-MARKERS = ("o", "s", "^", "D", "v", "P")
+# Told apart by colour-blind readers, in this order: Okabe and Ito's, then Tol's muted
+# indigo, wine and olive, darker than all of those.
+COLOURS = (
+    *("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"),
+    *("#332288", "#882255", "#999933"),
+)
+MARKERS = ("o", "s", "^", "D", "v", "P", "*")  # another period than the colours
 LIMIT = "#222222"
 GUIDE = "#999999"
 STRIP = "#dfe6ee"
@@ -71,8 +75,8 @@ def colour(index: int) -> str:
 
 
 def marker(index: int) -> str:
-    """Marker of the line with this index; another period than the colours at 7 lines."""
-    return MARKERS[(index + index // len(COLOURS)) % len(MARKERS)]
+    """Marker of the line with this index."""
+    return MARKERS[index % len(MARKERS)]
 
 
 def shades(count: int) -> list[Any]:

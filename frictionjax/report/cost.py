@@ -87,21 +87,54 @@ def cost_sections(data: xr.Dataset) -> list[tuple[str, str]]:
 
 
 _COLUMNS = (
-    "error: largest of z outside slips; slip: mean over one slip period; end: at the\n"
-    "last time; all in eps. dissipation: relative. residual: in energies of one slip.\n"
-    "s: median of warm runs, spread: slowest over fastest of several. compile s: what the\n"
-    "first call took longer; methods share programs. field, Jacobian: evaluations, -\n"
-    "where a solver does not tell. 'wrong': success was reported half an eps or more\n"
-    "away, beyond the error of the reference; below that no error means anything."
+    "error: largest of z outside slips; slip: mean over one slip period; end: at the last\n"
+    "time asked for; all in eps. dissipation: relative. residual: in energies of a slip.\n"
+    "mescd: right digits at the end. '<': below the error of the reference, which is what\n"
+    "is printed ('>' of mescd). s: median of warm runs, spread: slowest over fastest of\n"
+    "several. compile s: what the first call took longer; methods share programs. field,\n"
+    "Jacobian: evaluations, - where a solver does not tell. 'wrong': success was reported\n"
+    "half an eps or more away, beyond the error of the reference."
 )
+# Names of columns and of what is measured in them.
+_MEASURED = {
+    "error": "error",
+    "slip": "slip_error",
+    "end": "end_error",
+    "dissipation": "dissipation_error",
+    "mescd": "mescd",
+}
 
 
 def _truth(cell: xr.Dataset) -> str:
+    """What the reference is, and the least of each measure that it can judge."""
+    floors = [
+        f"{column} {_digits(name, _reference(cell, name))}"
+        for column, name in _MEASURED.items()
+    ]
     return (
-        f"reference: {cell.reference_ways.item()}; they differ by "
-        f"{number(float(cell.reference_error))} eps, dissipation by "
-        f"{number(float(cell.reference_dissipation_error))}"
+        f"reference: {cell.reference_ways.item()}\n"
+        f"reference: the two differ by {', '.join(floors)}"
     )
+
+
+def _reference(run: xr.Dataset, name: str) -> float:
+    return float(run[f"reference_{name}"])
+
+
+def _digits(name: str, value: float) -> str:
+    if not np.isfinite(value):
+        return "-"
+    return f"{value:.1f}" if name == "mescd" else f"{value:.1e}"
+
+
+def _judged(run: xr.Dataset, name: str) -> str:
+    """A measure of one run, or the reference's own where that is no better."""
+    value, floor = float(run[name]), _reference(run, name)
+    if not (np.isfinite(value) and np.isfinite(floor)):
+        return "-"  # without a second reference nothing is known
+    if name == "mescd":
+        return f">{_digits(name, floor)}" if value > floor else _digits(name, value)
+    return f"<{_digits(name, floor)}" if value < floor else _digits(name, value)
 
 
 def cost_table(cell: xr.Dataset) -> str:
@@ -116,25 +149,22 @@ def cost_table(cell: xr.Dataset) -> str:
 
 
 def _row(run: xr.Dataset, names: dict[int, str]) -> tuple[str, ...]:
-    errors = ("error", "slip_error", "end_error", "dissipation_error", "residual")
+    *errors, mescd = (_judged(run, name) for name in _MEASURED.values())
     counts = ("steps", "rejected", "evaluations", "jacobians")
     known, several = int(run.runs) > 0, int(run.runs) > 1
     status = "wrong" if int(run.wrong) else names[int(run.status)]
     return (
         str(run.solver.item()),
         f"{float(run.accuracy):.0e}",
-        *(_short(float(run[name])) for name in errors),
-        f"{float(run.mescd):.1f}" if np.isfinite(run.mescd) else "-",
+        *errors,
+        _digits("residual", float(run.residual)),
+        mescd,
         number(float(run.seconds)),
         f"{float(run.seconds_high / run.seconds_low):.2f}" if several else "-",
         f"{float(run.compile_seconds):.1f}" if known else "-",
         *(_count(float(run[name])) for name in counts),
         status,
     )
-
-
-def _short(value: float) -> str:
-    return f"{value:.1e}" if np.isfinite(value) else "-"
 
 
 def _count(value: float) -> str:

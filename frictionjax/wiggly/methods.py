@@ -33,10 +33,13 @@ def known_solvers() -> list[str]:
     return sorted(names)
 
 
-def solver_of(method: object, argument: str = "method") -> diffrax.AbstractSolver:
+def solver_of(
+    method: object, argument: str = "method", others: tuple[str, ...] = ()
+) -> diffrax.AbstractSolver:
     """The solver that `method` names: ours, a diffrax name, class or instance.
 
-    Raises `ValueError` with the names allowed, as of the `argument`.
+    Raises `ValueError` with the names allowed, as of the `argument`, and among them
+    `others` that the caller knows.
     """
     if isinstance(method, diffrax.AbstractSolver):
         return method
@@ -44,7 +47,7 @@ def solver_of(method: object, argument: str = "method") -> diffrax.AbstractSolve
         return Rodas5P()
     named = isinstance(method, str)
     candidate: Any = getattr(diffrax, str(method), None) if named else method
-    allowed = f"one of {', '.join([*OURS, *known_solvers()])}, or a diffrax solver"
+    allowed = f"one of {', '.join([*OURS, *others, *known_solvers()])}, or a diffrax solver"
     usable = _is_usable(candidate)
     require(usable, argument, method if named else repr(method), allowed)
     return candidate()

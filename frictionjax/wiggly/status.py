@@ -19,6 +19,9 @@ class Status(Outcome):
     NOT_TRIED = 10, "not run: the method was too slow at a looser accuracy"
 
 
+# How runs end that have come to their end.
+ENDED = (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY)
+
 _BY_CODE = {int(status): status for status in Status}
 
 

@@ -32,6 +32,7 @@ _BEFORE = 0.005  # a slip, in slip periods: the last instants that count as outs
 # at 0.007 up to 1.7. Steps of windows: 1% more at gamma = 1, 4 to 9% at 3/4.
 _HASTE = 0.012
 _FASTEST_COUNTED = 5.0  # slide speeds: instants with a faster tip are inside a slip
+_LEAST_ASKED = 1e-10  # eps
 _TIGHTEST = 1e-13
 # Errors of a few slips, added up; those of all add up to 1e4 at eps = 1e-8, gamma = 1/4. At
 # 4, surveys at gamma = 0.4 were 4e-3 eps off; 16 to 500 gave the same to 1e-5 eps.
@@ -46,22 +47,24 @@ _MANY_WELLS, _FEWEST = 100.0, 1e-2
 _DOUBLE_SPACING = 2.0**-50  # shortest step over the duration: four spacings of floats
 
 
-def require_accuracy(accuracy: Any, name: str = "accuracy") -> None:
+def require_accuracy(
+    accuracy: Any, name: str = "accuracy", least: float = _LEAST_ASKED
+) -> None:
     """Check the accuracy asked for."""
-    allowed = f"1e-10 <= {name} <= 1 (error of z in units of eps)"
-    require_real(name, accuracy, allowed, lambda a: 1e-10 <= a <= 1)
+    allowed = f"{least:.0e} <= {name} <= 1 (error of z in units of eps)"
+    require_real(name, accuracy, allowed, lambda a: least <= a <= 1)
 
 
-def accuracies_of(accuracies: Any) -> np.ndarray:
+def accuracies_of(accuracies: Any, least: float = _LEAST_ASKED) -> np.ndarray:
     """Accuracies asked for, one or several, each once and rising.
 
-    Raises `ValueError` where they are none.
+    Raises `ValueError` where they are none, or less than `least`.
     """
     known = known_numbers(accuracies)
     numbers = known.dtype != object and known.ndim <= 1 and known.size > 0
     require(numbers, "accuracies", accuracies, "one number or a list of them")
     for value in np.atleast_1d(known):
-        require_accuracy(float(value), "accuracies")
+        require_accuracy(float(value), "accuracies", least)
     return np.unique(known.astype(float))
 
 

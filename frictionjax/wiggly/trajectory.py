@@ -17,9 +17,8 @@ from ..arguments import (
     require_flags,
     require_numbers,
     require_whole,
-    require_x64,
 )
-from ..scene import Scene, require_times, require_told_apart
+from ..scene import Scene, require_scene, require_times, require_told_apart
 from .engine import integrate_cells
 from .integration import MAX_STEPS, integrate
 from .methods import solver_of
@@ -179,7 +178,7 @@ def solve(
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact (`G > 0` fails), with the largest eps allowed.
     """
-    require_x64(scene)
+    require_scene(scene)
     require_numbers("eps", eps, "one number eps > 0", lambda e: (e > 0) & (e.ndim == 0))
     allowed = "one number gamma > 0"
     require_numbers("gamma", gamma, allowed, lambda g: (g > 0) & (g.ndim == 0))
