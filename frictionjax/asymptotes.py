@@ -61,9 +61,10 @@ def asymptote(x: np.ndarray, y: np.ndarray, scatter: float = 0.0) -> Asymptote:
     The interval is the hull of those of all curves that the data do not exclude (profile
     likelihood): y = a + p x + log(1 + c e^(q x)), q >= 0.2, and where the data show a
     bend also y = a + p x +- log(1 - c x). A correction of up to 5% at the largest x counts
-    even where scatter hides it; without a limit to what may hide, no interval is useful (one of 12% behind 1% scatter in a single decade is missed in 7 of 10 draws).
-    What the slope of a curve still changes beyond the smallest x is allowed for twice over,
-    for the next term of the correction.
+    even where scatter hides it; without a limit to what may hide, no interval is useful
+    (one of 12% behind 1% scatter, in one decade, is missed in 7 of 10 draws). What the
+    slope of a curve still changes beyond the smallest x is allowed for twice over, for the
+    next term of the correction.
 
     Coverage of 200 draws, 2% scatter over five decades, 8, 16, 32 points, of errors
     eps (1 + 3 eps^0.5): 99, 97, 98%; with eps^0.2: 99, 98, 96%; eps log(1/eps): 100, 97,

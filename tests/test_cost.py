@@ -287,3 +287,16 @@ def test_cells_of_a_study_that_are_measured(scene):
     assert len(chosen) == 3
     assert np.all(slips < 4e4)
     assert np.all(slips > 30)
+
+
+def test_a_scene_at_rest_has_cells_to_measure_too():
+    rest = fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        fx.supports.Spring(1.0),
+        fx.loads.Sine(0.01, 3.0),
+        3.0,
+    )
+    assert slips_of(rest, 1.0) == 0
+    assert chosen_eps(rest, [1e-3, 1e-1, 1e-2, 1e-4]) == [1e-1, 1e-3, 1e-4]
+    assert chosen_eps(rest, 1e-3) == [1e-3]
