@@ -56,9 +56,9 @@ class OrderCost(NamedTuple):
     """Result of `order_cost`.
 
     `grids`: all that were looked at, by time; `front`: the confirmed ones that no cheaper
-    one beats; `choice`: the cheapest of the confirmed ones within what was wanted; of
-    those that take at most a quarter longer, which a prediction does not tell apart, the one
-    with the narrowest interval. None where `success` is false.
+    one beats; `choice`: the cheapest of the confirmed ones within what was wanted, or
+    one of a narrower interval that takes at most a quarter longer, which predictions do not
+    tell apart; None where `success` is false.
     """
 
     grids: list[EpsGrid]
