@@ -11,11 +11,10 @@ from .folder import write_study
 from .job import Job, joined
 from .tables import coefficient_table, failed_table, order_table, row_table, sweep_table
 
-
 _COVERS = (
     "Intervals are for eps -> 0: scatter, corrections 1 + c eps^q with q >= 0.2 (up to 5%\n"
-    "where scatter hides them), logarithms that the errors show; slower or hidden ones are\n"
-    "not in them."
+    "where scatter hides them), logarithms that the errors show; slower or larger hidden\n"
+    "ones are not in them."
 )
 
 
