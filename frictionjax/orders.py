@@ -15,6 +15,7 @@ _WINDOWS = 5  # that are tried
 _CUBIC = 4  # parameters
 _ONE_SIDED = 1.64  # sigmas, 95%
 _RARE = 0.01
+_ROUNDING = 1e-12  # of log errors that follow a power to the last digit
 _ABOVE_FLOOR = 3.0  # errors below this many times their own uncertainty are left out
 
 
@@ -121,7 +122,7 @@ def _best_window(x: np.ndarray, y: np.ndarray) -> tuple[int, Asymptote]:
     last = _asymptote(x, y, starts[-1])
     for start in starts[:-1]:
         found = _asymptote(x, y, start)
-        if _agrees(found, last) and _is_random(found.left) and _is_even(found.left):
+        if _fits(found, last):
             return start, found
     return starts[-1], last
 
@@ -141,6 +142,12 @@ def _scatter(x: np.ndarray, y: np.ndarray) -> float:
         return 0.0
     left = y - np.polyval(np.polyfit(x - x.mean(), y, 3), x - x.mean())
     return float(np.sqrt(np.sum(left**2) / (x.size - _CUBIC)))
+
+
+def _fits(found: Asymptote, last: Asymptote) -> bool:
+    if np.abs(found.left).max() < _ROUNDING:
+        return True
+    return _agrees(found, last) and _is_random(found.left) and _is_even(found.left)
 
 
 def _agrees(found: Asymptote, last: Asymptote) -> bool:
