@@ -202,6 +202,16 @@ def study(
     _write(folder, lambda place: run_study(job, place, method, progress))
 
 
+def _refuse(beside: str, *names: str) -> None:
+    """Raise where the user has given an option that means nothing beside another one."""
+    context = click.get_current_context()
+    by_user = click.core.ParameterSource.COMMANDLINE
+    given = [n for n in names if context.get_parameter_source(n) is by_user]
+    if given:
+        listed = ", ".join(f"--{name}" for name in given)
+        raise click.UsageError(f"{listed}: not with {beside}")
+
+
 @main.command()
 @_scene
 @_surface
@@ -245,24 +255,24 @@ def cost(
     from .report.order_cost import run_order_cost
     from .report.place import require_folder
 
-    folder = require_folder(out)
-    job = read_job(scene, **surface)
     if order_within is not None:
-        if methods or accuracies:
-            raise click.UsageError("--methods and --accuracies: not with --order-within")
+        _refuse("--order-within", "methods", "accuracies", "seconds", "out", "progress")
+        job = read_job(scene, **surface)
         given = {"eps": eps, "gamma": gamma}
         some = {k: number_list(k, v) for k, v in given.items() if v is not None}
         job = job._replace(study=job.study | some)
         within = order_within
         click.echo(_interruptible(lambda: run_order_cost(job, within)))
         return
-    cells = {
-        "eps": number_list("eps", eps) if eps else chosen_eps(job.scene, job.study["eps"]),
-        "gamma": number_list("gamma", gamma) if gamma else [1.0],
-    }
+    folder = require_folder(out)
+    # An empty text is not a missing option: it is refused by name.
+    cells = {"gamma": [1.0] if gamma is None else number_list("gamma", gamma)}
+    asked = None if accuracies is None else number_list("accuracies", accuracies)
+    names = None if methods is None else [name.strip() for name in methods.split(",")]
+    known = None if eps is None else number_list("eps", eps)
+    job = read_job(scene, **surface)
+    cells["eps"] = chosen_eps(job.scene, job.study["eps"]) if known is None else known
     job = job._replace(study=job.study | cells)
-    asked = number_list("accuracies", accuracies) if accuracies else None
-    names = [name.strip() for name in methods.split(",")] if methods else None
     options = names, asked, seconds, progress
     _write(folder, lambda place: run_cost(job, place, *options))
 

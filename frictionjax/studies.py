@@ -35,9 +35,10 @@ def study(dataset: xr.Dataset) -> Study:
     """Convergence orders of a data set made by `sweep`.
 
     `.orders` holds, for each gamma: `order, order_low, order_high` of `sup_error` (95%
-    interval), the window `eps_min, eps_max, points` it rests on, how many cells were left
-    out as pre-asymptotic, near the solver's floor or failed, `constant`, `verdict` (CF
-    flags); the same with `dissipation_` in front; `beta = min(1, gamma)` of Lemmas 7 to 9
+    interval for eps -> 0; `orders.fit_order` says what is in it), the window `eps_min,
+    eps_max, points` it rests on, how many cells were left out as pre-asymptotic, near the
+    solver's floor or failed, `constant`, `verdict` (CF flags); the same with
+    `dissipation_` in front; `beta = min(1, gamma)` of Lemmas 7 to 9
     (the paper proves no rate for the sup error); the measured constants `C0` of Lemma 7
     and `C` of Lemma 9, the latter a lower bound from the times in the data set.
 

@@ -144,6 +144,17 @@ def test_help_without_a_command():
         (["study", "--row", "1"], "row = 1: needs --heights FILE"),
         (["friction", "--bristle", "soft"], "'soft' is not one of 'slanted', 'angular'"),
         (["cost", "--order-within", "0.1", "--methods", "auto"], "not with --order-within"),
+        (
+            ["cost", "--order-within", "0.1", "--out", "x", "--seconds", "7"],
+            "--seconds, --out: not with --order-within",
+        ),
+        (["cost", "--order-within", "0.1", "--progress"], "--progress: not with"),
+        (["cost", "--order-within", "0.1", "--eps", ""], "eps = '': needs numbers > 0"),
+        (["cost", "--eps", ""], "eps = '': needs numbers > 0"),
+        (["cost", "--gamma", ""], "gamma = '': needs numbers > 0"),
+        (["cost", "--accuracies", ""], "accuracies = '': needs numbers > 0"),
+        (["cost", "--methods", ""], "methods = '': needs one of"),
+        (["study", "--budget", "5", "--accuracy", "0"], "accuracy = 0: needs"),
         (["friction", "a", "b"], "unexpected extra argument (b)"),
     ],
 )

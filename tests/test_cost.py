@@ -513,3 +513,16 @@ def test_the_table_prints_no_error_without_a_second_reference(data):
     none = data.assign({name: data.error[:, :, 0, 0] * 0 + v for name, v in worst.items()})
     _, rows = table_of(none)
     assert [rows["auto", "1e-04"][name] for name in ("error", "end", "mescd")] == ["-"] * 3
+
+
+def test_a_scene_at_rest_has_cells_to_measure_too():
+    rest = fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        fx.supports.Spring(1.0),
+        fx.loads.Sine(0.01, 3.0),
+        3.0,
+    )
+    assert slips_of(rest, 1.0) == 0
+    assert chosen_eps(rest, [1e-3, 1e-1, 1e-2, 1e-4]) == [1e-1, 1e-3, 1e-4]
+    assert chosen_eps(rest, 1e-3) == [1e-3]

@@ -39,9 +39,14 @@ _HEADER = (
 
 
 def chosen_eps(scene: Scene, eps: Any) -> list[float]:
-    """The eps of a study's list with about a hundred, a thousand, ten thousand slips."""
+    """The eps of a study's list with about a hundred, a thousand, ten thousand slips.
+
+    Where nothing slips: the largest, the smallest and one between.
+    """
     known = np.sort(np.atleast_1d(np.asarray(eps, dtype=float)))[::-1]
     slips = slips_of(scene, 1.0) / known
+    if not slips.any():
+        return known[sorted({0, known.size // 2, known.size - 1})].tolist()
     wanted = [int(np.argmin(np.abs(np.log(slips / count)))) for count in _SLIPS]
     return known[sorted(set(wanted))].tolist()
 

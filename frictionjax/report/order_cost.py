@@ -19,8 +19,9 @@ def run_order_cost(job: Job, within: float) -> str:
 
 
 _GRIDS = (
-    "Grids that no cheaper one beats. interval: half of the 95% interval of the order of\n"
-    "sup |z_eps - z|, the widest of seven such grids; s: predicted for this machine."
+    "Grids that smaller eps confirm and no cheaper one beats. interval: half of the 95%\n"
+    "interval of the order of sup |z_eps - z| as eps -> 0, the widest of as many grids of\n"
+    "this kind as `of` says; s: predicted for this machine."
 )
 
 
@@ -32,8 +33,11 @@ def _grid_table(found: OrderCost) -> str:
             str(grid.points),
             f"{grid.order:.3f}",
             f"{grid.half_width:.2g}",
+            str(grid.laid),
             f"{grid.seconds:.2g}",
         )
         for grid in found.front
     ]
-    return table(("eps from", "to", "eps", "order", "interval", "s"), rows)
+    if not rows:
+        return "none"
+    return table(("eps from", "to", "eps", "order", "interval", "of", "s"), rows)

@@ -13,6 +13,7 @@ from ..grids import cells_of, grid_of
 from ..sweeps import sweep
 from ..wiggly.engine import prepare_cells
 from ..wiggly.own_methods import is_ours
+from ..wiggly.tolerance import require_accuracy
 from .job import Job
 
 _TIMES = 401  # pictures follow the slips of the larger eps
@@ -45,6 +46,8 @@ def prepare_study(job: Job, method: str) -> None:
 def within_budget(job: Job, seconds: float, method: str, asked: float | None) -> Job:
     """The job with the best accuracy, or the one asked for and the eps, that fit."""
     eps, gamma = job.study["eps"], job.study["gamma"]
+    if asked is not None:
+        require_accuracy(asked)  # `fit_budget` would name its own argument, accuracies
     tried = ACCURACIES if asked is None else (asked,)
     found = fit_budget(job.scene, eps, gamma, seconds, study_times(job), method, tried)
     count = np.unique(eps).size

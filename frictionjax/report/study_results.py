@@ -11,6 +11,12 @@ from .folder import write_study
 from .job import Job, joined
 from .tables import coefficient_table, failed_table, order_table, row_table, sweep_table
 
+_COVERS = (
+    "Intervals are for eps -> 0: scatter, corrections 1 + c eps^q with q >= 0.2 (up to 5%\n"
+    "where scatter hides them), logarithms that the errors show; slower or larger hidden\n"
+    "ones are not in them."
+)
+
 
 def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
     """Write the results of a job's sweep into `folder`, return its tables."""
@@ -23,7 +29,7 @@ def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
         sections.append(("Friction over the rows of the map", row_table(job.rows)))
     sections += [
         ("Cells", sweep_table(data)),
-        ("Orders of convergence", order_table(found.orders)),
+        ("Orders of convergence", f"{order_table(found.orders)}\n{_COVERS}"),
         ("Failed cells", failed_table(found.failed)),
     ]
     text = joined(sections)

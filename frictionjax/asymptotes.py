@@ -1,0 +1,173 @@
+"""Slope of a curve far to the left, where corrections have decayed: what data can say."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import stdtrit  # scipy.stats takes 0.2 s to import
+
+_LEVEL = 0.95
+_SLOWEST, _FASTEST = 0.2, 3.0  # q of a correction c e^(q x); faster ones leave two points
+_SMALLEST, _LARGEST = -0.95, 1e3  # c at the largest x
+_AT_THE_END = 0.5  # c e^(q x) at the smallest x: beyond, the data are of something else
+_HIDDEN = 0.05  # c that scatter may hide
+_EVIDENCE = 2.7  # of chi^2, 90%, beyond the interval's own: then a larger c is believed
+_CELLS_Q, _CELLS_C, _ZOOMS = 8, 45, 3
+_FINE = 1e-4  # c is spaced evenly below, by equal ratios above
+_LEAST = 4  # points: nothing but a line
+_LOGARITHMS = np.geomspace(1e-2, 30.0, 120)
+_ROUNDING = 1e-13  # of y
+
+
+class Asymptote(NamedTuple):
+    """Slope as x -> -inf with its 95% interval.
+
+    `left`: residuals of the best curve.
+    """
+
+    slope: float
+    low: float
+    high: float
+    left: np.ndarray
+
+
+class _Curves(NamedTuple):
+    """Curves a + slope x + f(x) with their best a and slope, one a row.
+
+    `misfit`: sum of squares of `left`; `beyond`: what their slope still changes at smaller
+    x; `price`: of believing in f, 0 to 1, infinite where f is still large at the end.
+    """
+
+    q: np.ndarray
+    c: np.ndarray
+    slope: np.ndarray
+    left: np.ndarray
+    misfit: np.ndarray
+    beyond: np.ndarray
+    price: np.ndarray
+
+
+class _Judged(NamedTuple):
+    """How far the curves are from the best one in chi^2, and within what they may be."""
+
+    best: int
+    away: np.ndarray
+    variance: float
+    limit: float
+
+
+def asymptote(x: np.ndarray, y: np.ndarray, scatter: float = 0.0) -> Asymptote:
+    """Slope of y (n,), n >= 4, as x (n,) -> -inf; y scatters by at least `scatter`.
+
+    The interval is the hull of those of all curves that the data do not exclude (profile
+    likelihood): y = a + p x + log(1 + c e^(q x)), q >= 0.2, and where the data show a
+    bend also y = a + p x +- log(1 - c x). A correction of up to 5% at the largest x counts
+    even where scatter hides it; without a limit to what may hide, no interval is useful
+    (one of 12% behind 1% scatter, in one decade, is missed in 7 of 10 draws). What the
+    slope of a curve still changes beyond the smallest x is allowed for twice over, for the
+    next term of the correction.
+
+    Coverage of 200 draws, 2% scatter over five decades, 8, 16, 32 points, of errors
+    eps (1 + 3 eps^0.5): 99, 97, 98%; with eps^0.2: 99, 98, 96%; eps log(1/eps): 100, 97,
+    97%; eps/log(1/eps): 93, 91, 90%; pure powers, 5% over two decades: 96, 97, 99%. Lost:
+    slope of a parabola and twice its move, in the narrowest window: 83, 65, 49%; 11, 24,
+    39%; 4, 21, 33%. That with the move of eps^0.2 over the window: 85, 65, 50%; 35, 46,
+    49%; 21, 27, 33%. One linear term e^(q x) in the narrowest window: 76, 46, 10%; 11, 18,
+    17%; 7, 0, 0%. The width on pure powers is 0.95, 1.08 and 1.2 times the first one's.
+    """
+    powers = _powers(x, y, np.ones(1), np.zeros(1))
+    line = powers.misfit[0]
+    q, c = np.log([_SLOWEST, _FASTEST]), _to_even(np.array([_SMALLEST, _LARGEST]))
+    for _ in range(_ZOOMS):
+        grid = np.meshgrid(
+            np.exp(np.linspace(q[0], q[1], _CELLS_Q)), np.linspace(c[0], c[1], _CELLS_C)
+        )
+        new = _powers(x, y, grid[0].ravel(), _from_even(grid[1].ravel()))
+        powers = _Curves(*(np.concatenate(two) for two in zip(powers, new, strict=True)))
+        judged = _judged(powers, x.size, line, scatter)
+        near = judged.away <= judged.limit
+        q = _around(np.log(powers.q[near]), q, _CELLS_Q)
+        c = _around(_to_even(powers.c[near]), c, _CELLS_C)
+    best = judged.best
+    low, high = _hull(powers, judged.away, judged, x)
+    if x.size > _LEAST:
+        logarithms = _logarithms(x, y)
+        cost = logarithms.misfit / judged.variance + judged.limit + _EVIDENCE
+        away = np.maximum(cost - _cost(powers, judged)[best], 0.0)
+        further = _hull(logarithms, away, judged, x)
+        low, high = min(low, further[0]), max(high, further[1])
+    return Asymptote(float(powers.slope[best]), low, high, powers.left[best])
+
+
+def _to_even(c: np.ndarray) -> np.ndarray:
+    return np.arcsinh(c / _FINE)
+
+
+def _from_even(c: np.ndarray) -> np.ndarray:
+    return _FINE * np.sinh(c)
+
+
+def _around(values: np.ndarray, ends: np.ndarray, cells: int) -> np.ndarray:
+    """The range of some values and a cell on both sides, inside the old range."""
+    cell = (ends[1] - ends[0]) / (cells - 1)
+    return np.clip([values.min() - cell, values.max() + cell], ends[0], ends[1])
+
+
+def _powers(x: np.ndarray, y: np.ndarray, q: np.ndarray, c: np.ndarray) -> _Curves:
+    bends = c[:, None] * np.exp(q[:, None] * (x - x.max()))
+    end = c * np.exp(q * (x.min() - x.max()))
+    price = np.where(np.abs(end) > _AT_THE_END, np.inf, np.minimum((c / _HIDDEN) ** 2, 1.0))
+    return _curves(x, y, np.log1p(bends), q, c, q * end / (1 + end), price)
+
+
+def _logarithms(x: np.ndarray, y: np.ndarray) -> _Curves:
+    """Curves whose logarithm the data must show; their form is exact, nothing is beyond."""
+    bends = np.log1p(_LOGARITHMS[:, None] * (x.max() - x))
+    c = np.concatenate([_LOGARITHMS, -_LOGARITHMS])
+    none = np.zeros(c.size)
+    return _curves(x, y, np.concatenate([bends, -bends]), none, c, none, none + 1)
+
+
+def _curves(x, y, bends, q, c, beyond, price) -> _Curves:
+    middle = x - x.mean()
+    unit = np.stack([np.ones(x.size), middle / np.sqrt(middle @ middle)])
+    unit[0] /= np.sqrt(x.size)
+    left = y - y.mean() - bends
+    part = left @ unit.T
+    left -= part @ unit
+    misfit = np.maximum((left**2).sum(axis=1), x.size * _ROUNDING**2)
+    slope = part[:, 1] / np.sqrt(middle @ middle)
+    return _Curves(q, c, slope, left, misfit, beyond, price)
+
+
+def _judged(curves: _Curves, n: int, line: float, scatter: float) -> _Judged:
+    freedom, few = n - 2, n <= _LEAST
+    variance = line / freedom if few else curves.misfit.min() / (n - 4)
+    judged = _Judged(0, np.zeros(0), max(variance, scatter**2), _limit(freedom))
+    best = int(np.argmin(_cost(curves, judged)))
+    if not few and abs(curves.c[best]) > _HIDDEN:
+        freedom = n - 4
+    variance = max(curves.misfit[best] / freedom, scatter**2)
+    judged = judged._replace(variance=float(variance), limit=_limit(freedom))
+    cost = _cost(curves, judged)
+    return judged._replace(best=int(np.argmin(cost)), away=cost - cost.min())
+
+
+def _cost(curves: _Curves, judged: _Judged) -> np.ndarray:
+    price = curves.price * (judged.limit + _EVIDENCE)
+    return curves.misfit / judged.variance + price
+
+
+def _limit(freedom: int) -> float:
+    return float(stdtrit(freedom, 0.5 + 0.5 * _LEVEL)) ** 2
+
+
+def _hull(
+    curves: _Curves, away: np.ndarray, judged: _Judged, x: np.ndarray
+) -> tuple[float, float]:
+    left = np.sqrt(np.maximum(judged.limit - away, 0.0) * judged.variance)
+    width = left / np.sqrt(np.sum((x - x.mean()) ** 2)) + np.abs(curves.beyond)
+    near = away <= judged.limit
+    if not near.any():
+        return np.inf, -np.inf
+    lows, highs = (curves.slope - width)[near], (curves.slope + width)[near]
+    return float(lows.min()), float(highs.max())
