@@ -60,6 +60,8 @@ def as_text(value: Any) -> str:
     if value is None or isinstance(value, str | bool | np.bool_) or callable(value):
         return repr(value)
     try:
+        if np.asarray(value).dtype.kind == "c":  # a float of it warns
+            return repr(value)
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
         return repr(value)

@@ -127,7 +127,7 @@ def _require_curve(scene: Scene, ts: Any, z: Any) -> tuple[np.ndarray, np.ndarra
     require(times.ndim == 1 and times.size >= 2, "ts", ts, "times, shape (n,), n >= 2")
     times = np.asarray(require_times(scene, times), dtype=float)
     require(np.all(np.diff(times) > 0), "ts", times, "times that increase")
-    shape = f"states of the shape {times.shape} of ts"
+    shape = f"real states of the shape {times.shape} of ts"
     require(states.shape == times.shape, "z", z, shape)
     return times, states.astype(float)
 

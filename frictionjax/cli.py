@@ -183,7 +183,7 @@ def study(
     _start()
     from .report.job import number_list, read_job
     from .report.place import require_folder
-    from .report.study import expected_cost, prepare_study, run_study, within_budget
+    from .report.study import expectation, prepare_study, run_study, within_budget
 
     folder = require_folder(out)
     given = {"eps": eps, "gamma": gamma}
@@ -197,8 +197,9 @@ def study(
     prepare_study(job, method)  # while its cost is found
     if budget is not None:
         job = within_budget(job, budget, method, accuracy)
-    elif (expected := expected_cost(job, method)) is not None:
-        click.echo(f"Expected: {expected}", err=True)
+        click.echo(job.notes[-1], err=True)
+    else:
+        click.echo(f"Expected: {expectation(job, method)}", err=True)
     _write(folder, lambda place: run_study(job, place, method, progress))
 
 
@@ -227,7 +228,7 @@ def _refuse(beside: str, *names: str) -> None:
     type=click.FloatRange(min=0, min_open=True),
     default=2.0,
     show_default=True,
-    help="After which a run is ended.",
+    help="After which a run is ended; diffrax's after a million steps for each.",
 )
 @click.option(
     "--order-within",

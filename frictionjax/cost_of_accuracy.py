@@ -143,7 +143,7 @@ def _measured(
             cells.append(_NOTHING)
         else:
             what = scene, eps, gamma, when.ts, accuracy, method, effort.seconds
-            found, times = timed(runner(*what), effort.repeats, effort.seconds, first)
+            found, times = timed(runner(*what), effort.repeats, first)
             first = None
             found = accounted(found, *what)
             cells.append(_values(found, times, column))
@@ -198,8 +198,8 @@ def work_precision(
     of each, rtol and atol (in periods) of SciPy's. `ts`: times in s at which errors are
     measured, 61 even ones where None; 32 more over one slip period are added where one of
     them has a whole one ahead. `repeats`: at
-    most so many warm runs are timed. `seconds`: runs that take longer are ended, and
-    tighter accuracies of that method are not tried.
+    most so many warm runs are timed. `seconds`: runs that take longer are ended (diffrax's
+    after a million steps for each), and tighter accuracies of that method are not tried.
 
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took

@@ -81,9 +81,9 @@ class Scene(eqx.Module):
             require(known, f"scene.{name}", type(part).__name__, needs)
         require(duration is not None, "scene.duration", "None", "a time > 0 in s")
         require(
-            tuple(effects) == (),
+            isinstance(effects, tuple | list) and len(effects) == 0,
             "scene.effects",
-            repr(effects),
+            effects if effects is None else repr(effects),
             "(): this version has no optional effects",
         )
         assert support is not None

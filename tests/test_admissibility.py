@@ -187,6 +187,7 @@ def scene(**change):
         ({"z0": np.nan}, "scene.z0 = nan"),
         ({"z0": [0.0, 1.0]}, "scene.z0 = .*one number"),
         ({"effects": ("inertia",)}, "scene.effects = "),
+        ({"effects": None}, "scene.effects = None"),
         (
             {"potential": fx.GivenPotential(lambda Y: jnp.sin(2 * jnp.pi * Y))},
             "scene.profile",

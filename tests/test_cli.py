@@ -11,6 +11,7 @@ import xarray as xr
 from command_line import error_line, run
 
 import frictionjax as fx
+from frictionjax.machine_cost import MachineCost
 from frictionjax.scene_files import default_study, scene_document
 
 SMALL = ["--eps", "0.097:0.031:4", "--gamma", "1,2", "--no-progress"]
@@ -31,6 +32,20 @@ def test_study_prints_its_tables(study):
     assert result.stdout.endswith(f"Written to {folder}\n")
     assert result.stderr.startswith("Expected: ")
     assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_budget_is_told_before_anything_runs(tmp_path, monkeypatch):
+    def stop(job, place, method, progress):
+        raise ValueError("stopped before it ran")
+
+    monkeypatch.setattr("frictionjax.report.study.run_study", stop)
+    machine = MachineCost(0.02, 0.01, 1e-4, 1e-7, 1e-6, 10.0, 5e8)
+    for name in ("machine_cost", "known_machine"):
+        monkeypatch.setattr(f"frictionjax.cost_prediction.{name}", lambda *_: machine)
+    result = run("study", *SMALL, "--budget", "1000", "--out", tmp_path / "there")
+    first, last = result.stderr.splitlines()
+    assert first.startswith("Budget of 1000 s: accuracy")
+    assert last == "Error: stopped before it ran"
 
 
 def test_study_writes_a_folder(study):

@@ -11,7 +11,7 @@ from frictionjax import cost_prediction, machine_cost
 from frictionjax.grids import cells_of
 from frictionjax.machine_cost import ELSEWHERE, MachineCost, keep_machine, known_machine
 from frictionjax.report.job import read_job
-from frictionjax.report.study import expected_cost, within_budget
+from frictionjax.report.study import expectation, expected_cost, within_budget
 from frictionjax.wiggly import rounds
 from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.layout import lay_out
@@ -237,6 +237,21 @@ def test_bad_arguments_are_named():
     for budget in (0.0, np.nan, [1.0, 2.0]):
         with pytest.raises(ValueError, match="budget = "):
             fx.fit_budget(scene_of(), 1e-2, 1.0, budget)
+
+
+def test_other_methods_cost_nobody_knows_what():
+    """Said before anything runs; a name that is none is refused first."""
+    job = read_job(None)
+    assert "unknown time" in expectation(job, "Kvaerno5")
+    with pytest.raises(ValueError, match="method = 'Euler5'"):
+        expectation(job, "Euler5")
+
+
+def test_memory_is_that_of_now_not_the_most_so_far():
+    large = np.ones(3 * 10**7)
+    with_it = machine_cost._resident_bytes()
+    del large
+    assert machine_cost._resident_bytes() < with_it - 1e8
 
 
 def test_a_study_within_a_budget():

@@ -12,7 +12,7 @@ ROOT = Path(frictionjax.__file__).parent
 
 # Units on one floor know nothing of each other; a folder is one unit.
 FLOORS = [
-    {"arguments", "progress"},
+    {"arguments", "progress", "asymptotes"},
     {"grids", "viscosity"},
     {"kept_programs"},
     {"outcomes", "compilation", "programs"},

@@ -12,6 +12,7 @@ from ..cost_prediction import ACCURACIES, CostPrediction, fit_budget, predict_co
 from ..grids import cells_of, grid_of
 from ..sweeps import sweep
 from ..wiggly.engine import prepare_cells
+from ..wiggly.methods import solver_of
 from ..wiggly.own_methods import is_ours
 from ..wiggly.tolerance import require_accuracy
 from .job import Job
@@ -29,6 +30,18 @@ def expected_cost(job: Job, method: str) -> CostPrediction | None:
         return None
     ts = study_times(job)
     return predict_cost(job.scene, ts=ts, method=method, measure=False, **job.study)
+
+
+def expectation(job: Job, method: str) -> str:
+    """In words what the sweep of a job will cost.
+
+    Raises `ValueError` for a method that there is not.
+    """
+    found = expected_cost(job, method)
+    if found is None:
+        solver_of(method)
+        return f"unknown time, as nobody has measured {method}"
+    return str(found)
 
 
 def prepare_study(job: Job, method: str) -> None:

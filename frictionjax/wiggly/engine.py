@@ -109,6 +109,7 @@ def integrate_cells(
     balanced: bool = True,
     report: Report = lambda share: None,
     suprema: bool = True,
+    tableau: Tableau = TABLEAU,
 ) -> Answers | None:
     """Every cell (eps, gamma), shape (cells,): values at `ts` and sums over [0, T].
 
@@ -118,7 +119,8 @@ def integrate_cells(
     where theirs do too, one lane goes through all. Accuracies looser than 1e-3 are solved
     as that. Where neither energies are `balanced` nor `suprema` wanted, "windowed" and
     "auto" leave out all slips between the times.
-    `report` is told the share of each batch of jobs that is done. None where the load
+    `report` is told the share of each batch of jobs that is done. `tableau`: another scheme
+    than the lanes' own, to compare with. None where the load
     turns more often than the scene has room for.
     """
     path = path_of(scene)
@@ -127,14 +129,14 @@ def integrate_cells(
     accuracy = min(accuracy, LOOSEST)
     lanes = lane_scene(scene, float(eps.max()))
     wanted = _sums(balanced, suprema)
-    _prepare(lanes, eps.size, ts.size, wanted)
+    _prepare(lanes, eps.size, ts.size, wanted, tableau)
     plan = planned(scene, lanes, path, eps, gamma, ts.size, accuracy, method)
     control, ground, needs, ridden = plan
     steering = control.tolerance, control.loosest, control.pace, control.reach
     cells = Cells(eps, viscosity_of(eps, gamma), control.first_step, *steering)
     parts = _Cellwise(eps, ground, cells, np.asarray(control.brief), needs)
     every = method == "resolved"
-    sweep = _Sweep(scene, path, lanes, TABLEAU, ts, accuracy, wanted, every, report)
+    sweep = _Sweep(scene, path, lanes, tableau, ts, accuracy, wanted, every, report)
     answers, never = _first_attempt(sweep, parts, ridden)
     answers = answers._replace(tolerance=np.asarray(control.tolerance))
     for _ in range(_SURVEYS):
@@ -253,11 +255,13 @@ def _sums(balanced: bool, suprema: bool) -> Sums:
     return Sums(energies=balanced, extremes=balanced or suprema)
 
 
-def _prepare(lanes: LaneScene, cells: int, times: int, wanted: Sums) -> None:
+def _prepare(
+    lanes: LaneScene, cells: int, times: int, wanted: Sums, tableau: Tableau = TABLEAU
+) -> None:
     """Have the loop compiled beside the planning."""
     if cells * times > _FEW:
         legs = cells * times // WORKERS
-        prepare(lanes, TABLEAU, Room(cells, legs // 2, legs), wanted)
+        prepare(lanes, tableau, Room(cells, legs // 2, legs), wanted)
 
 
 def _affordable(path: Path, cells: _Cellwise) -> np.ndarray:

@@ -74,14 +74,14 @@ def run_scipy(
     The tip coordinate y is the unknown, with rtol = atol = `tolerance` (periods), and the
     dissipation beside it, relative to what a slip dissipates. Exact Jacobian; compiled
     rates, called from Python. No guard against steps over wells: they are what happens.
-    Ends after `seconds` with the status TOO_SLOW. Steps are the accepted ones; see `told`.
+    Ends after `seconds`, compilation apart, as TOO_SLOW. Steps are the accepted ones; see
+    `told`.
     """
     field = field_of(scene, jnp.asarray(eps), jnp.asarray(gamma))
     solver_type = getattr(scipy_integrate, method)
     start = np.array([float(field.start(scene.z0)), 0.0])
     found = np.full((ts.size, 2), np.nan)
     found[ts <= 0.0] = start
-    record, status, deadline = StepRecord(), Status.OK, time.perf_counter() + seconds
     law = coefficients_jit(scene.potential)
     slip = eps * float(law.rho_plus - law.rho_minus)
     edges = np.union1d(np.asarray(scene.turning_points()), [0.0, float(ts[-1])])
@@ -95,6 +95,8 @@ def run_scipy(
         record.jacobians += 1
         return np.asarray(_jacobian(field, np.float64(t), y))
 
+    jax.block_until_ready([fn(field, np.float64(0.0), start) for fn in (_rates, _jacobian)])
+    record, status, deadline = StepRecord(), Status.OK, time.perf_counter() + seconds
     for begin, end in itertools.pairwise(edges):
         solver = solver_type(
             rates,
