@@ -10,7 +10,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 import frictionjax as fx
-from frictionjax.wiggly.cell_sums import CellWay, _since_begin, deviations, energetics
+from frictionjax.wiggly.cell_sums import (
+    CellWay,
+    _outputs,
+    _since_begin,
+    deviations,
+    energetics,
+)
 from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.path import Path
 from frictionjax.wiggly.stops import Stops
@@ -177,6 +183,17 @@ def test_times_in_a_rest_of_the_path_share_a_window():
         sums[:, 1:3].sum(1),
     ]
     assert np.array_equal(_since_begin(windows, stops, chosen), np.stack(expected, axis=1))
+
+
+def test_times_of_a_window_count_from_the_survey_in_which_it_begins():
+    """Taken beyond its ends a survey gave 6e7 times what is dissipated (gamma = 0.1)."""
+    surveys = [SimpleNamespace(low=0.0), SimpleNamespace(low=1.0)]
+    cell = SimpleNamespace(chain=np.zeros(0, dtype=int), surveys=surveys)
+    stops = SimpleNamespace(time=np.array([0.5, 0.9, 1.4, 1.6]))
+    windows = SimpleNamespace(owner=np.array([0, 1, 1, 2]), begin=np.array([0.4, 0.8, 1.5]))
+    found = _outputs(cell, stops, SimpleNamespace(windows=windows), np.arange(4))
+    assert found.survey.tolist() == [0, 0, 0, 1]
+    assert found.begin.tolist() == [0.4, 0.8, 0.8, 1.5]
 
 
 class Bursts(eqx.Module):

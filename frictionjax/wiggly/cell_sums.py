@@ -54,8 +54,11 @@ def _outputs(cell: CellWay, stops: Stops, layout: Layout, output: np.ndarray) ->
     place = np.full(stops.time.size + 1, -1)
     place[cell.chain] = np.arange(cell.chain.size)
     lows = np.array([survey.low for survey in cell.surveys])
-    survey = np.searchsorted(lows, stops.time[output], side="right") - 1
-    begin = layout.windows.begin[layout.windows.owner[output]]
+    owner = layout.windows.owner
+    # Where its window begins: times of one window may be in surveys further on.
+    first = np.searchsorted(owner, owner[output])
+    survey = np.searchsorted(lows, stops.time[first], side="right") - 1
+    begin = layout.windows.begin[owner[output]]
     return _Outputs(output, place[output], survey, begin)
 
 
