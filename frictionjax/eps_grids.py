@@ -96,11 +96,11 @@ def order_cost(
 
     A grid counts only where its order is confirmed: its intervals are compared with those
     of all grids of the pilot whose range lies at smaller eps (neither end larger, one
-    smaller); one that does not overlap
-    is a contradiction, and one that reaches the pilot's smallest eps must have an interval
-    of at most five times `within`. The last range of the pilot has nothing to be compared
-    with. `message` says what was compared, and which ranges disagree. (Without: 1.30 +-
-    0.02 at eps 1e-2 to 1e-3 where the order falls to 0.9 decade by decade.)
+    smaller); one that does not overlap is a contradiction, and one that reaches the pilot's
+    smallest eps must have an interval of at most five times `within`. The last range of the
+    pilot has nothing to be compared with. `message` says what was compared, and which
+    ranges disagree. (Without: 1.30 +- 0.02 at eps 1e-2 to 1e-3 where the order falls to 0.9
+    decade by decade.)
 
     Raises `ValueError` for arguments out of range, or less than two eps.
     """

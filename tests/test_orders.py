@@ -79,7 +79,10 @@ def test_a_logarithm_that_shows(power, points):
 @pytest.mark.parametrize("largest", [0.04, 0.01])
 def test_a_decade_of_a_correction_that_the_scatter_hides(largest):
     """As in the default scene at gamma = 1: sizes 4 to 1%, scatter a tenth of that."""
-    law = lambda eps: eps * (1 - largest * (10 * eps) ** 0.5)  # noqa: E731
+
+    def law(eps):
+        return eps * (1 - largest * (10 * eps) ** 0.5)
+
     held, half = coverage(law, 12, 1, 0.08 * largest)
     assert held >= 0.93
     assert half < largest

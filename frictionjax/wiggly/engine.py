@@ -120,8 +120,8 @@ def integrate_cells(
     as that. Where neither energies are `balanced` nor `suprema` wanted, "windowed" and
     "auto" leave out all slips between the times.
     `report` is told the share of each batch of jobs that is done. `tableau`: another scheme
-    than the lanes' own, to compare with. None where the load
-    turns more often than the scene has room for.
+    than the lanes' own, to compare with. None where the load turns more often than the
+    scene has room for.
     """
     path = path_of(scene)
     if path is None:

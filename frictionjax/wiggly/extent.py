@@ -67,7 +67,7 @@ def spend(
     """The extent after a step on which the dissipation beyond the guide's goes from one
     value (J) to the other, at these rates (W) at its ends.
 
-    (Ends alone missed 1.5e-3 of all that two slips dissipate, after a short fast stretch of
+    (Ends alone missed 7e-4 of all that two slips dissipate, after a short fast stretch of
     the load: at the top slips end while the guide goes on.)
     """
     low, high = _extremes(step, beyond, rates)
