@@ -3,7 +3,6 @@
 import diffrax
 import numpy as np
 import pytest
-import xarray as xr
 from reference import System, sine
 from reference import solve as plain_solve
 
@@ -12,8 +11,6 @@ from frictionjax import cost_of_accuracy
 from frictionjax.cost_of_accuracy import _Column, _values
 from frictionjax.error_measures import errors_of
 from frictionjax.instants import instants, slips_of
-from frictionjax.plot.style import colour
-from frictionjax.plot.work_precision import _front
 from frictionjax.references import _compared, reference
 from frictionjax.report.cost import chosen_eps, cost_sections
 from frictionjax.wiggly.general import run_scipy, told
@@ -295,185 +292,6 @@ def test_nothing_is_concluded_below_the_error_of_the_reference(scene, when, trut
         values = _values(run, {}, column)
         assert values["error"] > 0.5
         assert values["wrong"] == wrong
-
-
-@pytest.mark.parametrize("unsure", [1e-2, 1e2, np.inf])
-def test_a_picture_shades_what_the_reference_cannot_judge(data, unsure):
-    unsure_data = data.assign(reference_error=data.reference_error * 0 + unsure)
-    for axes in fx.plot.draw_work_precision(unsure_data).axes:
-        shades = [p for p in axes.patches if p.get_facecolor()[:3] == (238 / 255,) * 3]
-        low, high = axes.get_ylim()
-        top = max(patch.get_window_extent().y1 for patch in shades)
-        shown = axes.transData.inverted().transform((0.0, top))[1]
-        edge = min(max(min(unsure, 1e3), low), high)
-        assert shown == pytest.approx(edge, rel=1e-6)
-        said = any("no reference" in text.get_text() for text in axes.texts)
-        assert said == np.isinf(unsure)
-
-
-METHODS = "auto", "windowed", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau"
-
-
-def cells_like(eps, gamma):
-    """A data set as of `work_precision` with known numbers, 8 methods, 3 accuracies.
-
-    Radau is never done, and BDF in another well at the loosest accuracy.
-    """
-    asked = np.array([1e-1, 1e-2, 1e-3])
-    shape = len(gamma), len(eps), len(METHODS), asked.size
-    seconds = 0.01 / np.array(eps)[:, None, None] * np.arange(1, 9)[:, None]
-    error = np.broadcast_to(0.1 * asked, shape).copy()
-    status, wrong = np.zeros(shape, dtype=int), np.zeros(shape)
-    status[..., 7, :] = int(fx.Status.TOO_SLOW)
-    error[..., 7, :] = np.nan
-    error[..., 6, 0], wrong[..., 6, 0] = 30.0, 1.0
-    dims = "gamma", "eps", "solver", "accuracy"
-    values = {
-        "seconds": np.broadcast_to(seconds - np.log(asked), shape).copy(),
-        "error": error,
-        "status": status,
-        "wrong": wrong,
-    }
-    data = xr.Dataset({name: (dims, value) for name, value in values.items()})
-    data["reference_error"] = dims[:2], np.full(shape[:2], 1e-6)
-    coords = {"gamma": gamma, "eps": eps, "solver": list(METHODS), "accuracy": asked}
-    return data.assign_coords(coords)
-
-
-def legend_of(figure):
-    return [t.get_text() for legend in figure.legends for t in legend.get_texts()]
-
-
-def lines_in(axes, shade):
-    """Numbers of the lines of a colour that have points."""
-    return [
-        np.array(line.get_data(), dtype=float)
-        for line in axes.lines
-        if line.get_color() == shade and np.size(line.get_xdata())
-    ]
-
-
-@pytest.mark.parametrize(
-    ("eps", "gamma", "panels", "along"),
-    [
-        ([0.1], [1.0], 0, None),
-        ([0.1, 0.05, 0.01], [1.0], 2, "eps"),
-        ([0.1], [0.5, 1.0, 1.5], 2, "gamma"),
-        ([0.1, 0.01], [0.5, 1.0, 1.5], 6, "eps"),
-    ],
-)
-def test_a_picture_shows_every_cell(eps, gamma, panels, along):
-    """With one eps and several gamma only one gamma was drawn."""
-    figure = fx.plot.draw_work_precision(cells_like(eps, gamma))
-    figure.draw_without_rendering()
-    below = figure.axes[2:]
-    assert len(below) == panels
-    values = {"eps": eps, "gamma": gamma, None: []}[along]
-    for axes in below:
-        assert axes.get_xlabel().startswith({"eps": "$\\eps", "gamma": "$\\gam"}[along])
-        ((x, _),) = lines_in(axes, colour(0))
-        assert x.size == len(values)
-        for index in range(len(METHODS)):
-            inside = lines_in(axes, colour(index))[0][0]
-            low, high = axes.get_xlim()
-            assert np.all((low < inside) & (inside < high))
-    if panels == 6:
-        for name, axes in zip(2 * gamma, below, strict=True):
-            assert f"$\\gamma$ = {name:.3g})" in axes.get_title(loc="left")
-        ((_, seconds),) = lines_in(below[0], colour(0))
-        assert seconds == pytest.approx(0.01 / np.array(eps) - np.log(1e-2))
-
-
-def test_each_method_has_a_colour_of_its_own():
-    assert len({colour(index) for index in range(len(METHODS))}) == len(METHODS)
-
-
-def test_methods_that_do_the_same_do_not_hide_each_other():
-    axes = fx.plot.draw_work_precision(cells_like([0.1], [1.0])).axes[1]
-    places = [lines_in(axes, colour(index))[0][0] for index in range(len(METHODS))]
-    assert np.all(np.diff(places, axis=0) != 0)
-    spread = np.ptp(np.log10(places), axis=0)
-    assert np.all(spread < 0.5)  # of the decade between accuracies
-
-
-def test_what_is_wrong_is_crossed_out_in_both_panels():
-    for axes in fx.plot.draw_work_precision(cells_like([0.1], [1.0])).axes:
-        crosses = [x for x in axes.lines if x.get_marker() == "x" and x.get_xdata().size]
-        assert [cross.get_ydata().tolist() for cross in crosses] == [[30.0]]
-
-
-def test_what_is_not_done_stands_above_the_upper_edge():
-    figure = fx.plot.draw_work_precision(cells_like([0.1, 0.01], [0.5, 1.0]))
-    figure.draw_without_rendering()
-    for axes in figure.axes:
-        radau = [x for x in axes.lines if x.get_color() == colour(7)]
-        (line,) = (x for x in radau if np.size(x.get_xdata()))
-        assert np.all(np.asarray(line.get_ydata()) > 0.9)
-        assert line.get_transform() == axes.get_xaxis_transform()
-        shown = [x for x in axes.lines if x.get_transform() == axes.transData]
-        highest = max(np.max(x.get_ydata()) for x in shown if np.size(x.get_ydata()))
-        to_axes = axes.transData + axes.transAxes.inverted()
-        assert to_axes.transform((1.0, highest))[1] <= 0.9 + 1e-9
-    assert "Radau (12 of 12 not done)" in legend_of(figure)
-
-
-def test_runs_are_counted_as_not_done_by_their_status():
-    """An error of 0, or of NaN where no time is outside slips, is no failure."""
-    cells = cells_like([0.1], [1.0])
-    cells.error[0, 0, 0] = [0.0, np.nan, 1e-9]
-    figure = fx.plot.draw_work_precision(cells)
-    assert legend_of(figure)[0] == "auto"
-    ((_, errors),) = lines_in(figure.axes[0], colour(0))
-    assert errors.tolist() == [1e-6, 1e-6]  # what the reference can judge
-
-
-def test_a_front_of_one_point_is_seen():
-    cells = cells_like([0.1], [1.0])
-    cells.seconds[0, 0, 1:] = 100.0
-    cells.seconds[0, 0, 0] = [3.0, 2.0, 1.0]  # the most accurate is the fastest
-    axes = fx.plot.draw_work_precision(cells).axes[0]
-    (front,) = (line for line in axes.lines if line.get_zorder() == 1)
-    assert front.get_xdata().tolist() == [1.0]
-    assert front.get_marker() == "o"
-    assert front.get_markersize() > 10
-
-
-@pytest.mark.parametrize("cells", [([0.1], [1.0]), ([0.1, 0.05, 0.01], [0.5, 1.0, 1.5])])
-def test_legends_cover_nothing(cells):
-    figure = fx.plot.draw_work_precision(cells_like(*cells))
-    figure.draw_without_rendering()
-    legends = [legend.get_window_extent() for legend in figure.legends]
-    assert len(legends) == 2
-    for axes in figure.axes:
-        assert axes.get_legend() is None
-        assert not any(axes.get_tightbbox().overlaps(legend) for legend in legends)
-    for legend in legends:
-        assert figure.bbox.x0 <= legend.x0
-        assert legend.x1 <= figure.bbox.x1
-
-
-def test_a_picture_of_nothing_but_failures(data):
-    nothing = data.assign(error=data.error * np.nan)
-    fx.plot.draw_work_precision(nothing).draw_without_rendering()
-
-
-def test_the_front_is_what_no_run_beats():
-    points = np.random.default_rng(0).uniform(size=(2, 40))
-    expected = {
-        (t, e)
-        for t, e in points.T
-        if not any(a <= t and b <= e and (a, b) != (t, e) for a, b in points.T)
-    }
-    assert {(t, e) for t, e in _front(points).T} == expected
-
-
-def test_picture(data):
-    picture = fx.plot.draw_work_precision(data)
-    assert len(picture.axes) == 2
-    assert "LSODA" in " ".join(legend_of(picture))
-    with pytest.raises(ValueError, match=r"eps = 0\.3: .*one of 0\.045"):
-        fx.plot.draw_work_precision(data, eps=0.3)
-    assert len(fx.plot.draw_work_precision(data, eps=EPS).axes) == 2
 
 
 def test_cells_of_a_study_that_are_measured(scene):
