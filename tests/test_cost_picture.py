@@ -180,11 +180,18 @@ def test_the_front_is_what_no_run_beats():
     assert {(t, e) for t, e in _front(points).T} == expected
 
 
-def test_a_picture_of_one_cell_of_many():
+def test_the_upper_panels_are_of_the_eps_asked_for():
     data = cells_like([0.1, 0.045], [1.0])
-    picture = fx.plot.draw_work_precision(data)
-    assert len(picture.axes) == 4
-    assert "LSODA" in " ".join(legend_of(picture))
+    for eps in (0.1, 0.045):
+        axes = fx.plot.draw_work_precision(data, eps=eps).axes[0]
+        ((seconds, _),) = lines_in(axes, colour(0))
+        expected = 0.01 / eps - np.log(data.accuracy.values)
+        assert np.sort(seconds) == pytest.approx(np.sort(expected))
     with pytest.raises(ValueError, match=r"eps = 0\.3: .*one of 0\.1, 0\.045"):
         fx.plot.draw_work_precision(data, eps=0.3)
-    assert len(fx.plot.draw_work_precision(data, eps=0.045).axes) == 2
+
+
+def test_a_picture_of_one_cell_has_two_panels():
+    figure = fx.plot.draw_work_precision(cells_like([0.1], [1.0]))
+    assert len(figure.axes) == 2
+    assert "LSODA" in " ".join(legend_of(figure))
