@@ -247,6 +247,7 @@ def test_residual_and_scale():
     assert 0.98 * cost <= shifted.residual <= 1.2 * cost
 
 
+@pytest.mark.slow
 def test_another_start_is_a_solution_too():
     ts, z = solved(back_and_forth(z0=0.35), 0.02, 1.0)
     assert fx.certify(back_and_forth(), 0.02, 1.0, ts, z).ok

@@ -142,7 +142,10 @@ def test_errors_are_what_was_put_in(when, truth):
     assert still["error"] == 0.0
 
 
-@pytest.mark.parametrize("method", ["LSODA", "BDF", "Radau"])
+@pytest.mark.parametrize(
+    "method",
+    ["LSODA", *(pytest.param(m, marks=pytest.mark.slow) for m in ("BDF", "Radau"))],
+)
 def test_scipy_solves_the_same_system(scene, when, truth, method):
     run = run_scipy(scene, EPS, 1.0, when.ts, 1e-6, method, 60.0)
     assert run.status is fx.Status.OK

@@ -49,6 +49,7 @@ def test_the_grid_does_what_it_says(scene):
     assert all(np.diff([grid.seconds for grid in found.front]) >= 0)
 
 
+@pytest.mark.slow
 def test_out_of_reach_is_said(scene):
     found = fx.order_cost(scene, RANGE, 1.0, within=1e-9)
     assert not found.success

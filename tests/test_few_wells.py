@@ -81,7 +81,9 @@ def test_suprema_of_dissipation_between_the_ends_of_steps():
         assert off < 0.5 * accuracy * spent[-1]
 
 
-@pytest.mark.parametrize("method", ["auto", "Kvaerno5"])
+@pytest.mark.parametrize(
+    "method", ["auto", pytest.param("Kvaerno5", marks=pytest.mark.slow)]
+)
 def test_what_is_dissipated_on_a_support_stiffer_than_wells(method):
     """From energies 2e-3 off at accuracy 1e-3, and 1e-3 at 1e-6.
 

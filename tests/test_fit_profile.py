@@ -92,6 +92,7 @@ def check_met(fit, target):
     assert fit.bending_energy <= 1.01 * fit.bending_bound
 
 
+@pytest.mark.slow
 def test_a_plateau_of_bumps_that_hardly_bend():
     """Newton's steps alone left 4e-9 of the coefficient there, with status MET."""
     part = fx.bristles.SlantedSpring(1.79937389623384, 0.562861595867061, 1.0, 0.2835998986)
@@ -268,6 +269,7 @@ def test_several_bristles_on_one_surface():
     assert fit.rank == 2
 
 
+@pytest.mark.slow
 def test_contradictory_targets_give_the_best_compromise():
     """rho of a homothetic bristle is linear in the slopes: the weighted mean."""
     targets = [fx.Target(HOMOTHETIC, 0.3, -0.1), fx.Target(HOMOTHETIC, 0.2, -0.1, 3.0)]

@@ -76,6 +76,7 @@ def test_a_loop_with_noise_covers_the_truth(noisy):
     assert "slopes determined at y in [" in noisy.message
 
 
+@pytest.mark.slow
 def test_without_noise_it_finds_the_surface():
     fit = fx.fit_trace(trace_of(scene_of(), 0.0), scene_of(), 0.05, harmonics=4)
     assert fit.status == TraceStatus.FITTED
@@ -299,6 +300,7 @@ def test_a_trace_made_by_solve():
         fx.simulate_trace(scene_of(), 0.05, quantity="angle")
 
 
+@pytest.mark.slow
 def test_the_step_budget_is_kept():
     fit = fx.fit_trace(trace_of(scene_of()), scene_of(), 0.05, harmonics=4, max_steps=2)
     assert not fit.success

@@ -59,6 +59,7 @@ def test_reverse_mode_agrees_with_central_differences(jacobian, i):
     assert error < 1e-5 * jnp.max(jnp.abs(differences))
 
 
+@pytest.mark.slow
 def test_stretches_of_many_pieces(jacobian, monkeypatch):
     """Steps that are not kept would be made again, and would be others."""
     monkeypatch.setattr(fronts, "_STEPS", 100)

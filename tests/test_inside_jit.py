@@ -20,7 +20,13 @@ def _end(eps=_EPS, gamma=_GAMMA, ts=_TIMES, accuracy=1e-3):
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("gamma", 1.0), ("accuracy", 1e-3), ("ts", _TIMES), (None, 1.0)]
+    ("name", "value"),
+    [
+        ("gamma", 1.0),
+        pytest.param("accuracy", 1e-3, marks=pytest.mark.slow),
+        pytest.param("ts", _TIMES, marks=pytest.mark.slow),
+        (None, 1.0),
+    ],
 )
 def test_solve_where_some_arguments_are_traced(name, value):
     """One of them, or none: all the others are arrays from outside."""
@@ -47,6 +53,7 @@ def test_friction_of_known_parts():
     assert float(run(1.0)) == pytest.approx(float(fx.friction(_PROFILE, _BRISTLE).rho_plus))
 
 
+@pytest.mark.slow
 def test_steady_slide_of_known_parts():
     def mean(x):
         return fx.steady_slide(_PROFILE, _BRISTLE, 0.01, x, 1.0).mean_plus

@@ -14,6 +14,7 @@ def scene_under(times, values):
     return fx.Scene(fx.profiles.Sine(0.1), *parts, load, times[-1])
 
 
+@pytest.mark.slow
 def test_tips_may_catch_up_with_thousands_of_wells_on_a_leg():
     """The path rests there: the budget for its own wells ended with max_steps."""
     scene = scene_under([0.0, 0.01, 0.0101, 0.02], [0.0, 0.05, 0.9, 0.9])

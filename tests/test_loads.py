@@ -133,6 +133,7 @@ def test_steepest_places_of_plain_loads():
     assert fastest(TABLE, 1.0, 2.0) == pytest.approx(4.0, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_slides_over_a_ramp_between_samples():
     """Tolerances come from the fastest slide: values were 0.0076 eps off, status OK."""
     scene = fx.Scene(

@@ -65,6 +65,7 @@ def test_coefficients_and_limit_hold_no_wiggly_system(monkeypatch):
         traced(lambda scene: trajectory_of(scene, balanced=False), SCENE)
 
 
+@pytest.mark.slow
 def test_no_dissipation_no_balance(monkeypatch):
     bare = traced(lambda scene: trajectory_of(scene, balanced=False), SCENE)
     full = traced(lambda scene: trajectory_of(scene, balanced=True), SCENE)

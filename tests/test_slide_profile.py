@@ -15,7 +15,7 @@ TARGET = fx.Target(SLANTED, 0.03, -0.025)
 EPS = 1e-2
 
 
-@pytest.mark.parametrize("force", ["mean", "peak"])
+@pytest.mark.parametrize("force", ["mean", pytest.param("peak", marks=pytest.mark.slow)])
 def test_the_slide_has_the_forces_that_the_limit_misses(force):
     found = fx.fit_slide_profile(TARGET, EPS, force=force)
     assert found.success
@@ -32,6 +32,7 @@ def test_the_slide_has_the_forces_that_the_limit_misses(force):
     assert float(found.limit.coefficients[0].rho_plus) == pytest.approx(0.03, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_what_no_limit_design_leads_to_says_so():
     found = fx.fit_slide_profile(TARGET._replace(rho_plus=0.3, rho_minus=-0.001), EPS)
     assert not found.success
@@ -72,6 +73,7 @@ def two_targets():
     return both, [both[0]._replace(rho_plus=1.1 * both[0].rho_plus), both[1]]
 
 
+@pytest.mark.slow
 def test_targets_that_agree_are_met_by_a_slide_each():
     one, two = fx.fit_slide_profile(TARGET, EPS), fx.fit_slide_profile([TARGET] * 2, EPS)
     assert two.success

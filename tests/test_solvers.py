@@ -66,6 +66,7 @@ def test_known_solvers_are_named():
     )
 
 
+@pytest.mark.slow
 def test_budget_of_steps_ends_as_a_status(scene):
     found = fx.solve(scene, EPS, 1.0, TIMES, max_steps=16)
     assert not found.ok

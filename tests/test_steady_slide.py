@@ -174,6 +174,7 @@ def test_wrong_arguments_are_named(change, words):
         fx.steady_slide(**numbers)
 
 
+@pytest.mark.slow
 def test_a_viscosity_that_floats_do_not_resolve_is_told():
     """The left force at eps = 1e-4 is 0.55% off `fx.solve`, at 1e-5 36% off the limit."""
     steep = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, -1.470730857)

@@ -234,7 +234,7 @@ def burst():
 @pytest.mark.parametrize(
     ("eps", "gamma", "method"),
     [
-        (1e-3, 1.0, "resolved"),
+        pytest.param(1e-3, 1.0, "resolved", marks=pytest.mark.slow),
         (1e-3, 0.75, "windowed"),
         pytest.param(1e-3, 1.0, "auto", marks=pytest.mark.slow),
     ],

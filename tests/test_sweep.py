@@ -43,6 +43,7 @@ def test_layout(data):
     assert "jax" in data.attrs["versions"]
 
 
+@pytest.mark.slow
 def test_sup_error_is_over_all_times_not_over_ts(data):
     """Against the densest sampling: all of a finely sampled trajectory."""
     dense = np.linspace(0, 3, 20001)
@@ -85,7 +86,8 @@ def test_a_batch_equals_its_lanes_alone(data):
 
 def test_order_of_cells_does_not_matter(data):
     shuffled = fx.sweep(scene_of(), EPS[::-1], [2.0, 0.5, 1.0], ts=data.time.values)
-    assert shuffled.equals(data)
+    # Which lanes share a loop moves the last digit.
+    xr.testing.assert_allclose(shuffled, data, rtol=1e-12, atol=1e-14)
 
 
 def test_one_compilation_for_any_values(data):
