@@ -1,6 +1,7 @@
 """Instants as near to slips as count: there an error in time weighs most."""
 
 import numpy as np
+import pytest
 
 import frictionjax as fx
 from frictionjax.instants import Instants
@@ -22,6 +23,7 @@ def states(ts, gamma, accuracy, method):
     return fx.sweep(SCENE, EPS, gamma, ts, accuracy, method).z.values[:, 0]
 
 
+@pytest.mark.slow
 def test_errors_stay_below_the_accuracy_up_to_the_slip():
     gamma, accuracy = np.array([0.75, 0.85]), 1e-6
     shift = np.full(SLIDES.size, 0.005 * EPS / SPEED)

@@ -22,7 +22,7 @@ def _end(eps=_EPS, gamma=_GAMMA, ts=_TIMES, accuracy=1e-3):
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        ("gamma", 1.0),
+        pytest.param("gamma", 1.0, marks=pytest.mark.slow),
         pytest.param("accuracy", 1e-3, marks=pytest.mark.slow),
         pytest.param("ts", _TIMES, marks=pytest.mark.slow),
         (None, 1.0),

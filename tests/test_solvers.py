@@ -106,6 +106,7 @@ def test_bad_arguments_are_named(scene, arguments, message):
         fx.solve(scene, **({"eps": EPS} | arguments))
 
 
+@pytest.mark.slow
 def test_start_may_lie_outside_the_strip():
     parts = fx.profiles.Sine(0.1), fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
     load = fx.loads.Ramp(0.0)

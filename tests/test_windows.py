@@ -73,7 +73,7 @@ def outside_slips(scene, eps, gamma):
         pytest.param("piecewise load", 2.0, marks=pytest.mark.slow),
         pytest.param("several folds", 2.0, marks=pytest.mark.slow),
         pytest.param("convex support", 1.0, marks=pytest.mark.slow),
-        ("far start", 2.0),
+        pytest.param("far start", 2.0, marks=pytest.mark.slow),
     ],
 )
 def test_windows_agree_with_every_slip(name, gamma):

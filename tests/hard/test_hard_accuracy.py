@@ -16,6 +16,7 @@ _LATE = (
     "soft support",
     "gamma 4",
     "gamma 0.05",
+    "stiff support",
 )
 
 
