@@ -184,6 +184,7 @@ def test_json_and_back(fit, tmp_path):
         assert len(again.family(2)) == 2
 
 
+@pytest.mark.slow
 def test_json_of_functions_and_of_something_else(fit):
     custom = fx.bristles.Custom(
         Formula(_lean, np.array([0.1])), Formula(_press, np.ones(1))

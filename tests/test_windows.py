@@ -133,7 +133,13 @@ def test_lanes_that_meet_where_tips_creep_may_part_again():
     assert off.max() < 1e-3 * eps
 
 
-@pytest.mark.parametrize("load", [SINE, STEPS], ids=["sine", "piecewise"])
+@pytest.mark.parametrize(
+    "load",
+    [
+        pytest.param(SINE, id="sine"),
+        pytest.param(STEPS, id="piecewise", marks=pytest.mark.slow),
+    ],
+)
 @pytest.mark.parametrize("gamma", [1.0, 2.0])
 def test_cost_does_not_grow_as_eps_falls(load, gamma):
     found = cells(scene_of(load=load), [1e-5, 1e-8], [gamma, gamma], "windowed")

@@ -17,6 +17,7 @@ _LATE = (
     "gamma 4",
     "gamma 0.05",
     "stiff support",
+    "1e6 slips",
 )
 
 
