@@ -20,6 +20,7 @@ _CLOSURES = 4  # functions inside functions that are looked into for traced numb
 
 def in_64_bits() -> bool:
     """Whether JAX keeps 64-bit floats."""
+    # The attribute is made at run time: types do not know of it.
     return bool(jax.config.jax_enable_x64)  # type: ignore[attr-defined]
 
 
