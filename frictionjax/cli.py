@@ -196,8 +196,8 @@ def study(
     job = job._replace(study=job.study | wanted)
     prepare_study(job, method)  # while its cost is found
     if budget is not None:
-        job = within_budget(job, budget, method, accuracy)
-        click.echo(job.notes[-1], err=True)
+        job, found = within_budget(job, budget, method, accuracy)
+        click.echo(found, err=True)
     else:
         click.echo(f"Expected: {expectation(job, method)}", err=True)
     _write(folder, lambda place: run_study(job, place, method, progress))

@@ -56,8 +56,11 @@ def prepare_study(job: Job, method: str) -> None:
     prepare_cells(job.scene, cells_of(eps, gamma)[0], _TIMES)
 
 
-def within_budget(job: Job, seconds: float, method: str, asked: float | None) -> Job:
-    """The job with the best accuracy, or the one asked for and the eps, that fit."""
+def within_budget(
+    job: Job, seconds: float, method: str, asked: float | None
+) -> tuple[Job, str]:
+    """The job with the best accuracy, or the one asked for and the eps, that fit; in words
+    what that is, which is a note of the job too."""
     eps, gamma = job.study["eps"], job.study["gamma"]
     if asked is not None:
         require_accuracy(asked)  # `fit_budget` would name its own argument, accuracies
@@ -69,7 +72,7 @@ def within_budget(job: Job, seconds: float, method: str, asked: float | None) ->
         f"{found.eps.size} of {count} eps, {found.cost}"
     )
     study = job.study | {"eps": found.eps.tolist(), "accuracy": found.accuracy}
-    return job._replace(study=study, notes=[*job.notes, note])
+    return job._replace(study=study, notes=[*job.notes, note]), note
 
 
 def study_times(job: Job) -> np.ndarray:

@@ -60,6 +60,7 @@ def test_compiler_flags_do_not_matter_in_any_scene(tmp_path):
             assert np.abs(found[name][scene] - values).max() < 1e-6, (name, scene)
 
 
+_STATUS = Path("/proc/self/status")  # of Linux
 _COMPILED = """
 import resource, sys
 resource.setrlimit(resource.RLIMIT_DATA, (8 * 2**30, 8 * 2**30))
@@ -73,11 +74,13 @@ cos = 0.1 / k**4 / (2 * np.pi * np.sum(1.0 / k**3))
 scene = scene_of(Spring("", surface=(cos, 0.3 * cos)))
 data = fx.sweep(scene, [1e-3], [0.5], np.linspace(0, 3, 61))  # wide and narrow loops
 assert int(data.status.max()) == 0, data.status.values
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20)
+# Not ru_maxrss: it is that of the process that started this one, where that was larger.
+print(next(line.split()[1] for line in open("/proc/self/status") if "VmHWM" in line))
 """
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(not _STATUS.exists(), reason="the peak of a process is read in /proc")
 @pytest.mark.parametrize("harmonics", [8, 16, 33])
 def test_compilation_with_fast_flags_takes_little_memory(harmonics):
     # Sums of 14 and 16 harmonics, written out, took LLVM more than 20 GB.
@@ -85,4 +88,4 @@ def test_compilation_with_fast_flags_takes_little_memory(harmonics):
     env.pop("JAX_COMPILATION_CACHE_DIR", None)
     command = [sys.executable, "-c", _COMPILED, str(harmonics)]
     done = subprocess.run(command, check=True, env=env, capture_output=True, text=True)
-    assert float(done.stdout) < 2.0  # GB
+    assert float(done.stdout) < 2 * 2**20  # kB
