@@ -135,8 +135,15 @@ def report(rows: list[Row]) -> None:
     ratio = columns.ratio[count]
     print(
         f"{len(rows)} cells; status not OK: {np.sum(~ok)}; truth too rough: "
-        f"{np.sum(ok & ~known)}; of the other {count.sum()}: below 1: "
-        f"{np.mean(ratio < 1):.2%}, above 3: {np.sum(ratio > 3)}, worst {ratio.max():.3g}"
+        f"{np.sum(ok & ~known)}; the other {count.sum()}",
+        end="",
+    )
+    if not count.any():
+        print(" say nothing")
+        return
+    print(
+        f": below 1: {np.mean(ratio < 1):.2%}, above 3: {np.sum(ratio > 3)}, "
+        f"worst {ratio.max():.3g}"
     )
     print("\nlargest error over accuracy (cells that count)\n")
     table(columns.gamma[count], columns.accuracy[count], ratio)
