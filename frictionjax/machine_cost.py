@@ -7,6 +7,7 @@ import platform
 import resource
 import sys
 import time
+import warnings
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -26,6 +27,7 @@ from .wiggly.workload import Workload, workload
 
 _TIMES = 61
 _REPEATS = 2
+_ABSURD = 1e15  # seconds or bytes that no machine takes
 
 
 class MachineCost(NamedTuple):
@@ -158,28 +160,40 @@ def _kept(folder: Path | None) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
+_UNWRITTEN: dict[str, MachineCost] = {}
+
+
 def known_machine(folder: Path | None = None) -> MachineCost | None:
     """The measurement of this machine, versions and XLA flags; None where there is none."""
     kept = _kept(folder).get(_key())
     names = MachineCost._fields[:-1]
     if not isinstance(kept, dict) or not all(_is_size(kept.get(name)) for name in names):
         return None
+    if not any(kept[name] for name in names[:5]):  # nothing costs nothing
+        return None
     return MachineCost._make([*(float(kept[name]) for name in names), True])
 
 
 def _is_size(value: Any) -> bool:
-    return isinstance(value, int | float) and np.isfinite(value) and value >= 0
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and 0 <= value < _ABSURD
 
 
 def machine_cost(folder: Path | None = None, again: bool = False) -> MachineCost:
     """The costs of this machine, measured where they are not known yet, or `again`.
 
-    They are kept in `folder`, the user's cache folder where it is None.
+    They are kept in `folder`, the user's cache folder where it is None; where that cannot
+    be written, for this process, with a warning.
     """
-    found = None if again else known_machine(folder)
+    found = None if again else known_machine(folder) or _UNWRITTEN.get(_key())
     if found is None:
         found = measure_machine()
-        keep_machine(found, folder)
+        try:
+            keep_machine(found, folder)
+        except OSError as error:
+            _UNWRITTEN[_key()] = found
+            said = f"what this machine costs is measured again next time: {error}"
+            warnings.warn(said, stacklevel=2)
     return found
 
 

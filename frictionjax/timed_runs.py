@@ -21,7 +21,9 @@ from .wiggly.trajectory import solve
 # s of the fastest step through diffrax, whose loops cannot be stopped: bounds their number.
 # (1.2 to 2.4 us measured; at 3 us runs were ended that would have taken half the time.)
 _FAST_STEP = 1e-6
-_ENOUGH = 0.5  # s of warm runs: what takes longer is timed once
+# Warm runs that are timed at least, and s after which no more are. (What took longer was
+# timed once: half of the rows had no spread.)
+_LEAST, _ENOUGH = 3, 0.5
 
 
 def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
@@ -45,7 +47,9 @@ def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
 
 def _most(method: Any, seconds: float) -> int:
     """Steps after which a run is ended."""
-    return MAX_STEPS if is_ours(method) else int(seconds / _FAST_STEP)
+    return (
+        MAX_STEPS if is_ours(method) else int(np.clip(seconds / _FAST_STEP, 1, MAX_STEPS))
+    )
 
 
 def _by_stages(method: Any, steps: float) -> tuple[float, float]:
@@ -83,19 +87,22 @@ def runner(scene, eps, gamma, ts, accuracy, method, seconds) -> Callable[[], Run
 
 
 def timed(
-    run: Callable[[], Run], repeats: int, first: float | None = None
+    run: Callable[[], Run], repeats: int, seconds: float, first: float | None = None
 ) -> tuple[Run, dict[str, float]]:
     """The result of the last of a first run and warm ones, and how long they took.
 
-    `first`: seconds of a first run that has been. (Where a first run was ended, what it had
+    One warm run where it takes longer than `seconds`. `first`: seconds of a first run that
+    has been. (Where a first run was ended, what it had
     compiled was counted as its time: 22 s where 2 were allowed. It is made again too.)
     """
     if first is None:
         _, first = clocked(run)
     warm: list[float] = []
-    while not warm or (len(warm) < repeats and sum(warm) < _ENOUGH):
+    while len(warm) < repeats and (len(warm) < _LEAST or sum(warm) < _ENOUGH):
         result, spent = clocked(run)
         warm.append(spent)
+        if spent > seconds:
+            break
     return result, _times(warm, max(0.0, first - float(np.median(warm))))
 
 

@@ -154,10 +154,26 @@ def test_a_spoiled_file_is_no_measurement(tmp_path, text):
 def test_a_spoiled_number_is_no_measurement(tmp_path):
     keep_machine(MACHINE, tmp_path)
     path = tmp_path / "cost.json"
-    for bad in ("NaN", "-1.0", '"1"'):
+    for bad in ("NaN", "-1.0", '"1"', "true", f"1{400 * '0'}"):
         path.write_text(path.read_text().replace(json.dumps(MACHINE.call), bad))
         assert known_machine(tmp_path) is None
         keep_machine(MACHINE, tmp_path)
+
+
+def test_a_measurement_of_nothing_is_none(tmp_path):
+    keep_machine(MachineCost(0.0, 0.0, 0.0, 0.0, 0.0, 5.0, 1e9), tmp_path)
+    assert known_machine(tmp_path) is None
+
+
+def test_a_folder_that_cannot_be_written_is_said_once(tmp_path, monkeypatch):
+    """It raised after the 15 s of the measurement, each time."""
+    monkeypatch.setattr(machine_cost, "_UNWRITTEN", {})
+    monkeypatch.setattr(machine_cost, "measure_machine", lambda: MACHINE)
+    (tmp_path / "file").write_text("")
+    with pytest.warns(UserWarning, match="measured again next time: .*file"):
+        assert machine_cost.machine_cost(tmp_path / "file") == MACHINE
+    monkeypatch.setattr(machine_cost, "measure_machine", None)
+    assert machine_cost.machine_cost(tmp_path / "file") == MACHINE
 
 
 def test_measured_once(tmp_path, monkeypatch):
@@ -262,6 +278,8 @@ def test_a_study_within_a_budget():
     assert said in some.notes
     assert some.study["accuracy"] == 1e-6
     assert some.study["eps"] == sorted(job.study["eps"], reverse=True)
+    tighter = job._replace(study=job.study | {"accuracy": 1e-8})
+    assert within_budget(tighter, 1e3, "auto", None)[0].study["accuracy"] == 1e-8
     cost = expected_cost(job, "auto")
     fewer, said = within_budget(job, 0.6 * cost.seconds, "auto", 1e-3)
     assert fewer.study["accuracy"] == 1e-3

@@ -108,6 +108,21 @@ def test_methods_that_do_the_same_do_not_hide_each_other():
     assert np.all(spread < 0.5)  # of the decade between accuracies
 
 
+def test_an_accuracy_that_is_kept_is_below_the_line_wherever_its_method_stands():
+    cells = cells_like([0.1], [1.0])
+    cells["error"] = cells.accuracy * xr.where(cells.solver == "auto", 0.9, 1.1)
+    cells["status"] = cells.status * 0
+    axes = fx.plot.draw_work_precision(cells).axes[1]
+    steps = axes.lines[2 * len(METHODS)]  # after each method's line and crosses
+    edges, heights = np.array(steps.get_data())
+    asked = cells.accuracy.values
+    for index in range(len(METHODS)):
+        ((places, errors),) = lines_in(axes, colour(index))
+        line = np.array([heights[np.searchsorted(edges, x)] for x in places])
+        assert line.tolist() == asked.tolist()
+        assert np.all((errors < line) == (index == 0))
+
+
 def test_what_is_wrong_is_crossed_out_in_both_panels():
     for axes in fx.plot.draw_work_precision(cells_like([0.1], [1.0])).axes:
         crosses = [x for x in axes.lines if x.get_marker() == "x" and x.get_xdata().size]

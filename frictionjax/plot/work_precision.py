@@ -128,16 +128,27 @@ def _calibration(axes: Any, cell: xr.Dataset) -> None:
         wrong = runs.drawn & runs.wrong
         axes.plot(where[wrong], runs.errors[wrong], **WRONG)
         failed.append(where[runs.failed])
-    axes.plot(ends, ends, color=LIMIT, linewidth=1)
+    stairs = _stairs(np.sort(asked), ends)
+    axes.plot(*stairs, color=LIMIT, linewidth=1)
     if np.any(cell.error > MOST):
         axes.axhline(MOST, **_CAP)
     _floor(axes, float(floor_of(cell)))
     low, high = axes.get_ylim()
-    axes.fill_between(ends, ends, high, color=TOO_LITTLE, zorder=0)
+    axes.fill_between(*stairs, high, color=TOO_LITTLE, zorder=0)
     axes.set(ylim=(low, high), xlabel="accuracy asked for ($\\epsilon$)")
     axes.set_ylabel("error reached ($\\epsilon$)")
     axes.set_title("Is the accuracy kept?  (above the line: no)")
     mark_failed([axes], [failed])
+
+
+def _stairs(values: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A step at each value, as wide as the methods beside it are apart.
+
+    (On the straight line methods that were moved to the side of what was asked of them
+    stood above it where they kept it, and below where not.)
+    """
+    edges = np.concatenate([ends[:1], np.sqrt(values[1:] * values[:-1]), ends[1:]])
+    return np.repeat(edges, 2)[1:-1], np.repeat(values, 2)
 
 
 def _legends(figure: Any, dataset: xr.Dataset) -> None:
@@ -153,7 +164,11 @@ def _legends(figure: Any, dataset: xr.Dataset) -> None:
         Line2D([], [], **_FRONT | _SMALL, label="nothing is both faster and more accurate")
     ]
     if np.any(dataset.wrong > 0):
-        signs.append(Line2D([], [], **WRONG, label="success reported, but in another well"))
+        signs.append(
+            Line2D(
+                [], [], **WRONG, label="success reported, half an $\\epsilon$ or more off"
+            )
+        )
     if np.any(dataset.error > MOST):
         signs.append(Line2D([], [], **_CAP, label="1000 $\\epsilon$ and more"))
     if np.any(failed_runs(dataset)):

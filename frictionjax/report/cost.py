@@ -87,8 +87,24 @@ def cost_sections(data: xr.Dataset) -> list[tuple[str, str]]:
             cell = data.sel(gamma=gamma, eps=eps)
             title = f"gamma = {gamma:.4g}, eps = {eps:.4g} m"
             sections.append((title, f"{_truth(cell)}\n{cost_table(cell)}"))
-    sections.append(("", _COLUMNS))
+    sections.append(("", _COLUMNS + _calls(data)))
     return sections
+
+
+def _calls(data: xr.Dataset) -> str:
+    """What SciPy's solvers spend on calls from Python; nothing where there are none."""
+    share = data.calls_share.median(["gamma", "eps", "accuracy"])
+    shares = [
+        f"{name} {float(one):.0%}"
+        for name, one in zip(share.solver.values, share, strict=True)
+        if float(one) > 0
+    ]
+    if not shares:
+        return ""
+    return (
+        "\nCalls of the compiled field from Python take this share of their seconds: "
+        f"{', '.join(shares)}."
+    )
 
 
 _COLUMNS = (
@@ -98,7 +114,7 @@ _COLUMNS = (
     "is printed ('>' of mescd). s: median of warm runs, spread: slowest over fastest of\n"
     "several. compile s: what the first call took longer; methods share programs. field,\n"
     "Jacobian: evaluations, - where a solver does not tell. 'wrong': success was reported\n"
-    "half an eps or more away, beyond the error of the reference."
+    "half an eps or more off, and further than asked for, beyond the reference's error."
 )
 # Names of columns and of what is measured in them.
 _MEASURED = {

@@ -59,13 +59,19 @@ def prepare_study(job: Job, method: str) -> None:
 def within_budget(
     job: Job, seconds: float, method: str, asked: float | None
 ) -> tuple[Job, str]:
-    """The job with the best accuracy, or the one asked for and the eps, that fit; in words
-    what that is, which is a note of the job too."""
+    """The job with the best accuracy, or the one asked for and the eps, that fit.
+
+    Accuracies tried: that of the job's own study among them. In words what it is, which is
+    a note of the job too.
+    """
     eps, gamma = job.study["eps"], job.study["gamma"]
     if asked is not None:
         require_accuracy(asked)  # `fit_budget` would name its own argument, accuracies
-    tried = ACCURACIES if asked is None else (asked,)
-    found = fit_budget(job.scene, eps, gamma, seconds, study_times(job), method, tried)
+    own = float(job.study["accuracy"])
+    tried = {*ACCURACIES, own} if asked is None else {asked}
+    found = fit_budget(
+        job.scene, eps, gamma, seconds, study_times(job), method, sorted(tried)
+    )
     count = np.unique(eps).size
     note = (
         f"Budget of {seconds:g} s: accuracy {found.accuracy:.0e}, "

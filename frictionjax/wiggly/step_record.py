@@ -15,12 +15,13 @@ _NODES = {"Radau": 3}  # times at which an attempt looks at the field; of others
 
 class StepRecord:
     """Accepted steps of a run between times (s) and tips (periods), and all looks at the
-    field: their times, and how many took the Jacobian.
+    field: their times, how many took the Jacobian, and their seconds (`calls`).
     """
 
     def __init__(self) -> None:
         self.looks: list[float] = []
         self.jacobians = 0
+        self.calls = 0.0
         self._steps: list[tuple] = []
         self._tips: list[tuple] = []
 
@@ -52,6 +53,8 @@ class StepRecord:
         Along cubics between the ends of steps: dense output differs from one solver to the
         next.
         """
+        if not self._steps:
+            return 0.0
         times = np.array([step[:2] for step in self._steps], dtype=float)
         tips = np.array([[y[0] for y in ends] for ends in self._tips], dtype=float)
         return float(np.sum(in_chunks(_residuals, _CHUNK, (field,), (times, tips))))
