@@ -88,8 +88,7 @@ def _predicted(
 
 def _one(work: Workload, cell: int) -> Workload:
     some = slice(cell, cell + 1)
-    steps, chain, jobs, legs, ridden = (column[some] for column in work[:-1])
-    return Workload(steps, chain, jobs, legs, ridden, work.weight)
+    return Workload._make([*(column[some] for column in work[:-1]), work.weight])
 
 
 def predict_cost(

@@ -57,16 +57,18 @@ class MachineCost(NamedTuple):
 ELSEWHERE = MachineCost(0.023, 0.0081, 0.0, 8.4e-8, 6.6e-7, 9.3, 7.7e8, measured=False)
 
 
-# Calls that take as long as the slip maps of a cell beside their lanes: both are NumPy and
-# small programs. (Seven vertical cells 0.68 s, one 0.18, a call 0.033.)
-_RIDE = 1.5
+# Calls that take as long as the slip map of a slide beside its lanes: both are NumPy and
+# small programs. (Seven vertical cells of three slides 0.68 s, one 0.18, a call 0.033.) And
+# as each of those that wait for the one before: where a load turns at speed, slides cannot
+# be looked at side by side.
+_MAP, _ROUND = 0.4, 1.0
 
 
 def _amounts(work: Workload) -> np.ndarray:
     """How much of each part a sweep has, in the order of `MachineCost`."""
     steps = work.weight * work.steps.sum()
     chain = work.weight * work.chain.max(initial=0.0)
-    calls = 1 + _RIDE * np.count_nonzero(work.ridden)
+    calls = 1 + _MAP * work.maps.sum() + _ROUND * work.rounds.max(initial=0.0)
     return np.array([calls, work.steps.size, work.jobs.sum(), steps, chain])
 
 

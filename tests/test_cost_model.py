@@ -16,7 +16,7 @@ from frictionjax.wiggly import rounds
 from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.layout import lay_out
 from frictionjax.wiggly.planning import lane_scene, planned
-from frictionjax.wiggly.workload import _weight_of, workload
+from frictionjax.wiggly.workload import _longest_chains, _weight_of, workload
 
 TIMES = np.linspace(0.0, 3.0, 61)
 MACHINE = MachineCost(0.01, 0.002, 1e-5, 1e-7, 1e-6, 5.0, 1e9)
@@ -56,6 +56,62 @@ def test_the_work_is_foreseen(eps, gamma, accuracy, method):
     data = fx.sweep(scene_of(), *cell, TIMES, accuracy, method)
     ratio = float(data.steps.squeeze()) / float(work.steps[0])
     assert 0.5 < ratio < 2, ratio  # 0.57 to 1.4
+
+
+_STEPPED = fx.loads.PiecewiseLinear(
+    [0.0, 1.0, 1.001, 2.0, 2.001, 3.0], [0.0, 0.0, 1.0, 1.0, -1.0, -1.0]
+)
+
+
+@pytest.mark.parametrize(
+    ("load", "duration", "eps", "gamma"),
+    [
+        (fx.loads.Sine(1.0488, 3.0), 30.0, 1e-3, 0.5),  # 21 slip maps, side by side
+        (fx.loads.Sine(1.0488, 3.0), 30.0, 1e-2, 0.5),  # one lane through all
+        # Slip maps one after the other: slides end at speed.
+        pytest.param(
+            fx.loads.Triangle(1.0488, 0.3), 3.0, 1e-3, 1.0, marks=pytest.mark.slow
+        ),
+        # Tips that follow only after a jump.
+        pytest.param(_STEPPED, 3.0, 1e-3, 1.0, marks=pytest.mark.slow),
+        pytest.param(_STEPPED, 3.0, 1e-3, 0.5, marks=pytest.mark.slow),
+    ],
+)
+def test_the_work_of_other_loads_is_foreseen(load, duration, eps, gamma):
+    """Up to 37 and 212 times too little was said."""
+    one = scene_of(load)
+    scene = fx.Scene(one.profile, one.bristle, one.support, load, duration)
+    times = np.linspace(0, duration, 61)
+    work = workload(scene, np.array([eps]), np.array([gamma]), 61, 1e-3, "auto")
+    data = fx.sweep(scene, eps, gamma, times)
+    ratio = data.steps.item() / float(work.steps[0])
+    assert 0.4 < ratio < 2.5, ratio  # 0.49 to 0.81
+
+
+@pytest.mark.parametrize(("gamma", "steps"), [(0.5, 2.31e5), (1.0, 1.04e5)])
+def test_the_work_of_jumps_is_foreseen(gamma, steps):
+    """Steps as the sweep reports them, see above."""
+    cell = np.array([1e-3]), np.array([gamma])
+    work = workload(scene_of(_STEPPED), *cell, 61, 1e-3, "auto")
+    assert 0.4 < steps / float(work.steps[0]) < 2.5
+
+
+def test_slip_maps_that_wait_for_each_other():
+    slides = np.array([[1, 0, 1, 0, 1, 1], [1, 1, 1, 1, 0, 0], [0, 0, 0, 0, 0, 0]], bool)
+    cut = np.array([[0, 1, 0, 0, 0, 0], [1, 1, 1, 1, 1, 1], [0, 0, 0, 0, 0, 0]], bool)
+    assert _longest_chains(slides, cut).tolist() == [3, 1, 0]
+
+
+@pytest.mark.parametrize(("periods", "alone"), [(1, False), (3, True), (100, True)])
+def test_many_short_slides_are_no_matter_for_slip_maps(periods, alone):
+    """100 periods of 380 wells took 14 s by maps, one lane goes through them in 3."""
+    one = scene_of()
+    end = 3.0 * periods
+    scene = fx.Scene(one.profile, one.bristle, one.support, one.load, end)
+    eps = np.array([1.5e-3 if periods == 1 else 1e-2])
+    lanes, path = lane_scene(scene, float(eps[0])), path_of(scene)
+    plan = planned(scene, lanes, path, eps, np.array([0.5]), 61, 1e-3, "auto")
+    assert plan.ridden.tolist() == [not alone]
 
 
 @pytest.mark.parametrize(

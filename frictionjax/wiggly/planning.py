@@ -45,10 +45,11 @@ _AFTER_SLIP, _SHORT_REST = 0.05, 0.2
 _SLIPS_FORGET = 1.5
 # Wells of a slide that are worth a slip map, where windows set off far back.
 _LONG_SLIDE = 60.0
-# Wells that one lane from z0 goes through in about the time of a slip map, for a sine. (16
-# eps to 1e-4, gamma = 1/2, seconds with maps from 1100, 1800, 2500 and 4000 on: 0.35, 0.26,
-# 0.25, 0.39.)
-_MAP = 2200.0
+# Wells that one lane from z0 goes through in about the time of the slip maps of three
+# slides, for a sine. (16 eps to 1e-4, gamma = 1/2, seconds with maps from 1100, 1800, 2500
+# and 4000 on: 0.35, 0.26, 0.25, 0.39. Whatever the number of slides: 10 s for 200 of 190
+# wells each, which one lane goes through in 1.)
+_MAP = 2200.0 / 3
 # Of the speed: what panels of a slip map might step over.
 _BURST = 0.1
 WIDEST = 0.125  # reach of a sine, periods
@@ -186,6 +187,11 @@ def _choose(path: Path, eps: np.ndarray, needs: Needs, times: int, method: str) 
     return needs._replace(tile=np.maximum(needs.tile, outer / TILES))
 
 
+def slides_of(path: Path, eps: np.ndarray) -> np.ndarray:
+    """Pieces of the path that are long enough for slip maps, (cells, pieces)."""
+    return np.abs(np.diff(path.states)) > _LONG_SLIDE * eps[:, None]
+
+
 def _long_memories(
     scene: Scene,
     control: StepPlan,
@@ -207,7 +213,8 @@ def _long_memories(
     if method == "resolved":
         return np.zeros(eps.size, dtype=bool), needs
     long = needs.warm > LONG_MEMORY
-    slides = np.abs(np.diff(path.states)) > _LONG_SLIDE * eps[:, None]
+    slides = slides_of(path, eps)
+    long_slides = np.count_nonzero(slides, axis=1)
     bursts = np.any(slides & (path.probes.unseen > _BURST), axis=1)
     ridden = long & np.any(slides, axis=1) & ~bursts
     if not long.any():
@@ -221,7 +228,7 @@ def _long_memories(
         way = wells * narrow
         brief = slides & (follows[:, None] > path.edges[1:] - path.touch)
         never = np.any(brief, axis=1) & (wells <= AFFORDABLE)
-        few = way <= _MAP
+        few = way <= np.minimum(_MAP * np.maximum(long_slides, 3), AFFORDABLE)
         alone = long & (few | never)
         ridden &= ~alone
         slow &= ~never[:, None]

@@ -12,7 +12,7 @@ from .find_path import path_of
 from .lane import LaneScene
 from .needs import Needs, cost_of, longest_lane, wells_a_leg, wells_of
 from .path import Path
-from .planning import LOOSEST, WIDEST, lane_scene, planned
+from .planning import LOOSEST, WIDEST, lane_scene, planned, slides_of
 from .series_bristle import SeriesBristle
 from .tolerance import Plan as StepPlan
 
@@ -23,10 +23,13 @@ from .tolerance import Plan as StepPlan
 # apart: brackets there stay open at first, and steps are up to 5 times as many.
 _CONSTANT, _TOLERANCE, _LAG, _NARROW = 1.278, 0.417, -0.092, 0.41
 _SMOOTH, _BELOW_TENTH, _BELOW_ONE = -0.131, 0.505, 1.466
-# Rides, in the same cells: steps over those of one run-up; and wells that lanes, one after
-# the other, wait for each other. Both for a thousand wells, and how they grow with wells.
-# Steps are twice as many as measured on the vertical scene, half on the angular one.
-_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH = 4.0, 4e2, 0.05
+# Rides, in the same cells: steps of a slide over those of one run-up, of a few thousand
+# wells at most; and wells that lanes, one after the other, wait for each other. Both for a
+# thousand wells, and how they grow with wells. Steps are twice as many as measured on the
+# vertical scene, half on the angular one. (1 to 100 periods, 3 to 201 slides.)
+_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH, _RUN_UP = 4.0 / 3, 4e2, 0.05, 2500.0
+# Drag of tips that are still on their way when a slide is over, and a rest begins.
+_BEHIND = 0.1
 # What a step costs more: for each harmonic after the first (1.2 at 4, 2.3 at 16, 5.7 at 64
 # were measured), for each degree of the bristle's series after the first (1.35 at 4), and
 # for a bristle without one.
@@ -37,15 +40,17 @@ class Workload(NamedTuple):
     """Work of lanes in each cell, shape (cells,).
 
     `steps`: of all lanes. `chain`: those that one lane takes after the other. `jobs`:
-    lanes that set off; `legs`: of their ways. `ridden`: whether slip maps are made.
-    `weight`: of a step, relative to a linear spring on a sine.
+    lanes that set off; `legs`: of their ways. `maps`: slides of which slip maps are made;
+    `rounds`: those of them that wait for each other. `weight`: of a step, relative to a
+    linear spring on a sine.
     """
 
     steps: np.ndarray
     chain: np.ndarray
     jobs: np.ndarray
     legs: np.ndarray
-    ridden: np.ndarray
+    maps: np.ndarray
+    rounds: np.ndarray
     weight: float
 
 
@@ -67,15 +72,38 @@ def workload(
     plan = planned(scene, lanes, path, eps, gamma, times, accuracy, method)
     control, ground, needs, ridden = plan
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
-    drag = viscosity_of(eps, gamma) * path.speed / (path.rho_plus - path.rho_minus)
-    steps = _steps_a_well(control, lag, np.asarray(drag))
+    steps = _steps_a_well(control, lag, _drag_of(path, eps, gamma))
     total = steps * cost_of(path, eps, needs, times)
     chain = steps * longest_lane(path, eps, needs)
     growth = (path.travel[-1] / eps / 1e3) ** _RIDE_GROWTH
-    total = np.where(ridden, _RIDE_STEPS * needs.warm * steps * growth, total)
-    chain = np.where(ridden, _RIDE_CHAIN * steps * growth, chain)
+    slides = slides_of(path, eps) & ridden[:, None]
+    maps, rounds = np.count_nonzero(slides, axis=1), _longest_chains(slides, needs.cut)
+    run_ups = maps * np.minimum(needs.warm, _RUN_UP)
+    total = np.where(ridden, _RIDE_STEPS * run_ups * steps * growth, total)
+    chain = np.where(ridden, _RIDE_CHAIN * rounds * steps * growth, chain)
     jobs, legs = _rows(path, eps, needs, times)
-    return Workload(total, chain, jobs, legs, ridden, _weight_of(lanes))
+    return Workload(total, chain, jobs, legs, maps, rounds, _weight_of(lanes))
+
+
+def _longest_chains(slides: np.ndarray, cut: np.ndarray) -> np.ndarray:
+    """Slides, (cells, pieces), that follow one another without a cut: the most, (cells,).
+
+    `cut`: at the end of which pieces.
+    """
+    chain = np.cumsum(np.pad(cut, ((0, 0), (1, 0)))[:, :-1], axis=1)
+    counts = [np.bincount(c, s).max() for c, s in zip(chain, slides, strict=True)]
+    return np.array(counts)
+
+
+def _drag_of(path: Path, eps: np.ndarray, gamma: np.ndarray) -> np.ndarray:
+    """Of the fastest slide, over friction; less where tips follow only after it."""
+    viscosity = np.asarray(viscosity_of(eps, gamma))
+    drag = viscosity * path.speed / (path.rho_plus - path.rho_minus)
+    follows, longs = viscosity[:, None] / path.stiffness, np.diff(path.edges)
+    sudden = (path.direction != 0) & (follows > longs)
+    waits = np.pad((path.direction == 0) & (follows < longs), ((0, 0), (0, 1)))[:, 1:]
+    late = np.any(sudden & waits, axis=1)
+    return np.where(late, np.minimum(drag, _BEHIND), drag)
 
 
 def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
