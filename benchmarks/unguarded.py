@@ -21,7 +21,7 @@ def _states(scene, eps, gamma, ts, stops, tolerance):
         None,
         field.start(scene.z0),
         stepsize_controller=diffrax.ClipStepSizeController(
-            diffrax.PIDController(rtol=tolerance, atol=tolerance), jump_ts=stops
+            diffrax.PIDController(rtol=0.0, atol=tolerance), jump_ts=stops
         ),
         saveat=diffrax.SaveAt(ts=ts),
         max_steps=_STEPS,

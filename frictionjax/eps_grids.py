@@ -31,8 +31,8 @@ class EpsGrid(NamedTuple):
 
     `half_width`: half of the 95% interval of the order of sup_error, the widest of those of
     `laid` different grids of this kind in the pilot; `low`, `high`: ends of all of them;
-    `order`: their median; `seconds`: predicted. `confirmed`: whether grids of the pilot
-    that reach to smaller eps agree with it.
+    `order`: their median; `seconds`: predicted, of `sweep` at its own times. `confirmed`:
+    whether grids of the pilot that reach to smaller eps agree with it.
     """
 
     eps_max: float
@@ -120,7 +120,7 @@ def order_cost(
         if found is not None:
             ends = float(pilot[start]), float(pilot[stop])
             some = np.geomspace(*ends, points)
-            cost = predict_cost(scene, some, gamma, accuracy, ts, measure=measure)
+            cost = predict_cost(scene, some, gamma, accuracy, measure=measure)
             grids.append(EpsGrid(*ends, points, **found, seconds=cost.seconds))
     return chosen(grids, float(within))
 

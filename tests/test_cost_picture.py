@@ -32,6 +32,7 @@ def cells_like(eps, gamma):
         "wrong": wrong,
     }
     data = xr.Dataset({name: (dims, value) for name, value in values.items()})
+    data["seconds_low"], data["seconds_high"] = 0.9 * data.seconds, 1.5 * data.seconds
     data["reference_error"] = dims[:2], np.full(shape[:2], 1e-6)
     coords = {"gamma": gamma, "eps": eps, "solver": list(METHODS), "accuracy": asked}
     return data.assign_coords(coords)
@@ -121,6 +122,15 @@ def test_an_accuracy_that_is_kept_is_below_the_line_wherever_its_method_stands()
         line = np.array([heights[np.searchsorted(edges, x)] for x in places])
         assert line.tolist() == asked.tolist()
         assert np.all((errors < line) == (index == 0))
+
+
+def test_times_are_drawn_from_the_fastest_run_to_the_slowest():
+    axes = fx.plot.draw_work_precision(cells_like([0.1], [1.0])).axes[0]
+    ((seconds, errors),) = lines_in(axes, colour(0))
+    ends = np.array(axes.collections[0].get_segments())
+    assert ends[:, 0, 0] == pytest.approx(0.9 * seconds)
+    assert ends[:, 1, 0] == pytest.approx(1.5 * seconds)
+    assert ends[:, 0, 1].tolist() == errors.tolist()
 
 
 def test_what_is_wrong_is_crossed_out_in_both_panels():

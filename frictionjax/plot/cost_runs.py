@@ -26,10 +26,12 @@ class Runs(NamedTuple):
     """Runs of one method along one dimension, arrays of one shape.
 
     `errors` in eps, at most 1000 and at least what the reference can judge; `drawn`: the
-    run has an error; `failed`: it did not come to its end.
+    run has an error; `failed`: it did not come to its end. `spread` (2, n): seconds of the
+    fastest and the slowest run.
     """
 
     seconds: np.ndarray
+    spread: np.ndarray
     errors: np.ndarray
     drawn: np.ndarray
     wrong: np.ndarray
@@ -41,7 +43,9 @@ def runs_of(line: xr.Dataset) -> Runs:
     errors = np.clip(line.error.values, floor_of(line), MOST)
     failed = failed_runs(line)
     drawn = ~failed & np.isfinite(errors)
-    return Runs(line.seconds.values, errors, drawn, line.wrong.values > 0, failed)
+    spread = np.stack([line.seconds_low.values, line.seconds_high.values])
+    wrong = line.wrong.values > 0
+    return Runs(line.seconds.values, spread, errors, drawn, wrong, failed)
 
 
 def failed_runs(runs: xr.Dataset) -> np.ndarray:

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -15,6 +16,7 @@ from .cost_runs import (
     TOO_LITTLE,
     UNKNOWN,
     WRONG,
+    Runs,
     apart,
     failed_runs,
     floor_of,
@@ -28,6 +30,7 @@ from .style import LIMIT, Picture, choose_eps, choose_gamma, styled
 _MIDDLE = {"xycoords": "axes fraction", "ha": "center", "color": "#666666"}
 _FRONT: dict[str, Any] = {"color": "#F0E442", "alpha": 0.75, "linewidth": 12}
 _FRONT |= {"marker": "o", "markersize": 20, "markeredgewidth": 0}
+_SPREAD: dict[str, Any] = {"linewidth": 1, "alpha": 0.6, "zorder": 2}
 _CAP: dict[str, Any] = {"color": LIMIT, "linestyle": ":", "linewidth": 1}
 _SMALL = {"linewidth": 5, "markersize": 9}  # in the legend
 
@@ -38,11 +41,12 @@ def draw(
 ) -> Figure:
     """Draw a data set of `work_precision`.
 
-    Above, of one cell: error against seconds, one line a method, and below it in yellow
-    the Pareto front of the runs that are not wrong; accuracy reached against accuracy
-    asked for. The cell: the smallest eps and gamma = 1 where none is named. Below, with
-    more than one cell: seconds, and error over accuracy, at the accuracy in the middle:
-    against eps, one panel for each gamma, or with one eps against gamma.
+    Above, of one cell: error against seconds, one line a method, thin from the fastest to
+    the slowest of its warm runs, and below it in yellow the Pareto front of the runs that
+    are not wrong; accuracy reached against accuracy asked for. The cell: the smallest eps
+    and gamma = 1 where none is named. Below, with more than one cell: seconds, and error
+    over accuracy, at the accuracy in the middle: against eps, one panel for each gamma, or
+    with one eps against gamma.
 
     Runs that are not done stand above the upper edge of each panel. Errors below what the
     reference can judge are drawn there, those beyond 1000 eps there.
@@ -80,6 +84,7 @@ def _times(axes: Any, cell: xr.Dataset) -> None:
         right, wrong = runs.drawn & ~runs.wrong, runs.drawn & runs.wrong
         axes.plot(runs.seconds[runs.drawn], runs.errors[runs.drawn], **style)
         axes.plot(runs.seconds[wrong], runs.errors[wrong], **WRONG)
+        _draw_spread(axes, runs, style["color"])
         points.append(np.stack([runs.seconds[right], runs.errors[right]]))
         failed.append(runs.seconds[runs.failed & np.isfinite(runs.seconds)])
     front = _front(np.concatenate(points, axis=1))
@@ -91,6 +96,15 @@ def _times(axes: Any, cell: xr.Dataset) -> None:
         axes.axhline(MOST, **_CAP)
     _floor(axes, float(floor_of(cell)))
     mark_failed([axes], [failed], levels=True)
+
+
+def _draw_spread(axes: Any, runs: Runs, shade: str) -> None:
+    """From the fastest to the slowest run of each."""
+    ends, errors = runs.spread[:, runs.drawn], runs.errors[runs.drawn]
+    points = np.stack([ends, np.broadcast_to(errors, ends.shape)], axis=-1)
+    lines = LineCollection(list(points.swapaxes(0, 1)), color=shade, **_SPREAD)
+    axes.add_collection(lines, autolim=False)
+    axes.update_datalim(points.reshape(-1, 2))  # exactly: limits do not hang on rounding
 
 
 def _front(points: np.ndarray) -> np.ndarray:
