@@ -5,9 +5,10 @@
 Prints Markdown and draws benchmarks/hard_scenes.png. The scenes of tests/hard at 61 times.
 Error: largest of z outside slips, in eps, against the scene's independent reference (a
 plain integration, from which whole periods of long slides are cut out, or slips without
-duration). General solvers at atol = 1e-5 periods and next to no rtol, 10 s allowed: SciPy's, and diffrax's
-Kvaerno5 with 2e5 steps, none with a guard against steps over wells. In bold: half an eps or
-more off, and success reported. Ours at accuracy 1e-3; seconds of one warm run.
+duration). General solvers at atol = 1e-5 periods, rtol next to nothing, 10 s allowed:
+SciPy's, and diffrax's Kvaerno5 with 2e5 steps, none with a guard against steps over wells.
+In bold: half an eps or more off, and success reported. Ours at accuracy 1e-3; seconds of
+one warm run.
 """
 
 import argparse

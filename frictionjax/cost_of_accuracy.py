@@ -210,10 +210,10 @@ def work_precision(
     `solve`, and SciPy's "LSODA", "BDF" and "Radau" without any guard. `accuracies`: asked
     of each, atol (in periods) of SciPy's. `ts`: times in s at which errors are measured, 61
     even ones where None; 32 more over one slip period are added where one of them has a
-    whole one ahead. `repeats`: at most so many warm runs are timed, after three no more
-    than fit into half a second. `seconds`: of a method that takes longer tighter accuracies
-    are not tried; SciPy's runs are ended then, diffrax's after a million steps for each
-    second, ours, which cannot be, go on.
+    whole one ahead. `repeats`: at most so many warm runs are timed: three, or as many as
+    fit into half a second, and no more than fit into `seconds`. `seconds`: of a method that
+    takes longer tighter accuracies are not tried; SciPy's runs are ended then, diffrax's
+    after a million steps for each second, ours, which cannot be, go on.
 
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took

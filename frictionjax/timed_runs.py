@@ -91,7 +91,7 @@ def timed(
 ) -> tuple[Run, dict[str, float]]:
     """The result of the last of a first run and warm ones, and how long they took.
 
-    One warm run where it takes longer than `seconds`. `first`: seconds of a first run that
+    No more warm runs than fit into `seconds`, but one. `first`: seconds of a first run that
     has been. (Where a first run was ended, what it had
     compiled was counted as its time: 22 s where 2 were allowed. It is made again too.)
     """
@@ -101,7 +101,7 @@ def timed(
     while len(warm) < repeats and (len(warm) < _LEAST or sum(warm) < _ENOUGH):
         result, spent = clocked(run)
         warm.append(spent)
-        if spent > seconds:
+        if sum(warm) > seconds:
             break
     return result, _times(warm, max(0.0, first - float(np.median(warm))))
 

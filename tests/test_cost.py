@@ -198,7 +198,8 @@ def test_what_is_wrong(error, end, accuracy, wrong):
 
 
 @pytest.mark.parametrize(
-    ("spent", "repeats", "runs"), [(0.2, 5, 3), (1e-3, 5, 5), (0.2, 2, 2), (2.0, 5, 1)]
+    ("spent", "repeats", "runs"),
+    [(0.2, 5, 3), (1e-3, 5, 5), (0.2, 2, 2), (2.0, 5, 1), (0.7, 5, 2)],
 )
 def test_how_often_runs_are_timed(monkeypatch, spent, repeats, runs):
     monkeypatch.setattr(timed_runs, "clocked", lambda run: (run(), spent))
