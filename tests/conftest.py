@@ -24,20 +24,22 @@ jax.config.update("jax_enable_x64", True)
 
 # Files that take longest, first: the last one under way then leaves no worker idle.
 _LONGEST = (
-    "test_trajectories",
-    "test_certificate",
-    "test_notebooks",
-    "test_windows",
-    "test_fit_angle",
-    "test_fit_profile",
     "test_fit_trace",
-    "test_hard_accuracy",
-    "test_solvers",
-    "test_cost_model",
-    "test_steady_slide",
-    "test_wells",
+    "test_gradients",
+    "test_certificate",
+    "test_fit_profile",
+    "test_fit_angle",
     "test_cost",
-    "test_random_scenes",
+    "test_survey",
+    "test_hard_accuracy",
+    "test_windows",
+    "test_guarantees",
+    "test_potential",
+    "test_slide_profile",
+    "test_wells",
+    "test_hard_flags",
+    "test_solvers",
+    "test_friction",
 )
 
 
