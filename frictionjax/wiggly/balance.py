@@ -16,6 +16,7 @@ _STEEP, _SWING = 10.0, 1e-3  # times the way, and periods: slopes times the step
 _TWIST = 0.5  # of the steeper slope: what no parabola has of both, where they are no spike
 _STIFF = 3.0  # steps longer than this many relaxation times count as rest
 _SMOOTH = 0.1  # dissipation over eps times what the load goes: less where nothing folds
+_ROUGH = 1e-8  # dissipation over energies: rounding of less is a few 1e-8 of it
 _NODES = (0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5)  # two-point Gauss on [0, 1]
 
 
@@ -132,15 +133,17 @@ def at_rest() -> Balance:
     return Balance(zero, zero, zero)
 
 
-def is_smooth(viscous: Real, slip_energy: Real, eps: Real, pulled: Real) -> Real:
+def is_smooth(viscous: Real, size: Real, eps: Real, pulled: Real) -> Real:
     """Whether the direct sum `viscous` (J) is a better dissipation than that from energies.
 
-    `slip_energy` (J): of one slip; `pulled` (N): what the load goes up and down in all.
-    Energies are out by the load's changes times the error of z, some 1e-3 of the accuracy
-    in eps. Less is dissipated than in one slip, or there are no folds: a support of 1000
-    N/m, eps = 0.1, accuracy 1e-3: 2e-3 off from energies, 3e-5 by the direct sum.
+    `size` (J): of the energies of which differences are taken; `pulled` (N): what the load
+    goes up and down in all. Energies are out by the load's changes times the error of z,
+    some 1e-3 of the accuracy in eps, and by rounding. There are no folds: a support of 1000
+    N/m, eps = 0.1, accuracy 1e-3: 2e-3 off from energies, 3e-5 by the direct sum. (Direct
+    sums of whatever was less than a slip: up to 100 times the accuracy off where a start
+    falls into its well and the load hardly moves.)
     """
-    return (viscous < slip_energy) | (viscous < _SMOOTH * eps * pulled)
+    return (viscous < _ROUGH * size) | (viscous < _SMOOTH * eps * pulled)
 
 
 def dissipated(

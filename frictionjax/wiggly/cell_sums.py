@@ -105,7 +105,8 @@ def energetics(cell, stops, layout, output, energy0, of_path, path, eps):
     outputs = _outputs(cell, stops, layout, output)
     running = _running(cell, stops, layout.windows, outputs)
     beyond = energy0 - stops.energy[cell.chain] - cell.totals[WORK]
-    if is_smooth(cell.totals[VISCOUS, -1], eps * path.width, eps, path.pulled):
+    size = stops.size[cell.chain].max(initial=0.0)
+    if is_smooth(cell.totals[VISCOUS, -1], size, eps, path.pulled):
         spent, rest = running[VISCOUS], _without_slips(cell, stops, energy0, beyond)
     else:
         energy = np.where(output >= 0, stops.energy[output], energy0)

@@ -76,7 +76,7 @@ def evaluate(
     stops = stops_of(scene, layout, found, eps)
     count = eps.size
     guide = np.full(count, path.states[0])
-    z_start, energy0 = states_of(scene, eps, *start, np.zeros(count), guide)
+    z_start, energy0, _ = states_of(scene, eps, *start, np.zeros(count), guide)
     guides = states_at(scene, path, ts)
     of_path = _dissipation_of_path(path, ts, guides)
     whole = float(path.travel[-1])

@@ -87,7 +87,8 @@ def integrate(
             lambda t, y, balance: dissipated(field, balance, t, y, start_energy)
         )(ts, tips, memories[0])
         pulled = _pulled(scene, turns, until)
-        smooth = is_smooth(final.viscous, _slip_energy(scene, eps), eps, pulled)
+        size = jnp.abs(start_energy) + jnp.abs(field.energy(last.t, last.y[0]))
+        smooth = is_smooth(final.viscous, size, eps, pulled)
         dissipation = blank + jnp.where(smooth, memories[0].viscous, lost)
         residual = memories[0].residual + blank
     status = _status(last.code, z, turns)

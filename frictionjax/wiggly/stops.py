@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from ..arguments import Real
@@ -32,21 +33,22 @@ class Found(NamedTuple):
 
 @Program
 def _energies(scene: Scene, eps, well, tip, t, guide):
-    """z in m at stops, and E_eps of z less E of the guide, in J."""
+    """z in m at stops, E_eps of z less E of the guide, and the size of its parts, in J."""
 
     def one(eps: Real, well: Real, tip: Real, t: Real, guide: Real):
         z = eps * (well + tip) + scene.potential.offset(tip, eps)
         wiggle = scene.potential.tip_energy_change(tip, eps)
-        elastic = scene.support.energy(z) - scene.support.energy(guide)
-        return z, elastic - scene.load(t) * (z - guide) + wiggle
+        held, at_guide = scene.support.energy(z), scene.support.energy(guide)
+        pull = scene.load(t) * (z - guide)
+        size = jnp.abs(held) + jnp.abs(at_guide) + jnp.abs(pull) + jnp.abs(wiggle)
+        return z, held - at_guide - pull + wiggle, size
 
     return jax.vmap(one)(eps, well, tip, t, guide)
 
 
-def states_of(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, np.ndarray]:
-    """z in m at stops, and E_eps of z less E of the guide, in J."""
-    z, energy = in_chunks(_energies, _CHUNK, (scene,), (eps, well, tip, t, guide))
-    return z, energy
+def states_of(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, ...]:
+    """z in m at stops, E_eps of z less E of the guide, and the size of its parts, in J."""
+    return tuple(in_chunks(_energies, _CHUNK, (scene,), (eps, well, tip, t, guide)))
 
 
 class Stops(NamedTuple):
@@ -55,6 +57,7 @@ class Stops(NamedTuple):
     time: np.ndarray
     z: np.ndarray
     energy: np.ndarray
+    size: np.ndarray
     sums: np.ndarray
     beyond: np.ndarray
     extremes: np.ndarray
@@ -65,7 +68,7 @@ def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Sto
     """What was found at every stop of a layout."""
     windows, a, legs = layout.windows, found.arrivals, found.legs
     size = eps[windows.cell[windows.owner]]
-    z, energy = states_of(scene, size, a.well, a.tip, windows.stop, legs.guide1)
+    z, energy, parts = states_of(scene, size, a.well, a.tip, windows.stop, legs.guide1)
     rise = legs.guide1 - legs.guide0
     moved = legs.end > legs.start
     ways, surpluses = (a.ahead, a.behind), (a.surplus, a.deficit)
@@ -73,6 +76,7 @@ def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Sto
         time=windows.stop,
         z=z,
         energy=energy,
+        size=parts,
         sums=np.stack([a.work, a.viscous, a.residual]),
         beyond=a.viscous - legs.friction * rise,
         extremes=np.stack([*(np.where(moved, v, 0.0) for v in ways), *surpluses]),
