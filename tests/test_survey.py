@@ -112,7 +112,8 @@ def way(*surveys, spent=1.0):
     """
     sliding = np.ones(2)
     parts = np.zeros((3, 2)), np.zeros(2), np.zeros((4, 2)), sliding
-    stops = Stops(np.array([0.0, LOW]), np.zeros(2), np.zeros(2), *parts)
+    size = np.full(2, 1e3)  # energies of a kJ
+    stops = Stops(np.array([0.0, LOW]), np.zeros(2), np.zeros(2), size, *parts)
     slide = SimpleNamespace(stops=np.array([1]), piece=0, way=4.0)
     chain = np.array([0])
     totals, before = np.zeros((3, 1)), np.zeros((len(surveys), 3))
