@@ -48,7 +48,7 @@ _RUN = {
     "jacobians": ("1", "evaluations of its Jacobian"),
     "calls_share": ("1", "share of the seconds in calls of the field from Python"),
     "status": (None, "how the run ended"),
-    "wrong": ("1", "1 where success is reported half an eps or more off, unasked"),
+    "wrong": ("1", "1 where success is reported half an eps off, and more than asked"),
 }
 _REFERENCE = {
     "reference_error": ("1", "distance of the reference from a second one, in eps"),

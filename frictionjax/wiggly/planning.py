@@ -47,8 +47,8 @@ _SLIPS_FORGET = 1.5
 _LONG_SLIDE = 60.0
 # Wells that one lane from z0 goes through in about the time of the slip maps of three
 # slides, for a sine. (16 eps to 1e-4, gamma = 1/2, seconds with maps from 1100, 1800, 2500
-# and 4000 on: 0.35, 0.26, 0.25, 0.39. Whatever the number of slides: 10 s for 200 of 190
-# wells each, which one lane goes through in 1.)
+# and 4000 on: 0.35, 0.26, 0.25, 0.39. Whatever the number of slides: 14 s for 200 of 190
+# wells each, which one lane goes through in 3.)
 _MAP = 2200.0 / 3
 # Of the speed: what panels of a slip map might step over.
 _BURST = 0.1

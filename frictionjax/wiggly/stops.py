@@ -52,7 +52,10 @@ def states_of(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, ...]:
 
 
 class Stops(NamedTuple):
-    """What the sums need of every stop, shape (S,); `sums` (3, S), `extremes` (4, S)."""
+    """What the sums need of every stop, shape (S,); `sums` (3, S), `extremes` (4, S).
+
+    `size`: of the energies whose differences `energy` is, J.
+    """
 
     time: np.ndarray
     z: np.ndarray
@@ -67,8 +70,8 @@ class Stops(NamedTuple):
 def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Stops:
     """What was found at every stop of a layout."""
     windows, a, legs = layout.windows, found.arrivals, found.legs
-    size = eps[windows.cell[windows.owner]]
-    z, energy, parts = states_of(scene, size, a.well, a.tip, windows.stop, legs.guide1)
+    own = eps[windows.cell[windows.owner]]
+    z, energy, size = states_of(scene, own, a.well, a.tip, windows.stop, legs.guide1)
     rise = legs.guide1 - legs.guide0
     moved = legs.end > legs.start
     ways, surpluses = (a.ahead, a.behind), (a.surplus, a.deficit)
@@ -76,7 +79,7 @@ def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Sto
         time=windows.stop,
         z=z,
         energy=energy,
-        size=parts,
+        size=size,
         sums=np.stack([a.work, a.viscous, a.residual]),
         beyond=a.viscous - legs.friction * rise,
         extremes=np.stack([*(np.where(moved, v, 0.0) for v in ways), *surpluses]),
