@@ -88,11 +88,6 @@ def sweep(
     `dissipation_limit`, the strip `z_minus`, `z_plus` and the load, `data["load"]`. Units
     and provenance are in the attributes; it goes to NetCDF and back without loss.
 
-    `strip_excess` by the library's own methods is the lag behind the limit where that
-    slides: z outside the strip while the limit rests, as after a load that is faster than
-    tips follow, is missed (by up to an eps where nobody asked for such times), and a leg of
-    a lane that begins in a rest may count too much.
-
     A cell that fails has its status and NaNs and does not disturb the others.
 
     Raises `ValueError` for arguments out of range, z0 outside the strip at t = 0 (Theorem

@@ -194,8 +194,10 @@ def knows_its_suprema(case: Case, found) -> float:
     # Where next to nothing is dissipated, the limit's is what both are compared with.
     spent = max(float(every.dissipation[-1]), float(every.dissipation_error))
     seen = float(np.abs(every.z - every.z_limit).max())
+    left = float(np.maximum(every.z_minus - every.z, every.z - every.z_plus).max())
     gaps = (
         (seen - few.sup_error) / size,
+        (left - few.strip_excess) / size,
         abs(few.sup_error - every.sup_error) / size,
         abs(few.strip_excess - every.strip_excess) / size,
         abs(few.dissipation_error - every.dissipation_error) / spent,

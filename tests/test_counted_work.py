@@ -130,12 +130,12 @@ def test_lanes_look_at_the_field_once_a_stage(monkeypatch):
 
     monkeypatch.setattr(TipField, "driving_force", look)
     one = jnp.asarray(1.0)
-    point = lane.Point(*[one] * 5)
+    point = lane.Point(*[one] * 6)
     cell = lane.Cells(*[one] * len(lane.Cells._fields))
     guide = lane.Guide(*[one] * 7)
     none = jnp.asarray(0)
     task = lane.Task(none, none, cell, one, guide, one, one, one)
-    sums, extent = lane.Balance(*[one] * 3), lane.Extent(*[one] * 4)
+    sums, extent = lane.Balance(*[one] * 3), lane.Extent(*[one] * 5)
     motion = lane.Motion(one, one, point, one, one, sums, extent, one, one, one)
     parts = lane.LaneScene(SCENE.potential, SCENE.support, SCENE.load), TABLEAU
     jax.make_jaxpr(lambda m: lane.step_of_lane(*parts, Sums(False, False), task, m))(motion)

@@ -7,6 +7,8 @@ import jax
 
 from ..arguments import Real
 
+_NEWTON = 3
+
 
 class AbstractSupport(eqx.Module):
     """The energy `Phi(z)` of the horizontal spring, uniformly convex."""
@@ -18,6 +20,15 @@ class AbstractSupport(eqx.Module):
     @abc.abstractmethod
     def state_of(self, force: Real) -> Real:
         """`(Phi')^-1(force)` in m, differentiable in `force` (N) and parameters."""
+
+    def state_near(self, force: Real, guess: Real) -> Real:
+        """`state_of` for a state near `guess` in m, without a search for it.
+
+        A guess a tenth of its scale off leaves 1e-10 of it.
+        """
+        for _ in range(_NEWTON):
+            guess = guess + (force - self.force(guess)) / self.stiffness_at(guess)
+        return guess
 
     def force(self, z: Real) -> Real:
         """`Phi'(z)` in N."""

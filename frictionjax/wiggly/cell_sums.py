@@ -4,12 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .balance import is_smooth
+from .balance import errors_of
 from .layout import Layout, Slide
 from .path import Path
 from .stops import Stops
-from .survey import AHEAD, BEHIND, DEFICIT, RESIDUAL, SURPLUS, VISCOUS, WORK, Survey
+from .survey import DEFICIT, RESIDUAL, SURPLUS, VISCOUS, WORK, Survey
 from .windows import Windows
+
+_NO_SLIPS = 0.1  # dissipation over eps times what the load goes: less where nothing folds
 
 
 class CellWay(NamedTuple):
@@ -93,26 +95,41 @@ def _running(
     return found
 
 
-def energetics(cell, stops, layout, output, energy0, of_path, path, eps):
+def energetics(cell, stops, layout, output, energy0, of_path, path, unit, eps):
     """Dissipation and residual at the outputs, gap at the end, sup of the error, all in J.
 
     And how far surveys may be off, in the dissipation or in that sup, over the dissipation
     in [0, T].
 
     `int eps^gamma z'^2` is the path's dissipation and what the energies and the work of
-    z - path add to it; the direct sum is an independent second value.
+    z - path add to it; the direct sum is an independent second value. `unit`: the accuracy
+    in m.
     """
     outputs = _outputs(cell, stops, layout, output)
     running = _running(cell, stops, layout.windows, outputs)
     beyond = energy0 - stops.energy[cell.chain] - cell.totals[WORK]
-    size = stops.size[cell.chain].max(initial=0.0)
-    if is_smooth(cell.totals[VISCOUS, -1], size, eps, path.pulled):
+    if _sum_is_closer(cell, stops, path, unit, eps):
         spent, rest = running[VISCOUS], _without_slips(cell, stops, energy0, beyond)
     else:
         energy = np.where(output >= 0, stops.energy[output], energy0)
         spent = of_path + energy0 - energy - running[WORK]
         rest = _with_slips(cell, stops, energy0, beyond, path)
     return spent, running[RESIDUAL], cell.totals[RESIDUAL, -1], *rest
+
+
+def _sum_is_closer(cell: CellWay, stops: Stops, path: Path, unit, eps) -> bool:
+    """Whether the dissipation is to be summed directly.
+
+    Not over surveyed slides with slips: those drift across the ends of periods.
+    """
+    _, viscous, residual = cell.totals[:, -1]
+    size = stops.size[cell.chain].max(initial=0.0)
+    errors = errors_of(viscous, residual, size, unit, path.pulled)
+    if not cell.surveys:
+        return bool(errors.sum_is_closer)
+    of_sum = errors.of_sum + sum(survey.error_viscous for survey in cell.surveys)
+    of_energies = errors.of_energies + sum(s.error_work for s in cell.surveys)
+    return bool(of_sum < of_energies) and viscous < _NO_SLIPS * eps * path.pulled
 
 
 def _with_slips(cell: CellWay, stops: Stops, energy0: float, beyond, path: Path):
@@ -184,10 +201,10 @@ def _worst_dissipation(cell, stops, energy0, beyond) -> tuple[float, float]:
 
 
 class Deviations(NamedTuple):
-    """Largest |z - path|, how far z lags outside the strip, and errors of both, in m."""
+    """Largest |z - path|, largest way from the strip to z, and errors of both, in m."""
 
     far: float
-    lag: float
+    outside: float
     error: float
 
 
@@ -200,20 +217,16 @@ def deviations(cell: CellWay, stops: Stops) -> Deviations:
     The first wells of a slide are surveyed most roughly, where z is still near the path:
     only what may be the largest of all counts.
     """
-    ahead, behind = stops.extremes[:SURPLUS, cell.chain]
-    sliding = stops.sliding[cell.chain]
-    lags = np.where(sliding > 0, -behind, np.where(sliding < 0, ahead, 0.0))
-    rows = [(np.max(np.maximum(ahead, -behind)), np.max(lags, initial=0.0), 0.0)]
-    for slide, survey in zip(cell.slides, cell.surveys, strict=True):
-        high = float(np.max(survey.extremes[AHEAD]))
-        low = float(np.min(survey.extremes[BEHIND]))
-        sign = stops.sliding[slide.stops[0]]
-        lag = -low if sign > 0 else high if sign < 0 else 0.0
-        rows.append((max(high, -low), lag, survey.error_extreme))
+    ahead, behind, outside = stops.extremes[:SURPLUS, cell.chain]
+    rows = [(np.max(np.maximum(ahead, -behind)), np.max(outside, initial=0.0), 0.0)]
+    for survey in cell.surveys:
+        ahead, behind, outside = survey.extremes[:SURPLUS]
+        far = np.max(np.maximum(ahead, -behind))
+        rows.append((far, np.max(outside), survey.error_extreme))
     *both, errors = np.array(rows).T
     changes = [_change(values, errors) for values in both]
-    far, lag = (float(values.max()) for values in both)
-    return Deviations(far, lag, max(changes))
+    far, outside = (float(values.max()) for values in both)
+    return Deviations(far, outside, max(changes))
 
 
 def _change(values: np.ndarray, errors: np.ndarray) -> float:

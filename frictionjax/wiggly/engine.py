@@ -82,9 +82,8 @@ class _Sweep(NamedTuple):
         rounds = self.rounds(cells)
         found, open_ = collect(rounds, layout, cells.needs)
         start = cells.ground.start_well, cells.ground.start_tip
-        answers = evaluate(
-            self.scene, self.path, cells.eps, self.ts, layout, found, self.wanted, start
-        )
+        summed = layout, found, self.wanted, start, self.accuracy
+        answers = evaluate(self.scene, self.path, cells.eps, self.ts, *summed)
         never = np.zeros(cells.eps.size, dtype=bool)
         never[layout.windows.cell[open_]] = True
         return answers, never

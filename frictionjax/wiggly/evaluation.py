@@ -68,6 +68,7 @@ def evaluate(
     found: Found,
     wanted: Sums,
     start: tuple[np.ndarray, np.ndarray],
+    accuracy: float,
 ) -> Answers:
     """Values of all cells from what was found at the stops of the layout.
 
@@ -89,8 +90,8 @@ def evaluate(
         cell = way_of(layout.chain[c], *own, stops)
         *energies, lost = no_energetics(ts.size)
         if wanted.energies:
-            of = layout, layout.output[c], energy0[c], of_path, path, eps[c]
-            *energies, lost = energetics(cell, stops, *of)
+            of = layout, layout.output[c], energy0[c], of_path, path
+            *energies, lost = energetics(cell, stops, *of, accuracy * eps[c], eps[c])
         output = layout.output[c]
         z = np.where(output >= 0, stops.z[output], z_start[c])
         off = deviations(cell, stops) if wanted.extremes else NOT_ASKED
@@ -99,7 +100,7 @@ def evaluate(
                 z,
                 *energies,
                 off.far,
-                off.lag,
+                off.outside,
                 np.where(output >= 0, found.how[output], 0),
                 np.where(output >= 0, found.gap[output], 0.0),
                 _share(cell, path, whole) if layout.whole else np.nan,

@@ -12,7 +12,8 @@ class Guide(NamedTuple):
     """A cubic in time over one leg, in m: the strip's edge, or the state at rest.
 
     `start` (s), `length` (s), `value` at the start, `rise` (m), slopes at both ends (m/s).
-    `friction`: what it dissipates, in N per m of its way.
+    `friction`: what it dissipates in N per m of its way, and the pull (N) on the edge of
+    the strip that the load moves: `rho_plus` where it rises, else `rho_minus`.
     """
 
     start: Real
@@ -40,10 +41,12 @@ class Guide(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """Extremes so far of z - guide (m), and of the dissipation beyond the guide's (J)."""
+    """Extremes so far of z - guide, of the way from the strip to z, negative inside (m),
+    and of the dissipation beyond the guide's (J)."""
 
     ahead: Real
     behind: Real
+    outside: Real
     surplus: Real
     deficit: Real
 
@@ -59,6 +62,18 @@ def widen(
     return extent._replace(
         ahead=jnp.maximum(extent.ahead, high), behind=jnp.minimum(extent.behind, low)
     )
+
+
+def leave(
+    extent: Extent, step: Real, gaps: tuple[Real, Real], slopes: tuple[Real, Real]
+) -> Extent:
+    """The extent after a step on which z is so far outside the strip at its ends, and the
+    distance grows so fast.
+
+    Of the edge that the load moves: from the other one no tip goes away.
+    """
+    _, high = _extremes(step, gaps, slopes)
+    return extent._replace(outside=jnp.maximum(extent.outside, high))
 
 
 def spend(

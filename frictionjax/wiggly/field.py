@@ -13,13 +13,15 @@ from ..supports import AbstractSupport
 
 
 class Point(NamedTuple):
-    """The field at one point: `y'`, its derivatives by `y` and `t`, `z` in m, and `G`."""
+    """The field at one point: `y'`, its derivatives by `y` and `t`, `z` in m, `G`, and the
+    load in N."""
 
     velocity: Real
     by_state: Real
     by_time: Real
     state: Real
     stretch: Real
+    load: Real
 
 
 class TipField(eqx.Module):
@@ -70,7 +72,8 @@ class TipField(eqx.Module):
         velocity, by_state = jax.jvp(lambda s: self.velocity(t, s), (y,), (one,))
         _, stretch = self.potential.tip_force(y, self.eps)
         by_time = self.load_slope(t) / (self.viscosity * self.eps * stretch)
-        return Point(velocity, by_state, by_time, self.state(y), stretch)
+        load = self.load(self.origin + t)
+        return Point(velocity, by_state, by_time, self.state(y), stretch, load)
 
     def energy(self, t: Real, y: Real) -> Real:
         """`E_eps = Phi - l z + V_eps` (eq. 2.6) in J."""

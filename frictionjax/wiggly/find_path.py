@@ -53,7 +53,8 @@ def path_of(scene: Scene) -> Path | None:
         states[i] = np.clip(states[i - 1], lower[i], upper[i])
     moves = np.diff(states)
     direction = np.sign(moves)
-    rho = np.where(direction > 0, rho_plus, rho_minus)
+    rises = np.where(direction == 0, np.diff(loads), direction) > 0
+    rho = np.where(rises, rho_plus, rho_minus)
     path = Path(
         edges=edges,
         states=states,

@@ -36,8 +36,8 @@ class Legs(NamedTuple):
     """Stretches of a lane's way between two stops, shape (legs,).
 
     `start`, `end`: times in s. The guide goes from the state `guide0` (m) with the slope
-    `slope0` (m/s) to `guide1` with `slope1`, and dissipates `friction` (N per m). `budget`:
-    steps after which a lane gives up.
+    `slope0` (m/s) to `guide1` with `slope1`, `friction` (N) as in `Guide`. `budget`: steps
+    after which a lane gives up.
     """
 
     start: Any
@@ -73,6 +73,7 @@ class Arrivals(NamedTuple):
     residual: Any
     ahead: Any
     behind: Any
+    outside: Any
     surplus: Any
     deficit: Any
     steps: Any
@@ -95,7 +96,7 @@ class _Work(NamedTuple):
     task: Task
     motion: Motion
     next_job: Int[Array, ""]
-    found: Float[Array, "legs 13"]
+    found: Float[Array, "legs 14"]
 
 
 def _idle(tables: Tables, width: int) -> tuple[Task, Motion]:
@@ -107,11 +108,11 @@ def _idle(tables: Tables, width: int) -> tuple[Task, Motion]:
     motion = Motion(
         tip=zero,
         time=zero,
-        point=Point(*[zero] * 5),
+        point=Point(*[zero] * 6),
         level=zero,
         trend=zero,
         sums=Balance(*[zero] * 3),
-        extent=Extent(*[zero] * 4),
+        extent=Extent(*[zero] * 5),
         steps=zero,
         rejected=zero,
         code=zero,
@@ -119,7 +120,7 @@ def _idle(tables: Tables, width: int) -> tuple[Task, Motion]:
     return task, motion
 
 
-def _report(task: Task, motion: Motion) -> Float[Array, "width 13"]:
+def _report(task: Task, motion: Motion) -> Float[Array, "width 14"]:
     """Rows of `Arrivals` for all lanes; NaN where a lane has failed."""
     blank = jnp.where(motion.code == 0, 0.0, jnp.nan)
     speed = task.cell.eps * motion.point.stretch * motion.point.velocity
@@ -167,7 +168,7 @@ def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
     )
     zero = jnp.zeros_like(tip)
     empty = jnp.full_like(tip, jnp.inf)
-    nothing = Extent(-empty, empty, zero, zero)
+    nothing = Extent(-empty, empty, -empty, zero, zero)
     time = jnp.where(fresh, 0.0, motion.time)
     set_off = motion._replace(
         tip=tip - shift,
@@ -184,11 +185,11 @@ def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
 
 
 def _written(
-    found: Float[Array, "legs 13"],
+    found: Float[Array, "legs 14"],
     place: Int[Array, " width"],
     through: Bool[Array, " width"],
     rows: Array,
-) -> Float[Array, "legs 13"]:
+) -> Float[Array, "legs 14"]:
     """`found` with a row of each lane that is `through` at its place.
 
     Row by row: XLA compiles a loop with a scatter as a list of kernels, which two threads
@@ -207,7 +208,7 @@ def _written(
 @Program
 def run_queue(
     scene: LaneScene, tableau: Tableau, wanted: Sums, width: int, tables: Tables
-) -> Float[Array, "legs 13"]:
+) -> Float[Array, "legs 14"]:
     step = jax.vmap(lambda task, motion: step_of_lane(scene, tableau, wanted, task, motion))
     point = jax.vmap(lambda task, time, tip: field_of(scene, task).point(time, tip))
 

@@ -12,7 +12,7 @@ from ..loads import AbstractLoad
 from ..potentials import AbstractPotential
 from ..supports import AbstractSupport
 from .balance import Balance, advance, arrival, slopes_between
-from .extent import Extent, Guide, spend, widen
+from .extent import Extent, Guide, leave, spend, widen
 from .field import Point, TipField
 from .once import once
 from .rosenbrock import Linearised, Tableau, rosenbrock_step
@@ -130,7 +130,7 @@ def step_of_lane(
             task.guide.__call__,
         )
     if wanted.extremes:
-        extent = _extent(task, motion, step, time, tip, arrived, sums)
+        extent = _extent(field, task, motion, step, time, tip, arrived, sums)
     after = Motion(
         tip=tip,
         time=time,
@@ -154,16 +154,27 @@ def step_of_lane(
 
 
 def _extent(
-    task: Task, motion: Motion, step: Real, time: Real, tip: Real, end: Point, sums: Balance
+    field: TipField,
+    task: Task,
+    motion: Motion,
+    step: Real,
+    time: Real,
+    tip: Real,
+    end: Point,
+    sums: Balance,
 ) -> Extent:
     guide, eps, start = task.guide, task.cell.eps, motion.point
     slopes = slopes_between(start, end, step, tip - motion.tip)
     speeds = eps * start.stretch * slopes[0], eps * end.stretch * slopes[1]
     ahead = guide.slope(motion.time), guide.slope(time)
-    gaps = start.state - guide(motion.time), end.state - guide(time)
+    guides = guide(motion.time), guide(time)
+    gaps = start.state - guides[0], end.state - guides[1]
     away = speeds[0] - ahead[0], speeds[1] - ahead[1]
     extent = widen(motion.extent, step, gaps, away)
     viscosity, friction = task.cell.viscosity, guide.friction
+    ends = (start, guides[0], speeds[0]), (end, guides[1], speeds[1])
+    left = [_outside(field, friction, *values) for values in ends]
+    extent = leave(extent, step, *zip(*left, strict=True))
     beyond = (
         motion.sums.viscous - friction * guide.way(motion.time),
         sums.viscous - friction * guide.way(time),
@@ -173,3 +184,18 @@ def _extent(
         viscosity * speeds[1] ** 2 - friction * ahead[1],
     )
     return spend(extent, step, beyond, rates)
+
+
+def _outside(
+    field: TipField, friction: Real, point: Point, guide: Real, speed: Real
+) -> tuple[Real, Real]:
+    """How far z is outside the strip in m, negative inside, and how fast it goes away."""
+    support, side = field.support, jnp.sign(friction)
+    held, z = point.load - friction, point.state
+    # Where the guide slides it is the edge; where it rests, z is near what it is outside of.
+    off = [jnp.abs(held - support.force(place)) for place in (guide, z)]
+    edge = support.state_near(held, jnp.where(off[0] <= off[1], guide, z))
+    # The guide is inside.
+    gap = jnp.minimum(side * (edge - z), jnp.maximum(side * (guide - z), 0.0))
+    slope = point.by_time * field.viscosity * field.eps * point.stretch
+    return gap, side * (slope / support.stiffness_at(edge) - speed)

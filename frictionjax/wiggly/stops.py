@@ -52,7 +52,7 @@ def states_of(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, ...]:
 
 
 class Stops(NamedTuple):
-    """What the sums need of every stop, shape (S,); `sums` (3, S), `extremes` (4, S).
+    """What the sums need of every stop, shape (S,); `sums` (3, S), `extremes` (5, S).
 
     `size`: of the energies whose differences `energy` is, J.
     """
@@ -64,7 +64,6 @@ class Stops(NamedTuple):
     sums: np.ndarray
     beyond: np.ndarray
     extremes: np.ndarray
-    sliding: np.ndarray
 
 
 def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Stops:
@@ -74,7 +73,7 @@ def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Sto
     z, energy, size = states_of(scene, own, a.well, a.tip, windows.stop, legs.guide1)
     rise = legs.guide1 - legs.guide0
     moved = legs.end > legs.start
-    ways, surpluses = (a.ahead, a.behind), (a.surplus, a.deficit)
+    ways, surpluses = (a.ahead, a.behind, a.outside), (a.surplus, a.deficit)
     return Stops(
         time=windows.stop,
         z=z,
@@ -83,7 +82,6 @@ def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Sto
         sums=np.stack([a.work, a.viscous, a.residual]),
         beyond=a.viscous - legs.friction * rise,
         extremes=np.stack([*(np.where(moved, v, 0.0) for v in ways), *surpluses]),
-        sliding=np.sign(rise),
     )
 
 

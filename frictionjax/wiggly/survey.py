@@ -13,7 +13,7 @@ _FINE = 257  # points at which extremes of the fitted curves are looked for
 _MAGNIFIED, _PLACES, _FEWER = 30.0, 4, 0.85
 _LAST, _UNCERTAIN = 3, 5.0  # coefficients looked at; errors over them where not all fit
 WORK, VISCOUS, RESIDUAL = range(3)  # rows of what is summed
-AHEAD, BEHIND, SURPLUS, DEFICIT = range(4)  # rows of what has extremes
+AHEAD, BEHIND, OUTSIDE, SURPLUS, DEFICIT = range(5)  # rows of what has extremes
 
 
 class Survey(NamedTuple):
@@ -21,8 +21,8 @@ class Survey(NamedTuple):
 
     `low`, `high`: ends in s. `primitives` (3, n + 1): Chebyshev series of the sums since
     `low`, in J, and `whole` (3,) at `high`: work, viscous, residual. At `_FINE` times:
-    `work` (fine,) since `low`, and `extremes` (4, fine): of z - path over a period, ahead
-    and behind, m; of the dissipation beyond the path's, less what the work adds, surplus
+    `work` (fine,) since `low`, and `extremes` (5, fine): of z - path over a period, ahead
+    and behind, and of the way from the strip to z, m; of the dissipation beyond the path's, less what the work adds, surplus
     and deficit, J. `residual` since `low` at `times` (n + 2,), J. `error_*`: estimates from
     the last coefficients: of the integrals in J, of extremes in m, of surpluses in J.
     """
@@ -145,7 +145,7 @@ def surveys_of(
     """Fit curves through n slip periods [starts, ends] (s) of slides over [low, high].
 
     `low`, `high` (slides,); `starts`, `ends` (slides, n). `sums` (slides, 3, n): over each
-    period, J; `extremes` (slides, 4, n): in each. A sum over all periods is the integral of
+    period, J; `extremes` (slides, 5, n): in each. A sum over all periods is the integral of
     their density. All slides at once: a loop over them took 0.2 ms each.
     """
     middle, length = 0.5 * (starts + ends), ends - starts
@@ -166,7 +166,7 @@ def surveys_of(
     work = primitives[:, WORK] @ basis.T
     tails = _tails(series, fits)
     errors = 2 * half[:, None] * tails[:, :RESIDUAL] / count
-    extreme, surplus = (np.max(tails[:, k : k + 2], axis=1) for k in (3, 5))
+    extreme, surplus = (np.max(part, axis=1) for part in np.split(tails[:, 3:], [3], axis=1))
     return [
         Survey(*row)
         for row in zip(

@@ -73,6 +73,7 @@ class Plan(NamedTuple):
 
     `loosest`: tolerance in the middle of a slip; `pace`: periods a second of the fastest
     slide: see `Control`. `brief`: tolerance of a lane that goes through a few wells only.
+    `unit`: the accuracy in m.
     """
 
     tolerance: Real
@@ -83,6 +84,7 @@ class Plan(NamedTuple):
     first_step: Real
     shortest_step: Real
     folds: Folds
+    unit: Real
 
 
 class Pull(NamedTuple):
@@ -202,5 +204,6 @@ def plan_steps(
         first_step=first,
         shortest_step=shortest,
         folds=ground.folds,
+        unit=accuracy * eps,
     )
     return jax.lax.stop_gradient(plan)
