@@ -192,7 +192,7 @@ def _outside(
     """How far z is outside the strip in m, negative inside, and how fast it goes away."""
     support, side = field.support, jnp.sign(friction)
     held, z = point.load - friction, point.state
-    # Where the guide slides it is the edge; where it rests, z is near what it is outside of.
+    # Where the guide slides it is the edge; where it rests, the edge is near z outside.
     off = [jnp.abs(held - support.force(place)) for place in (guide, z)]
     edge = support.state_near(held, jnp.where(off[0] <= off[1], guide, z))
     # The guide is inside.

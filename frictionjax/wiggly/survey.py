@@ -22,9 +22,10 @@ class Survey(NamedTuple):
     `low`, `high`: ends in s. `primitives` (3, n + 1): Chebyshev series of the sums since
     `low`, in J, and `whole` (3,) at `high`: work, viscous, residual. At `_FINE` times:
     `work` (fine,) since `low`, and `extremes` (5, fine): of z - path over a period, ahead
-    and behind, and of the way from the strip to z, m; of the dissipation beyond the path's, less what the work adds, surplus
-    and deficit, J. `residual` since `low` at `times` (n + 2,), J. `error_*`: estimates from
-    the last coefficients: of the integrals in J, of extremes in m, of surpluses in J.
+    and behind, and of the way from the strip to z, m; of the dissipation beyond the path's,
+    less what the work adds, surplus and deficit, J. `residual` since `low` at `times` (n +
+    2,), J. `error_*`: estimates from the last coefficients: of the integrals in J, of
+    extremes in m, of surpluses in J.
     """
 
     low: float
@@ -166,7 +167,7 @@ def surveys_of(
     work = primitives[:, WORK] @ basis.T
     tails = _tails(series, fits)
     errors = 2 * half[:, None] * tails[:, :RESIDUAL] / count
-    extreme, surplus = (np.max(part, axis=1) for part in np.split(tails[:, 3:], [3], axis=1))
+    extreme, surplus = tails[:, 3:6].max(axis=1), tails[:, 6:].max(axis=1)
     return [
         Survey(*row)
         for row in zip(
