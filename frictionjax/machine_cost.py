@@ -53,6 +53,9 @@ class MachineCost(NamedTuple):
         return float(np.dot(self[:5], _amounts(work)))
 
 
+_UNWRITTEN: dict[str, MachineCost] = {}  # where the cache folder cannot be written
+
+
 # Two cores of a server, 2026, as measured: for whoever cannot wait for a measurement.
 ELSEWHERE = MachineCost(0.023, 0.0081, 0.0, 8.4e-8, 6.6e-7, 9.3, 7.7e8, measured=False)
 
@@ -160,9 +163,6 @@ def _kept(folder: Path | None) -> dict[str, Any]:
     except (OSError, ValueError):
         return {}
     return found if isinstance(found, dict) else {}
-
-
-_UNWRITTEN: dict[str, MachineCost] = {}
 
 
 def known_machine(folder: Path | None = None) -> MachineCost | None:
