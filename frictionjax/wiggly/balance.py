@@ -160,7 +160,7 @@ def errors_of(
     out by the direct sum, 9 by energies, 113 by the sum where less than a tenth of eps
     pulled is dissipated, 8 by this.)
     """
-    of_sum = _OF_SUM * (residual * viscous) ** 0.5
+    of_sum = _OF_SUM * abs(residual * viscous) ** 0.5  # surveys may undershoot 0
     return Errors(of_sum, _OF_ENERGIES * unit * pulled + _ROUNDING * size)
 
 
