@@ -19,7 +19,7 @@ import jax.numpy as jnp
 import numpy as np
 from numba import njit
 from scalar import REACH, SLIPS, integrator, lanes, load, point, rate
-from scenes import AMPLITUDE, PERIOD, SLOPE, TWO_PI, scene
+from scenes import AMPLITUDE, EDGES, PERIOD, SLOPE, TWO_PI, scene
 
 import frictionjax as fx
 from frictionjax.wiggly.field import TipField
@@ -120,7 +120,7 @@ def bare() -> None:
 
 def whole() -> None:
     one, (start, end, well) = scene("vertical"), lanes(EPS, LANES)
-    parts = LaneScene(one.potential, one.support, one.load)
+    parts = LaneScene(one.potential, one.support, one.load, *EDGES)
     numbers = EPS, EPS**GAMMA, 1e-2 * DRAG, TOLERANCE, TOLERANCE, np.inf, REACH
     cells = Cells(*(np.array([v]) for v in numbers))
     index, ones = np.arange(LANES), np.ones(LANES)

@@ -18,6 +18,7 @@ FASTEST = AMPLITUDE * TWO_PI / PERIOD  # N/s, of the load
 
 # A vertical spring with alpha = 1 on a sine: rho = +-0.1 N.
 SLOPE = 0.1
+EDGES = np.array(SLOPE), np.array(-SLOPE)  # N, of the strip
 # A rod on an angular spring, four harmonics: rho = 0.079 N and -0.137 N, alpha = 0.57 N.
 STIFFNESS, LENGTH, HEIGHT, REST = 1.0, 1.5, 1.0, 0.2
 COS = (0.0, 0.00384, 0.0, 0.00192)

@@ -11,7 +11,7 @@ import time
 
 import jax
 import numpy as np
-from scenes import AMPLITUDE, PERIOD, SLOPE, TWO_PI, scene
+from scenes import AMPLITUDE, EDGES, PERIOD, SLOPE, TWO_PI, scene
 
 import frictionjax as fx
 from frictionjax.wiggly.job_queue import Jobs, Legs
@@ -78,7 +78,7 @@ LANES, SLIPS = 1024, 4
 def run(tableau: Tableau, eps: float, gamma: float, tolerance: float):
     """Positions at the end, steps a slip, share rejected, seconds."""
     one = scene("vertical")
-    parts = LaneScene(one.potential, one.support, one.load)
+    parts = LaneScene(one.potential, one.support, one.load, *EDGES)
     start = np.random.default_rng(0).uniform(0.1, 0.5, LANES)
     edge = AMPLITUDE * np.sin(TWO_PI * start / PERIOD) - SLOPE
     end = np.arcsin((edge + SLIPS * eps + SLOPE) / AMPLITUDE) * PERIOD / TWO_PI

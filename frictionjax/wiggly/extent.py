@@ -12,8 +12,7 @@ class Guide(NamedTuple):
     """A cubic in time over one leg, in m: the strip's edge, or the state at rest.
 
     `start` (s), `length` (s), `value` at the start, `rise` (m), slopes at both ends (m/s).
-    `friction`: what it dissipates in N per m of its way, and the pull (N) on the edge of
-    the strip that the load moves: `rho_plus` where it rises, else `rho_minus`.
+    `friction`: what it dissipates, in N per m of its way.
     """
 
     start: Real
@@ -67,10 +66,8 @@ def widen(
 def leave(
     extent: Extent, step: Real, gaps: tuple[Real, Real], slopes: tuple[Real, Real]
 ) -> Extent:
-    """The extent after a step on which z is so far outside the strip at its ends, and the
-    distance grows so fast.
-
-    Of the edge that the load moves: from the other one no tip goes away.
+    """The extent after a step at whose ends z is so far outside the strip (negative
+    inside) and goes away so fast.
     """
     _, high = _extremes(step, gaps, slopes)
     return extent._replace(outside=jnp.maximum(extent.outside, high))

@@ -53,8 +53,7 @@ def path_of(scene: Scene) -> Path | None:
         states[i] = np.clip(states[i - 1], lower[i], upper[i])
     moves = np.diff(states)
     direction = np.sign(moves)
-    rises = np.where(direction == 0, np.diff(loads), direction) > 0
-    rho = np.where(rises, rho_plus, rho_minus)
+    rho = np.where(direction > 0, rho_plus, rho_minus)
     path = Path(
         edges=edges,
         states=states,

@@ -36,8 +36,8 @@ class Legs(NamedTuple):
     """Stretches of a lane's way between two stops, shape (legs,).
 
     `start`, `end`: times in s. The guide goes from the state `guide0` (m) with the slope
-    `slope0` (m/s) to `guide1` with `slope1`, `friction` (N) as in `Guide`. `budget`: steps
-    after which a lane gives up.
+    `slope0` (m/s) to `guide1` with `slope1`, and dissipates `friction` (N per m). `budget`:
+    steps after which a lane gives up.
     """
 
     start: Any

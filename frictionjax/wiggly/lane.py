@@ -41,11 +41,16 @@ class Cells(NamedTuple):
 
 
 class LaneScene(eqx.Module):
-    """What a lane simulates: the parts of the field, without the times of the scene."""
+    """What a lane simulates: the parts of the field, without the times of the scene.
+
+    `rho_plus`, `rho_minus`: pulls (N) on the edges of the strip.
+    """
 
     potential: AbstractPotential
     support: AbstractSupport
     load: AbstractLoad
+    rho_plus: Any
+    rho_minus: Any
 
 
 class Sums(NamedTuple):
@@ -130,7 +135,7 @@ def step_of_lane(
             task.guide.__call__,
         )
     if wanted.extremes:
-        extent = _extent(field, task, motion, step, time, tip, arrived, sums)
+        extent = _extent(scene, task, motion, step, time, tip, arrived, sums)
     after = Motion(
         tip=tip,
         time=time,
@@ -154,7 +159,7 @@ def step_of_lane(
 
 
 def _extent(
-    field: TipField,
+    scene: LaneScene,
     task: Task,
     motion: Motion,
     step: Real,
@@ -173,7 +178,7 @@ def _extent(
     extent = widen(motion.extent, step, gaps, away)
     viscosity, friction = task.cell.viscosity, guide.friction
     ends = (start, guides[0], speeds[0]), (end, guides[1], speeds[1])
-    left = [_outside(field, friction, *values) for values in ends]
+    left = [_outside(scene, task.cell, *values) for values in ends]
     extent = leave(extent, step, *zip(*left, strict=True))
     beyond = (
         motion.sums.viscous - friction * guide.way(motion.time),
@@ -187,15 +192,22 @@ def _extent(
 
 
 def _outside(
-    field: TipField, friction: Real, point: Point, guide: Real, speed: Real
+    scene: LaneScene, cell: Cells, point: Point, guide: Real, speed: Real
 ) -> tuple[Real, Real]:
     """How far z is outside the strip in m, negative inside, and how fast it goes away."""
-    support, side = field.support, jnp.sign(friction)
-    held, z = point.load - friction, point.state
-    # Where the guide slides it is the edge; where it rests, the edge is near z outside.
-    off = [jnp.abs(held - support.force(place)) for place in (guide, z)]
-    edge = support.state_near(held, jnp.where(off[0] <= off[1], guide, z))
+    support, z = scene.support, point.state
+    forces = support.force(guide), support.force(z)
+
+    def edge_under(rho: Real) -> Real:
+        # Where the guide slides it is the edge; where it rests, the edge is near z outside.
+        held = point.load - rho
+        off = jnp.abs(held - forces[0]), jnp.abs(held - forces[1])
+        return support.state_near(held, jnp.where(off[0] <= off[1], guide, z))
+
+    lower, upper = edge_under(scene.rho_plus), edge_under(scene.rho_minus)
+    below = lower - z > z - upper
+    gap = jnp.where(below, lower - z, z - upper)
+    slope = point.by_time * cell.viscosity * cell.eps * point.stretch
+    away = slope / support.stiffness_at(jnp.where(below, lower, upper)) - speed
     # The guide is inside.
-    gap = jnp.minimum(side * (edge - z), jnp.maximum(side * (guide - z), 0.0))
-    slope = point.by_time * field.viscosity * field.eps * point.stretch
-    return gap, side * (slope / support.stiffness_at(edge) - speed)
+    return jnp.minimum(gap, jnp.abs(guide - z)), jnp.where(below, away, -away)

@@ -38,9 +38,9 @@ class Path(NamedTuple):
     `edges` (P+1,): times in s. `states` (P+1,): of the path, in m. `direction` (P,): 1, -1
     or 0 where the path rests. `touch` (P,): time at which a slide begins, the piece's end
     where none does. `travel` (P+1,): way so far, in m. `rho` (P,): force of friction in N
-    at the edge that the load moves, `rho_plus` where it rises. `rho_plus`, `rho_minus`: in
-    N. `speed`, `stiffness`: largest speed of slides in m/s, smallest Phi''. `pulled`: what
-    the load goes up and down in all, N. `probes`: speeds on the way.
+    on the slide. `rho_plus`, `rho_minus`: in N. `speed`, `stiffness`: largest speed of
+    slides in m/s, smallest Phi''. `pulled`: what the load goes up and down in all, N.
+    `probes`: speeds on the way.
     """
 
     edges: np.ndarray

@@ -131,7 +131,8 @@ def lane_scene(scene: Scene, highest: float) -> LaneScene:
         height = float(np.max(np.abs(_heights(potential.profile, scan))))
         bristle = series_of(potential.bristle, 1.01 * highest * height)
         potential = BristlePotential(potential.profile, bristle)
-    return LaneScene(potential, scene.support, scene.load)
+    law = coefficients_jit(scene.potential)
+    return LaneScene(potential, scene.support, scene.load, law.rho_plus, law.rho_minus)
 
 
 def _needs(ground: Ground, path: Path, accuracy: float) -> Needs:

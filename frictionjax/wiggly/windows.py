@@ -174,6 +174,7 @@ def legs_of(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Leg
     inside = np.concatenate([start + aside, end - aside])
     slopes = slopes_at(scene, path, inside, guides)
     (guide0, guide1), (slope0, slope1) = np.split(guides, 2), np.split(slopes, 2)
-    friction = path.rho[path.piece_of(0.5 * (start + end))]
+    middle = path.piece_of(0.5 * (start + end))
+    friction = np.where(path.direction[middle] != 0, path.rho[middle], 0.0)
     none = np.zeros(start.size)
     return Legs(start, end, guide0, guide1, slope0, slope1, friction, budget=none)
