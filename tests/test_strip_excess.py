@@ -76,6 +76,19 @@ def test_what_a_reload_leaves_outside_is_the_most():
     assert whole > before + 0.05 * 0.1
 
 
+def test_tips_leave_by_the_edge_that_the_load_does_not_move():
+    """V_eps' exceeds rho_plus by a share of eps; on a stiff support z meets all of it."""
+    profile = fx.profiles.Fourier([-0.0509, -0.0034], [0.0152, -0.0036])
+    parts = profile, fx.bristles.VerticalSpring(10.0, 1.05, 1.0), fx.supports.Spring(5.0)
+    eps, load = 0.3, PiecewiseLinear([0.0, 200.0], [0.0, -4.5])
+    scene = fx.Scene(*parts, load, 200.0)
+    ts = np.linspace(0.0, 200.0, 2001)
+    cell = fx.sweep(scene, eps, 2.0, ts).isel(eps=0, gamma=0)
+    below, above = cell.z_minus - cell.z, cell.z - cell.z_plus
+    assert float(below.max()) > float(above.max()) + 5e-4 * eps  # while z goes left
+    assert abs(float(cell.strip_excess - below.max())) < 1e-4 * eps
+
+
 @pytest.mark.parametrize("support", [SPRING, QUARTIC, SOFT_PLUS])
 def test_states_near_a_guess_are_those_found_without(support):
     for force in (-2.0, 0.1, 0.7, 3.0):

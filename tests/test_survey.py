@@ -14,6 +14,7 @@ from frictionjax.wiggly.cell_sums import (
     CellWay,
     _outputs,
     _since_begin,
+    _sum_is_closer,
     deviations,
     energetics,
 )
@@ -163,6 +164,24 @@ def test_an_unknown_error_of_a_survey_is_not_forgotten():
     unknown = rough_survey(1.0, 0.0)._replace(error_work=np.nan)
     *_, lost = energetics(*way(unknown), *of)
     assert np.isnan(lost)
+
+
+@pytest.mark.parametrize(
+    ("errors", "pulled", "summed"),
+    [
+        ({}, 1e3, False),
+        ({"error_work": 1e-3}, 1e3, True),
+        ({"error_work": 1e-3}, 1.0, False),  # with slips
+        ({"error_work": 1e-3, "error_viscous": 1e-2}, 1e3, False),
+        ({"error_work": 1e-3, "error_viscous": np.nan}, 1e3, False),
+        ({"error_work": np.nan}, 1e3, False),
+    ],
+)
+def test_surveys_decide_which_sum_is_the_dissipation(errors, pulled, summed):
+    cell, stops = way(rough_survey(1.0, 0.0)._replace(**errors))
+    cell.totals[VISCOUS], cell.totals[RESIDUAL] = 1.0, 1e-8
+    path = Path(*[np.zeros(2)] * 5, np.full(1, 0.1), 0.1, -0.1, pulled=pulled)
+    assert _sum_is_closer(cell, stops, path, 1e-4, 0.1) is summed
 
 
 def test_times_in_a_rest_of_the_path_share_a_window():

@@ -12,6 +12,7 @@ from .field import Point, TipField
 # Distance in periods from its equilibrium up to which a rest counts as one: tolerances are
 # up to 1e-4, and 1e-6 with a viscosity of 1e-12 would look like a residual of 0.1 slips.
 _AT_REST = 1e-4
+_NEAR = 1e-2  # periods from a rest: up to there forces are linear
 _STEEP, _SWING = 10.0, 1e-3  # times the way, and periods: slopes times the step, at most
 _TWIST = 0.5  # of the steeper slope: what no parabola has of both, where they are no spike
 _STIFF = 3.0  # steps longer than this many relaxation times count as rest
@@ -67,16 +68,20 @@ def _end_slope(point: Point, step: Real) -> tuple[Real, Real]:
     return jnp.where(rest, branch, point.velocity), rest
 
 
-def _settling(start: Point, step: Real) -> Real:
-    """What a step that is a rest at its start adds to int y'^2: the tip settles at once.
+def _settled(point: Point, step: Real) -> tuple[Real, Real]:
+    """How far a rest is from its branch, and what settling there adds to int y'^2.
 
-    The cubic leaves it out, and where less than the tolerance is settled the whole of it
-    is in one step: a start on a support of 1e4 N/m lost all that it dissipates.
+    In periods; none of both where no straight line leads there. A cubic through the fall
+    itself has 2.4 relaxation times over the step of it. (Where less than the tolerance is
+    settled the whole of it is in one step: a start on a support of 1000 N/m lost half of
+    all that it dissipates, or had half too much.)
     """
-    slope, rest = _end_slope(start, step)
-    off = start.velocity - slope
-    rate = jnp.where(rest, -start.by_state, 1.0)
-    return jnp.where(rest, off * (0.5 * off + 2 * slope) / rate, 0.0)
+    slope, rest = _end_slope(point, step)
+    rate = jnp.where(rest, -point.by_state, 1.0)
+    off = point.velocity - slope
+    left = off / rate
+    near = rest & (jnp.abs(left) < _NEAR)
+    return jnp.where(near, left, 0.0), jnp.where(near, left * (0.5 * off + 2 * slope), 0.0)
 
 
 def arrival(field: TipField, t0: Real, step: Real, end: Point) -> Point:
@@ -112,16 +117,19 @@ def advance(
     """
     viscosity = field.viscosity
     slope0, slope1, rest = slopes_between(start, end, step, y1 - y0)
+    (left0, fall0), (left1, fall1) = _settled(start, step), _settled(end, step)
+    falls = start.stretch**2 * fall0 - end.stretch**2 * fall1
+    along = (left1 - left0) / step  # the branch, at both nodes, instead of the cubic
     work = defect = jnp.zeros_like(y0)
-    viscous = _settling(start, step) * viscosity * (field.eps * start.stretch) ** 2
+    viscous = viscosity * field.eps**2 * falls
     for s in _NODES:
         y, velocity = _cubic(s, step, y0, y1, slope0, slope1)
         t = t0 + s * step
         force, stretch = field.driving_force(t, y)
-        speed = field.eps * stretch * velocity
+        drawn, speed = (field.eps * stretch * v for v in (velocity, velocity + along))
         work += 0.5 * step * field.load_slope(t) * (field.state(y) - reference(t))
         viscous += 0.5 * step * viscosity * speed**2
-        defect += 0.25 * step * (viscosity * speed - force) ** 2 / viscosity
+        defect += 0.25 * step * (viscosity * drawn - force) ** 2 / viscosity
     # On a rest the cubic is good to the tolerance but not to the relaxation time: the
     # defect is taken at the step's end, where the solver put the solution.
     drag = viscosity * field.eps * end.stretch

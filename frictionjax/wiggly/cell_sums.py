@@ -188,9 +188,13 @@ def _spent(cell: CellWay, stops: Stops, path: Path) -> float:
 
 def _worst_dissipation(cell, stops, energy0, beyond) -> tuple[float, float]:
     """Largest distance of the dissipation from the path's, and the error of it."""
-    start = beyond - stops.beyond[cell.chain]
-    surplus, deficit = stops.extremes[SURPLUS:, cell.chain]
-    rows = [(np.max(start + surplus, initial=0.0), -np.min(start + deficit, initial=0.0))]
+    own = stops.beyond[cell.chain]
+    start = beyond - own
+    # Where the path rests they grow all the way: largest at the ends, which are known.
+    rests = own == stops.sums[VISCOUS, cell.chain]
+    extremes = stops.extremes[SURPLUS:, cell.chain]
+    most, least = np.where(rests, beyond, start + extremes)
+    rows = [(np.max(most, initial=0.0), -np.min(least, initial=0.0))]
     for before, survey in zip(cell.before, cell.surveys, strict=True):
         left = energy0 - before[WORK] - survey.work
         over, under = survey.extremes[SURPLUS], survey.extremes[DEFICIT]

@@ -188,7 +188,8 @@ def plan_steps(
     few = jnp.clip(pull.way / (_MANY_WELLS * eps), _FEWEST, 1.0)
     share = few * accuracy / (_SAFETY * stretch)
     at_folds = _FOLD * _way_to_fold(ground, pull, eps, gamma)
-    relaxation = eps ** (gamma + 1) / ground.steepest
+    held = eps * scene.support.stiffness_at(scene.z0)
+    relaxation = eps ** (gamma + 1) / (ground.steepest + held)
     shortest = _DOUBLE_SPACING * scene.duration
     first = jnp.clip(1e-2 * relaxation, 2 * shortest, 1e-2 * scene.duration)
     tolerance, brief = (
