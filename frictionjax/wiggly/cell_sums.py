@@ -129,7 +129,7 @@ def _sum_is_closer(cell: CellWay, stops: Stops, path: Path, unit, eps) -> bool:
         return bool(errors.sum_is_closer)
     of_sum = errors.of_sum + sum(survey.error_viscous for survey in cell.surveys)
     of_energies = errors.of_energies + sum(s.error_work for s in cell.surveys)
-    return bool(of_sum < of_energies) and viscous < _NO_SLIPS * eps * path.pulled
+    return bool(of_sum < of_energies and viscous < _NO_SLIPS * eps * path.pulled)
 
 
 def _with_slips(cell: CellWay, stops: Stops, energy0: float, beyond, path: Path):
