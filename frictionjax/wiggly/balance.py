@@ -69,12 +69,11 @@ def _end_slope(point: Point, step: Real) -> tuple[Real, Real]:
 
 
 def _settled(point: Point, step: Real) -> tuple[Real, Real]:
-    """How far a rest is from its branch, and what settling there adds to int y'^2.
+    """How far a rest is from its branch, in periods, and what settling adds to int y'^2.
 
-    In periods; none of both where no straight line leads there. A cubic through the fall
-    itself has 2.4 relaxation times over the step of it. (Where less than the tolerance is
-    settled the whole of it is in one step: a start on a support of 1000 N/m lost half of
-    all that it dissipates, or had half too much.)
+    Nothing where the force bends on the way. The cubic of a step through such a fall has
+    2.4 relaxation times over the step of what that dissipates: where the fall is less than
+    the tolerance, a start on a support of 1000 N/m lost half of all its dissipation.
     """
     slope, rest = _end_slope(point, step)
     rate = jnp.where(rest, -point.by_state, 1.0)
