@@ -156,3 +156,17 @@ def test_a_start_that_falls_by_less_than_the_tolerance(stiffness, eps):
         if method == "auto":
             spent = float(cell.dissipation[-1])
             assert float(cell.dissipation_error) == pytest.approx(spent, rel=1e-6)
+
+
+def test_a_dissipation_that_is_not_known_so_well_says_so():
+    """Of 5e-4 slips on a support that holds the tip: twice the accuracy off."""
+    parts = fx.bristles.VerticalSpring(10.0, 1.05, 1.0), fx.supports.Spring(1e3)
+    load = fx.loads.Ramp(2.5)
+    scene = fx.Scene(fx.profiles.Sine(0.1), *parts, load, 2.0)
+    cells = [
+        fx.sweep(scene, 0.03, 1.0, [0.0, 2.0], a).isel(eps=0, gamma=0) for a in (1e-3, 1e-9)
+    ]
+    rough, fine = cells
+    off = abs(float(rough.dissipation[-1] - fine.dissipation[-1]))
+    assert off > 1e-3 * float(fine.dissipation[-1])
+    assert off < float(rough.dissipation_gap) < 10 * off

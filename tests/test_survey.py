@@ -12,9 +12,10 @@ from numpy.testing import assert_allclose
 import frictionjax as fx
 from frictionjax.wiggly.cell_sums import (
     CellWay,
+    _errors,
+    _is_summed,
     _outputs,
     _since_begin,
-    _sum_is_closer,
     deviations,
     energetics,
 )
@@ -181,7 +182,8 @@ def test_surveys_decide_which_sum_is_the_dissipation(errors, pulled, summed):
     cell, stops = way(rough_survey(1.0, 0.0)._replace(**errors))
     cell.totals[VISCOUS], cell.totals[RESIDUAL] = 1.0, 1e-8
     path = Path(*[np.zeros(2)] * 5, np.full(1, 0.1), 0.1, -0.1, pulled=pulled)
-    assert _sum_is_closer(cell, stops, path, 1e-4, 0.1) is summed
+    found = _errors(cell, stops, path, 1e-4)
+    assert _is_summed(cell, found, path, 0.1) is summed
 
 
 def test_times_in_a_rest_of_the_path_share_a_window():

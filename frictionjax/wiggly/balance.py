@@ -168,7 +168,7 @@ class Errors(NamedTuple):
 
 
 def errors_of(
-    viscous: Real, residual: Real, size: Real, unit: Real, pulled: Real | float
+    viscous: Real, residual: Real, size: Real, unit: Real | float, pulled: Real | float
 ) -> Errors:
     """Of the direct sum `viscous` (J), and of what energies give instead.
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .balance import errors_of
+from .balance import Errors, errors_of
 from .layout import Layout, Slide
 from .path import Path
 from .stops import Stops
@@ -108,8 +108,10 @@ def energetics(cell, stops, layout, output, energy0, of_path, path, unit, eps):
     outputs = _outputs(cell, stops, layout, output)
     running = _running(cell, stops, layout.windows, outputs)
     beyond = energy0 - stops.energy[cell.chain] - cell.totals[WORK]
-    if _sum_is_closer(cell, stops, path, unit, eps):
-        spent, rest = running[VISCOUS], _without_slips(cell, stops, energy0, beyond)
+    errors = _errors(cell, stops, path, unit)
+    if _is_summed(cell, errors, path, eps):
+        spent = running[VISCOUS]
+        rest = _without_slips(cell, stops, energy0, beyond, errors)
     else:
         energy = np.where(output >= 0, stops.energy[output], energy0)
         spent = of_path + energy0 - energy - running[WORK]
@@ -117,19 +119,23 @@ def energetics(cell, stops, layout, output, energy0, of_path, path, unit, eps):
     return spent, running[RESIDUAL], cell.totals[RESIDUAL, -1], *rest
 
 
-def _sum_is_closer(cell: CellWay, stops: Stops, path: Path, unit, eps) -> bool:
+def _errors(cell: CellWay, stops: Stops, path: Path, unit: float) -> Errors:
+    """Of the dissipation by either sum, what surveys add included."""
+    _, viscous, residual = cell.totals[:, -1]
+    size = stops.size[cell.chain].max(initial=0.0)
+    errors = errors_of(viscous, residual, size, unit, path.pulled)
+    of_sum = errors.of_sum + sum(survey.error_viscous for survey in cell.surveys)
+    of_energies = errors.of_energies + sum(s.error_work for s in cell.surveys)
+    return Errors(of_sum, of_energies)
+
+
+def _is_summed(cell: CellWay, errors: Errors, path: Path, eps: float) -> bool:
     """Whether the dissipation is to be summed directly.
 
     Not over surveyed slides with slips: those drift across the ends of periods.
     """
-    _, viscous, residual = cell.totals[:, -1]
-    size = stops.size[cell.chain].max(initial=0.0)
-    errors = errors_of(viscous, residual, size, unit, path.pulled)
-    if not cell.surveys:
-        return bool(errors.sum_is_closer)
-    of_sum = errors.of_sum + sum(survey.error_viscous for survey in cell.surveys)
-    of_energies = errors.of_energies + sum(s.error_work for s in cell.surveys)
-    return bool(of_sum < of_energies and viscous < _NO_SLIPS * eps * path.pulled)
+    few = cell.totals[VISCOUS, -1] < _NO_SLIPS * eps * path.pulled
+    return bool(errors.sum_is_closer and (few or not cell.surveys))
 
 
 def _with_slips(cell: CellWay, stops: Stops, energy0: float, beyond, path: Path):
@@ -141,7 +147,7 @@ def _with_slips(cell: CellWay, stops: Stops, energy0: float, beyond, path: Path)
     return gap, worst, _share(float(unsure), final)
 
 
-def _without_slips(cell: CellWay, stops: Stops, energy0: float, beyond):
+def _without_slips(cell: CellWay, stops: Stops, energy0: float, beyond, errors: Errors):
     """The same where the motion is smooth, from the direct sum.
 
     What is dissipated is little of the energies there: 4700 wells from the origin, over a
@@ -154,8 +160,7 @@ def _without_slips(cell: CellWay, stops: Stops, energy0: float, beyond):
     worst, change = _worst_dissipation(cell, stops, energy0, beyond)
     unsure = float(sum(survey.error_viscous for survey in cell.surveys))
     shares = _share(unsure, final), _share(change, max(worst, final))
-    gap = unsure + float(cell.totals[RESIDUAL, -1])
-    return gap, worst, float(np.max(shares))
+    return float(errors.of_sum), worst, float(np.max(shares))
 
 
 def _share(error: float, whole: float) -> float:
