@@ -43,7 +43,12 @@ _IN_SLIPS = 0.05
 # Wells of a slide from which on its dissipation is as good as its states, and the tightest
 # tolerance for fewer, over that. (What is dissipated within a well, on the way from one
 # rest to the next, was 2e-5 off where 1e-5 was asked for, and 1.4e-6 where 1e-6 was.)
-_MANY_WELLS, _FEWEST = 100.0, 1e-2
+# In slides of few wells on supports that hold the tip, and where nothing slides, less than
+# a hundredth of a slip is: up to 100 times the accuracy off with the share of the wells
+# itself, 1e-2 at least; 0.16 with its power 3/2, 1e-4 at least, for twice the steps.
+_MANY_WELLS, _FEWEST, _POWER = 100.0, 1e-4, 1.5
+_ROUGHEST = 1e-2  # of it, where tolerances are near the rounding of z
+_ROUNDED = 2e-11  # over |z|: tolerances times `_SAFETY` that are near it
 _DOUBLE_SPACING = 2.0**-50  # shortest step over the duration: four spacings of floats
 
 
@@ -172,6 +177,17 @@ def _adding(ground: Landscape, pull: Pull, eps: Real, gamma: Real, memory: Real)
     return jnp.maximum(jnp.sqrt(1 + memory) * jnp.maximum(creep, 1.0), haste)
 
 
+def _of_few_wells(way: Real, start: Real, accuracy: Real) -> Real:
+    """Tolerances over those of slides through many wells.
+
+    `way`: wells that the limit moves through one way at most; `start`: wells from the
+    origin at t = 0.
+    """
+    share = way / _MANY_WELLS
+    near = jnp.minimum(_ROUNDED * (start + way) / accuracy, jnp.clip(share, _ROUGHEST, 1.0))
+    return jnp.maximum(jnp.clip(share**_POWER, _FEWEST, 1.0), near)
+
+
 def plan_steps(
     scene: Scene, eps: Real, gamma: Real, accuracy: Real, pull: Pull | None = None
 ) -> Plan:
@@ -185,11 +201,11 @@ def plan_steps(
     memory = remembered_slips(ground, pull, eps, gamma)
     stretch = jnp.maximum(1.0, ground.stretch)
     adding = _adding(ground, pull, eps, gamma, memory)
-    few = jnp.clip(pull.way / (_MANY_WELLS * eps), _FEWEST, 1.0)
+    few = _of_few_wells(pull.way / eps, jnp.abs(scene.z0) / eps, accuracy)
     share = few * accuracy / (_SAFETY * stretch)
     at_folds = _FOLD * _way_to_fold(ground, pull, eps, gamma)
     held = eps * scene.support.stiffness_at(scene.z0)
-    relaxation = eps ** (gamma + 1) / (ground.steepest + held)
+    relaxation = eps ** (gamma + 1) / jnp.maximum(ground.steepest, held)
     shortest = _DOUBLE_SPACING * scene.duration
     first = jnp.clip(1e-2 * relaxation, 2 * shortest, 1e-2 * scene.duration)
     tolerance, brief = (
@@ -198,7 +214,7 @@ def plan_steps(
     )
     plan = Plan(
         tolerance=tolerance,
-        loosest=jnp.maximum(tolerance, _IN_SLIPS * accuracy / stretch),
+        loosest=jnp.maximum(tolerance, _IN_SLIPS * few * accuracy / stretch),
         brief=brief,
         pace=jnp.where(pull.fastest > 0, pull.fastest / (pull.softest * eps), jnp.inf),
         reach=0.25 * ground.branch,

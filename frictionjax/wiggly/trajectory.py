@@ -161,9 +161,8 @@ def solve(
 
     `eps` in m, `gamma` > 0. `ts`: times in s, not decreasing, in [0, duration]; 201 evenly
     spaced ones where None. `accuracy`: wanted error of `z` in units of eps at every time
-    not inside a slip, and of `dissipation` in units of its value at `duration`. (Where less
-    than a hundredth of `eps (rho_plus - rho_minus)`, of a slip, is dissipated, its error
-    may be more: `dissipation_gap` in `stats` is an estimate.) `method`: "resolved"
+    not inside a slip, and of `dissipation` in units of its value at `duration`;
+    `dissipation_gap` in `stats` is an estimate of its error. `method`: "resolved"
     integrates every slip with a Rosenbrock method, in tiles side by side; "windowed" only
     what values at `ts` and sums over [0, T] need, and falls back to every slip where starts
     are not forgotten; "auto" takes what is cheaper; or any adaptive diffrax solver of an
