@@ -55,7 +55,7 @@ def largest_outside(scene, eps):
     return float(outside(scene, eps, near).max())
 
 
-@pytest.mark.parametrize("eps", [0.1, 0.01])
+@pytest.mark.parametrize("eps", [0.1, pytest.param(0.01, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", CASES)
 def test_lanes_know_how_far_tips_leave_the_strip(name, eps):
     """Taken for the lag behind the limit, an eps of it was missed, or 0.2 too much."""
