@@ -97,3 +97,14 @@ def central(fn, x, step):
         c * (fn(x + k * step) - fn(x - k * step)) for k, c in enumerate(weights, start=1)
     ]
     return sum(terms) / step
+
+
+def swinging_scene(slope):
+    """A vertical spring on a sine, drawn to and fro once in 3 s."""
+    return fx.Scene(
+        fx.profiles.Sine(slope),
+        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        fx.supports.Spring(1.0),
+        fx.loads.Sine(1.0488, 3.0),
+        duration=3.0,
+    )

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from reference import System, sine
 from reference import solve as plain_solve
+from samples import swinging_scene
 
 import frictionjax as fx
 from frictionjax.cost_of_accuracy import _Column, _values
@@ -19,13 +20,7 @@ TIMES = np.linspace(0, 3, 31)
 
 @pytest.fixture(scope="module")
 def scene():
-    return fx.Scene(
-        fx.profiles.Sine(SLOPE),
-        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
-        fx.supports.Spring(1.0),
-        fx.loads.Sine(1.0488, 3.0),
-        duration=3.0,
-    )
+    return swinging_scene(SLOPE)
 
 
 @pytest.fixture(scope="module")

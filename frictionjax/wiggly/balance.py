@@ -167,7 +167,7 @@ class Errors(NamedTuple):
         return self.of_sum < self.of_energies
 
 
-def errors_of(
+def errors_of_sums(
     viscous: Real, residual: Real, size: Real, unit: Real | float, pulled: Real | float
 ) -> Errors:
     """Of the direct sum `viscous` (J), and of what energies give instead.

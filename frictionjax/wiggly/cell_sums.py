@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .balance import Errors, errors_of
+from .balance import Errors, errors_of_sums
 from .layout import Layout, Slide
 from .path import Path
 from .stops import Stops
@@ -123,7 +123,7 @@ def _errors(cell: CellWay, stops: Stops, path: Path, unit: float) -> Errors:
     """Of the dissipation by either sum, what surveys add included."""
     _, viscous, residual = cell.totals[:, -1]
     size = stops.size[cell.chain].max(initial=0.0)
-    errors = errors_of(viscous, residual, size, unit, path.pulled)
+    errors = errors_of_sums(viscous, residual, size, unit, path.pulled)
     of_sum = errors.of_sum + sum(survey.error_viscous for survey in cell.surveys)
     of_energies = errors.of_energies + sum(s.error_work for s in cell.surveys)
     return Errors(of_sum, of_energies)

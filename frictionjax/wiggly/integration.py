@@ -10,7 +10,7 @@ from jaxtyping import Array, Float, Int, PyTree
 from ..arguments import Real
 from ..coefficients import coefficients
 from ..scene import Scene
-from .balance import Balance, dissipated, errors_of
+from .balance import Balance, dissipated, errors_of_sums
 from .field import TipField
 from .fronts import controller_of, first_of, front_at_start, fronts_at, stops_of
 from .methods import with_tolerance
@@ -88,7 +88,7 @@ def integrate(
         )(ts, tips, memories[0])
         pulled = _pulled(scene, turns, until)
         size = jnp.abs(start_energy) + jnp.abs(field.energy(last.t, last.y[0]))
-        errors = errors_of(final.viscous, final.residual, size, plan.unit, pulled)
+        errors = errors_of_sums(final.viscous, final.residual, size, plan.unit, pulled)
         lost = jnp.where(errors.sum_is_closer, memories[0].viscous, lost)
         dissipation = lost + blank
         residual = memories[0].residual + blank
