@@ -24,22 +24,24 @@ jax.config.update("jax_enable_x64", True)
 
 # Files that take longest, first: the last one under way then leaves no worker idle.
 _LONGEST = (
-    "test_fit_trace",
     "test_gradients",
-    "test_certificate",
-    "test_fit_profile",
-    "test_fit_angle",
-    "test_cost",
+    "test_strip_excess",
     "test_survey",
-    "test_hard_accuracy",
-    "test_windows",
+    "test_fit_trace",
     "test_guarantees",
-    "test_potential",
+    "test_cost",
+    "test_few_wells",
+    "test_sweep",
+    "test_fit_profile",
+    "test_certificate",
     "test_slide_profile",
-    "test_wells",
-    "test_hard_flags",
-    "test_solvers",
+    "test_potential",
+    "test_fit_angle",
     "test_friction",
+    "test_wells",
+    "test_windows",
+    "test_hard_flags",
+    "test_hard_accuracy",
 )
 
 
