@@ -17,10 +17,18 @@ OfBristle = Any
 class Coefficients(eqx.Module):
     """Coefficients of the limit friction law; all but rho are None without a bristle.
 
-    `alpha`: normal force F'(0) in N. `a`: A'(0). `omega_plus`, `omega_minus`: extreme
-    slopes of the surface. `mu_plus`, `mu_minus`: extreme slopes as the bristle sees them.
     `rho_plus` > 0 > `rho_minus`: friction forces in N against motion to the right and to
-    the left.
+    the left. `alpha`: F'(0) in N, the normal force without friction. `normal_plus`,
+    `normal_minus`: the normal force in N where the surface resists most, on a slide to the
+    right and to the left. `a`: A'(0). `omega_plus`, `omega_minus`: extreme slopes of the
+    surface. `mu_plus`, `mu_minus`: extreme slopes as the bristle sees them.
+
+    The contact is frictionless, so its force is perpendicular to the surface, and friction
+    over normal force is the slope there: `rho_plus/normal_plus = omega_plus` and
+    `rho_minus/normal_minus = omega_minus` for alpha > 0, the other way round for
+    alpha < 0, for every bristle. `normal = alpha - a rho`: on a symmetric surface friction
+    depends on direction only because the normal force does. (The paper calls alpha the
+    normal force, and mu = rho/alpha is friction per normal force at rest only.)
     """
 
     rho_plus: Real
@@ -31,6 +39,8 @@ class Coefficients(eqx.Module):
     omega_minus: OfBristle = None
     mu_plus: OfBristle = None
     mu_minus: OfBristle = None
+    normal_plus: OfBristle = None
+    normal_minus: OfBristle = None
 
     def __repr__(self) -> str:
         if not is_known(self):
@@ -50,15 +60,19 @@ def coefficients(potential: AbstractPotential) -> Coefficients:
     a, alpha = potential.a(), potential.alpha()
     mu_plus = extrema.max / (1 + a * extrema.max)  # Lemma 3
     mu_minus = extrema.min / (1 + a * extrema.min)
+    rho_plus = jnp.where(alpha > 0, alpha * mu_plus, alpha * mu_minus)
+    rho_minus = jnp.where(alpha > 0, alpha * mu_minus, alpha * mu_plus)
     return Coefficients(
-        rho_plus=jnp.where(alpha > 0, alpha * mu_plus, alpha * mu_minus),
-        rho_minus=jnp.where(alpha > 0, alpha * mu_minus, alpha * mu_plus),
+        rho_plus=rho_plus,
+        rho_minus=rho_minus,
         alpha=alpha,
         a=a,
         omega_plus=extrema.max,
         omega_minus=extrema.min,
         mu_plus=mu_plus,
         mu_minus=mu_minus,
+        normal_plus=alpha - a * rho_plus,  # = F'(0)/(1 + a omega), the steepest place's
+        normal_minus=alpha - a * rho_minus,
     )
 
 

@@ -16,7 +16,8 @@ _CUBIC = 4  # parameters
 _ONE_SIDED = 1.64  # sigmas, 95%
 _RARE = 0.01
 _ROUNDING = 1e-12  # of log errors that follow a power to the last digit
-_ABOVE_FLOOR = 3.0  # errors below this many times their own uncertainty are left out
+_WORST = 3.0  # factor by which a line may miss its points and still be one
+ABOVE_FLOOR = 3.0  # errors below this many times their own uncertainty are left out
 
 
 class Verdict(enum.IntEnum):
@@ -26,6 +27,7 @@ class Verdict(enum.IntEnum):
     DIVERGES = 1
     UNDECIDED = 2
     TOO_FEW_POINTS = 3
+    NO_POWER = 4
 
 
 class Fit(NamedTuple):
@@ -33,7 +35,8 @@ class Fit(NamedTuple):
 
     `constant`: error/eps^order in the middle of the window. `preasymptotic`, `floor`,
     `failed`: how many cells were left out because eps was too large, the error too near
-    the solver's own, or the cell failed.
+    the solver's own, or the cell failed. `misfit`: the largest factor by which the fitted
+    line misses a point of its window; beyond 3 the verdict is that it is no power.
     """
 
     order: float
@@ -47,6 +50,7 @@ class Fit(NamedTuple):
     floor: int
     failed: int
     verdict: Verdict
+    misfit: float
 
 
 def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> Fit:
@@ -75,7 +79,7 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
     require(distinct, "eps", eps, "positive, distinct values")
     failed = ~np.isfinite(errors)
     known = np.where(failed, 0.0, errors)
-    near_floor = ~failed & ~(known > _ABOVE_FLOOR * uncertainty)
+    near_floor = ~failed & ~(known > ABOVE_FLOOR * uncertainty)
     usable = np.flatnonzero(~failed & ~near_floor)
     usable = usable[np.argsort(-eps[usable])]
     counts = {"floor": int(near_floor.sum()), "failed": int(failed.sum())}
@@ -85,6 +89,7 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
     start, found = _best_window(x, y)
     window = eps[usable][start:]
     middle = y[start:].mean() - found.slope * x[start:].mean()
+    misfit = float(np.exp(np.abs(y - middle - found.slope * x)[start:].max()))
     return Fit(
         order=found.slope,
         low=found.low,
@@ -94,7 +99,8 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
         eps_max=float(window.max()),
         points=window.size,
         preasymptotic=start,
-        verdict=_verdict(found.low, found.high),
+        verdict=verdict_of(found.low, found.high, misfit),
+        misfit=misfit,
         **counts,
     )
 
@@ -102,10 +108,13 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
 def _no_fit(points: int, floor: int, failed: int) -> Fit:
     nan = float("nan")
     verdict = Verdict.TOO_FEW_POINTS
-    return Fit(nan, nan, nan, nan, nan, nan, points, 0, floor, failed, verdict)
+    return Fit(nan, nan, nan, nan, nan, nan, points, 0, floor, failed, verdict, nan)
 
 
-def _verdict(low: float, high: float) -> Verdict:
+def verdict_of(low: float, high: float, misfit: float) -> Verdict:
+    """What an interval of the order says, and how far the line misses its points."""
+    if misfit > _WORST:
+        return Verdict.NO_POWER
     if low > 0:
         return Verdict.CONVERGES
     return Verdict.DIVERGES if high < 0 else Verdict.UNDECIDED

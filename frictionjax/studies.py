@@ -6,7 +6,9 @@ import numpy as np
 import xarray as xr
 
 from .arguments import require
-from .orders import Fit, Verdict, fit_order, local_orders
+from .law_orders import ENERGY, STATE, LawFit, Trust, fit_with_law
+from .orders import Fit, Verdict, local_orders
+from .slide_laws import NO_LAW, Prediction, SlideData, predict_errors
 from .wiggly.status import Status, status_of
 
 _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
@@ -16,31 +18,42 @@ class Study(NamedTuple):
     """Result of `study`.
 
     `orders`: over gamma; `local_orders`: over gamma and neighbouring pairs of eps;
-    `failed`: one dict for each cell that failed, with gamma, eps, status and message.
+    `failed`: one dict for each cell that failed, with gamma, eps, status and message;
+    `curves`: over gamma and eps, what the laws predict for each error and what was fitted.
     """
 
     orders: xr.Dataset
     local_orders: xr.Dataset
     failed: list[dict[str, Any]]
     dataset: xr.Dataset
+    curves: xr.Dataset
 
     def plot(self):
         """Errors against eps with the fitted orders, as a matplotlib Figure."""
         from .plot.convergence import draw
 
-        return draw(self.dataset, self.orders)
+        return draw(self.dataset, self.orders, self.curves)
 
 
 def study(dataset: xr.Dataset) -> Study:
     """Convergence orders of a data set made by `sweep`.
 
     `.orders` holds, for each gamma: `order, order_low, order_high` of `sup_error` (95%
-    interval for eps -> 0; `orders.fit_order` says what is in it), the window `eps_min,
-    eps_max, points` it rests on, how many cells were left out as pre-asymptotic, near the
-    solver's floor or failed, `constant`, `verdict` (CF flags); the same with
-    `dissipation_` in front; `beta = min(1, gamma)` of Lemmas 7 to 9
-    (the paper proves no rate for the sup error); the measured constants `C0` of Lemma 7
-    and `C` of Lemma 9, the latter a lower bound from the times in the data set.
+    interval for eps -> 0), the window `eps_min, eps_max, points` it rests on, how many
+    cells were left out as pre-asymptotic, near the solver's floor or failed, `constant`,
+    `misfit`, `verdict` (CF flags); the same with `dissipation_` in front, and with `strip_`
+    of sup dist(z_eps, strip); `beta = min(1, gamma)` of Lemmas 7 to 9; the measured
+    constants `C0` of Lemma 7 and `C` of Lemma 9, the latter a lower bound from the times in
+    the data set.
+
+    `order_predicted`, `constant_predicted`: what the laws of a slide say for eps -> 0, NaN
+    where they say nothing: `min(1, gamma p/(p - 1))` for the sup error, with p the flatness
+    of W' where it is extreme, 2 for the usual fold. `law` says on what `order` rests:
+    "averaged" (wells passed without a rest), "slips" (tips rest before each), "between"
+    (at the threshold), or "free": errors that do not follow the prediction, or have none,
+    are fitted freely, and their interval is that of `orders.fit_order`. Where a law is
+    used, order and interval are those of the ratio of errors to prediction, see
+    `law_orders.fit_with_law`. (The paper proves no rate for the sup error.)
 
     Raises `ValueError` where the data set lacks what `sweep` puts there.
     """
@@ -52,9 +65,16 @@ def study(dataset: xr.Dataset) -> Study:
     allowed = "one that `sweep` has made, with suprema=True"
     require(not missing, "dataset", f"one without {missing}", allowed)
     gammas = dataset.gamma.values
-    columns = _columns("", dataset, dataset.accuracy * dataset.eps)
-    if "dissipation_error" in dataset:
-        columns |= _columns("dissipation_", dataset, dataset.dissipation_gap)
+    laws = _predictions(dataset)
+    columns: dict[str, np.ndarray] = {}
+    curves: dict[str, np.ndarray] = {}
+    for error in _ERRORS:
+        if error.name in dataset:
+            fits = _fits(dataset, error, laws.get(error.name))
+            columns |= _columns(error.prefix, fits, laws.get(error.name))
+            curves[f"{error.name}_fitted"] = np.array([fit.fitted for fit in fits])
+            if error.name in laws:
+                curves[f"{error.name}_predicted"] = laws[error.name].errors
     columns["beta"] = np.minimum(1.0, gammas)
     columns["C0"] = np.array([_lemma_7(dataset.sel(gamma=g)) for g in gammas])
     columns["C"] = np.array([_lemma_9(dataset.sel(gamma=g)) for g in gammas])
@@ -63,25 +83,70 @@ def study(dataset: xr.Dataset) -> Study:
         coords={"gamma": gammas},
         attrs=dataset.attrs,
     )
-    return Study(_described(orders), _local(dataset), _failed(dataset), dataset)
+    along = xr.Dataset(
+        {name: (("gamma", "eps"), values) for name, values in curves.items()},
+        coords={"gamma": gammas, "eps": dataset.eps.values},
+    )
+    return Study(_described(orders), _local(dataset), _failed(dataset), dataset, along)
 
 
+class _Error(NamedTuple):
+    """An error of a data set, what stands before its columns, and how laws know it."""
+
+    name: str
+    prefix: str
+    trust: Trust
+
+
+_ERRORS = (
+    _Error("sup_error", "", STATE),
+    _Error("dissipation_error", "dissipation_", ENERGY),
+    _Error("strip_excess", "strip_", STATE),
+)
 _FIELDS = {"order": "order", "low": "order_low", "high": "order_high"}
 
 
-def _columns(
-    prefix: str, dataset: xr.Dataset, uncertainty: xr.DataArray
-) -> dict[str, np.ndarray]:
+def _predictions(dataset: xr.Dataset) -> dict[str, Prediction]:
+    """What the laws say of the cells, by name of the error; empty if nothing is known."""
+    data = SlideData.of(dataset)
+    if data is None:
+        return {}
+    return predict_errors(data, dataset.eps.values, dataset.gamma.values)
+
+
+def _fits(dataset: xr.Dataset, error: _Error, laws: Prediction | None) -> list[LawFit]:
     good = dataset.status == int(Status.OK)
-    measured = dataset[f"{prefix or 'sup_'}error"].where(good)
-    errors = measured.transpose("gamma", "eps").values
-    known = uncertainty.broadcast_like(dataset.sup_error).transpose("gamma", "eps").values
-    fits = [fit_order(dataset.eps.values, *row) for row in zip(errors, known, strict=True)]
+    errors = dataset[error.name].where(good).transpose("gamma", "eps").values
+    own = dataset.accuracy * dataset.eps
+    if error.trust is ENERGY:
+        own = dataset.dissipation_gap
+    known = own.broadcast_like(dataset.sup_error).transpose("gamma", "eps").values
+    eps = dataset.eps.values
+    return [
+        fit_with_law(
+            eps,
+            errors[i],
+            known[i],
+            None if laws is None else laws.errors[i],
+            NO_LAW if laws is None else laws.laws[i],
+            error.trust,
+        )
+        for i in range(dataset.gamma.size)
+    ]
+
+
+def _columns(
+    prefix: str, fits: list[LawFit], laws: Prediction | None
+) -> dict[str, np.ndarray]:
     names = {name: prefix + _FIELDS.get(name, name) for name in Fit._fields}
-    return {
-        label: np.array([getattr(fit, name) for fit in fits])
+    columns = {
+        label: np.array([getattr(one.fit, name) for one in fits])
         for name, label in names.items()
     }
+    columns[f"{prefix}law"] = np.array([one.law.name for one in fits], dtype=object)
+    columns[f"{prefix}order_predicted"] = np.array([one.law.order for one in fits])
+    columns[f"{prefix}constant_predicted"] = np.array([one.law.constant for one in fits])
+    return columns
 
 
 def _lemma_7(cells: xr.Dataset) -> float:
@@ -146,14 +211,19 @@ _MEANING = {
     "C0": (None, "smallest C0 of Lemma 7 in these cells, in m^(1-beta)"),
     "C": (None, "smallest C of Lemma 9 in these cells"),
     "constant": (None, "error over eps^order"),
+    "misfit": ("1", "largest factor by which the fit misses a point of its window"),
+    "law": (None, "law that the order rests on"),
+    "order_predicted": ("1", "order that the law has for eps -> 0"),
+    "constant_predicted": (None, "error over eps^order that the law has for eps -> 0"),
     "verdict": (None, "what the interval says"),
 }
 
 
 def _described(orders: xr.Dataset) -> xr.Dataset:
     for name in map(str, orders.data_vars):
-        units, meaning = _MEANING[name.removeprefix("dissipation_")]
-        of = "dissipation_error" if name.startswith("dissipation_") else "sup_error"
+        error = next(e for e in reversed(_ERRORS) if name.startswith(e.prefix))
+        units, meaning = _MEANING[name.removeprefix(error.prefix)]
+        of = error.name
         lemma = name in ("beta", "C0", "C")
         orders[name].attrs["long_name"] = meaning if lemma else f"{meaning} ({of})"
         if units is not None:

@@ -10,7 +10,7 @@ from .bristle import AbstractBristle
 class Homothetic(AbstractBristle):
     """`A = 0`, `F = alpha eta`: Mielke's homothetic scaling (Prandtl-Tomlinson).
 
-    `alpha`: normal force in N, not 0.
+    `alpha`: normal force in N, not 0; with this bristle the same on a slide as at rest.
 
     Raises `ValueError` for alpha that is 0 or not finite.
     """

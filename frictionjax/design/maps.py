@@ -32,7 +32,7 @@ _MEANING = {
     "ratio": ("1", "-rho_plus/rho_minus"),
     "difference": ("N", "rho_plus + rho_minus"),
     "contrast": ("1", "(rho_plus + rho_minus)/(rho_plus - rho_minus)"),
-    "alpha": ("N", "normal force alpha"),
+    "alpha": ("N", "normal force without friction, alpha"),
     "admissible": (None, "whether the bristle can follow the surface"),
 }
 

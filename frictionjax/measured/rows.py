@@ -20,6 +20,8 @@ _LAW = (
     "mu_minus",
     "omega_plus",
     "omega_minus",
+    "normal_plus",
+    "normal_minus",
     "alpha",
     "a",
 )

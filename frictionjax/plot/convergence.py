@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from ..orders import Verdict
 from .style import GUIDE, colour, marker, new_figure, styled
 
 _PANELS = (
@@ -20,14 +21,20 @@ _PANELS = (
 )
 
 _MANY_DECADES = 3
-_KEY = "filled: in the window of the fit; hollow: left out; dotted: slope of the lemmas"
+_KEY = (
+    "filled: in the window of the fit; hollow: left out; "
+    "dashed: predicted by the law; dotted: slope of the lemmas"
+)
 
 
 @styled
-def draw(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
+def draw(
+    dataset: xr.Dataset, orders: xr.Dataset, curves: xr.Dataset | None = None
+) -> Figure:
     """Draw the errors of a sweep against eps, log-log, one line for each gamma.
 
-    `orders`: that of `study(dataset)`. Filled points are in the window that the fitted
+    `orders`, `curves`: those of `study(dataset)`; without the latter what was fitted is
+    drawn as a power, and no law. Filled points are in the window that the fitted
     line rests on, hollow ones are outside; a cross on the axis is a failed cell. Dotted
     guides have the slope `eps^beta` of the lemmas. A second panel shows the dissipation,
     where the data set has it.
@@ -36,8 +43,10 @@ def draw(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
     figure, grid = new_figure(1, len(panels), 5.4 * len(panels), 5.2)
     for axes, (prefix, name, label, title) in zip(grid[0], panels, strict=True):
         for index, gamma in enumerate(dataset.gamma.values):
-            cells, fit = dataset.sel(gamma=gamma), orders.sel(gamma=gamma)
-            _errors(axes, cells, _fit(fit, prefix), name, index)
+            cells, fit = dataset.sel(gamma=gamma), _fit(orders.sel(gamma=gamma), prefix)
+            _errors(axes, cells, fit, name, index)
+            if curves is not None:
+                _curves(axes, curves.sel(gamma=gamma), fit, name, index)
             _failures(axes, cells, index)
         if not any(_good(dataset.sel(gamma=g), name)[0].size for g in dataset.gamma):
             axes.set_ylim(0.1, 1.0)  # a log axis without data has no range of its own
@@ -59,9 +68,12 @@ def _fewer_ticks(axes: Any) -> None:
             axis.set_minor_locator(NullLocator())
 
 
-def _fit(orders: xr.Dataset, prefix: str) -> dict[str, float]:
-    names = ("order", "order_low", "order_high", "eps_min", "eps_max", "constant")
-    return {name: float(orders.get(prefix + name, np.nan)) for name in names}
+def _fit(orders: xr.Dataset, prefix: str) -> dict[str, Any]:
+    names = ("order", "order_low", "order_high", "eps_min", "eps_max", "constant", "misfit")
+    numbers = {name: float(orders.get(prefix + name, np.nan)) for name in names}
+    verdict = int(orders.get(f"{prefix}verdict", Verdict.TOO_FEW_POINTS))
+    law = orders[f"{prefix}law"].item() if f"{prefix}law" in orders else "free"
+    return numbers | {"law": str(law), "verdict": verdict}
 
 
 def _good(cells: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -71,13 +83,14 @@ def _good(cells: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
     return cells.eps.values[known], errors[known]
 
 
-def _errors(axes: Any, cells: xr.Dataset, fit: dict[str, float], name: str, index: int):
+def _errors(axes: Any, cells: xr.Dataset, fit: dict[str, Any], name: str, index: int):
     eps, errors = _good(cells, name)
     inside = (eps >= 0.999 * fit["eps_min"]) & (eps <= 1.001 * fit["eps_max"])
     look = {"color": colour(index), "marker": marker(index), "linestyle": "none"}
     axes.plot(eps[~inside], errors[~inside], **look, markerfacecolor="white")
     axes.plot(eps[inside], errors[inside], **look)
-    ends = np.array([fit["eps_min"], fit["eps_max"]])
+    drawn = fit["verdict"] != Verdict.NO_POWER and fit["law"] == "free"
+    ends = np.array([fit["eps_min"], fit["eps_max"]]) if drawn else np.array([np.nan])
     axes.plot(
         ends,
         fit["constant"] * ends ** fit["order"],
@@ -88,12 +101,28 @@ def _errors(axes: Any, cells: xr.Dataset, fit: dict[str, float], name: str, inde
     )
 
 
-def _legend(gamma: float, fit: dict[str, float]) -> str:
+def _curves(
+    axes: Any, curves: xr.Dataset, fit: dict[str, Any], name: str, index: int
+) -> None:
+    """What the law predicts, and in the window of the fit the curve that was fitted."""
+    eps, look = curves.eps.values, {"color": colour(index), "marker": "none"}
+    if f"{name}_predicted" in curves:
+        predicted = curves[f"{name}_predicted"].values
+        axes.plot(eps, predicted, "--", linewidth=0.9, alpha=0.7, **look)
+    inside = (eps >= 0.999 * fit["eps_min"]) & (eps <= 1.001 * fit["eps_max"])
+    if fit["law"] != "free" and fit["verdict"] != Verdict.NO_POWER:
+        axes.plot(eps[inside], curves[f"{name}_fitted"].values[inside], **look)
+
+
+def _legend(gamma: float, fit: dict[str, Any]) -> str:
     name = f"$\\gamma$ = {gamma:.3g}:"
     if not np.isfinite(fit["order"]):
         return f"{name} too few points for an order"
+    if fit["verdict"] == Verdict.NO_POWER:
+        return f"{name} no power of $\\epsilon$, points {fit['misfit']:.2g} times off"
     low, high = fit["order_low"], fit["order_high"]
-    return f"{name} order {fit['order']:.2f}, 95% [{low:.2f}, {high:.2f}]"
+    law = "" if fit["law"] == "free" else f", law: {fit['law']}"
+    return f"{name} order {fit['order']:.2f}, 95% [{low:.2f}, {high:.2f}]{law}"
 
 
 def _failures(axes: Any, cells: xr.Dataset, index: int) -> None:

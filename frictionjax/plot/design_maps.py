@@ -26,7 +26,7 @@ _TITLES = {
     "rho_plus": "Friction to the right $\\rho_+$ (N)",
     "rho_minus": "Friction to the left $\\rho_-$ (N)",
     "difference": "Difference $\\rho_+ + \\rho_-$ (N)",
-    "alpha": "Normal force $\\alpha$ (N)",
+    "alpha": "Normal force without friction $\\alpha$ (N)",
 }
 _SIGNED = ("ratio", "contrast", "difference", "alpha")
 _RATIOS = (1 / 10, 1 / 5, 1 / 3, 1 / 2, 2 / 3, 1, 1.5, 2, 3, 5, 10)

@@ -93,8 +93,13 @@ def _mu(angles, found: Coefficients, title: str, label: str) -> tuple[Figure, An
     axes = grid[0, 0]
     axes.plot(angles, found.mu_plus, color=colour(0), label="$\\mu_+$")
     axes.plot(angles, found.mu_minus, color=colour(1), label="$\\mu_-$")
+    for rho, normal, name in (
+        (found.rho_plus, found.normal_plus, "friction/normal force of the slide"),
+        (found.rho_minus, found.normal_minus, None),
+    ):
+        axes.plot(angles, rho / normal, "--", color=GUIDE, linewidth=1.1, label=name)
     axes.axhline(0, color=GUIDE, linewidth=0.8)
-    axes.set(xlabel=label, ylabel="friction per normal force $\\mu$ (1)")
+    axes.set(xlabel=label, ylabel="friction over $\\alpha$, $\\mu = \\rho/\\alpha$ (1)")
     axes.set(xlim=(0, 0.5 * np.pi), title=f"{title}, $\\omega_\\pm = \\pm 0.1$")
     axes.legend(loc="center")
     return figure, axes

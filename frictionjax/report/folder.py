@@ -17,7 +17,7 @@ def study_figures(
 ) -> Iterator[tuple[str, Figure]]:
     """The pictures of a study by file name, those that its data allow."""
     data = found.dataset
-    yield "convergence", plot.draw_convergence(data, found.orders)
+    yield "convergence", plot.draw_convergence(data, found.orders, found.curves)
     if bool((data.status == 0).any()):
         yield "trajectories", plot.draw_trajectories(data)
         yield "loop", plot.draw_loop(data, scene.support, law)

@@ -9,12 +9,21 @@ from ..scene_files import scene_document
 from ..studies import study
 from .folder import write_study
 from .job import Job, joined
-from .tables import coefficient_table, failed_table, order_table, row_table, sweep_table
+from .tables import (
+    coefficient_table,
+    failed_table,
+    lemma_table,
+    order_table,
+    row_table,
+    sweep_table,
+)
 
 _COVERS = (
-    "Intervals are for eps -> 0: scatter, corrections 1 + c eps^q with q >= 0.2 (up to 5%\n"
-    "where scatter hides them), logarithms that the errors show; slower or larger hidden\n"
-    "ones are not in them."
+    "Intervals are for eps -> 0. With a law: of the ratio of the errors to those that the\n"
+    "law has at each eps, added to its order. averaged: wells are passed without a rest;\n"
+    "slips: tips rest before each; between: at the threshold. free: of a power, with\n"
+    "scatter, corrections 1 + c eps^q, q >= 0.2 (up to 5% where scatter hides them), and\n"
+    "logarithms that the errors show; slower or larger hidden ones are not in them."
 )
 
 
@@ -30,6 +39,7 @@ def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
     sections += [
         ("Cells", sweep_table(data)),
         ("Orders of convergence", f"{order_table(found.orders)}\n{_COVERS}"),
+        ("Lemmas 7 to 9", lemma_table(found.orders)),
         ("Failed cells", failed_table(found.failed)),
     ]
     text = joined(sections)

@@ -13,12 +13,14 @@ _LAW = (
     ("rho_plus", "N", "friction against motion to the right"),
     ("rho_minus", "N", "friction against motion to the left"),
     ("ratio", "", "-rho_plus/rho_minus"),
-    ("alpha", "N", "normal force"),
+    ("alpha", "N", "normal force without friction"),
+    ("normal_plus", "N", "normal force of a slide to the right"),
+    ("normal_minus", "N", "normal force of a slide to the left"),
     ("a", "", "lean of the bristle, A'(0)"),
-    ("mu_plus", "", "largest slope that the bristle sees"),
-    ("mu_minus", "", "smallest slope that the bristle sees"),
-    ("omega_plus", "", "largest slope of the surface"),
-    ("omega_minus", "", "smallest slope of the surface"),
+    ("mu_plus", "", "largest slope that the bristle sees, friction/alpha"),
+    ("mu_minus", "", "smallest slope that the bristle sees, friction/alpha"),
+    ("omega_plus", "", "largest slope of the surface, friction/normal force"),
+    ("omega_minus", "", "smallest slope of the surface, friction/normal force"),
 )
 _NOISE = (
     "(std: of a single row. Noise adds to the extreme slopes of a row, so the mean over\n"
@@ -133,36 +135,53 @@ def sweep_table(dataset: xr.Dataset) -> str:
     return table(header, rows)
 
 
+_ERRORS = (("", "state"), ("dissipation_", "dissipation"), ("strip_", "from the strip"))
+
+
 def order_table(orders: xr.Dataset) -> str:
-    """One line a gamma: orders with intervals, window, constants of the lemmas."""
+    """One line for each error and gamma: order, what the law predicts, window, verdict."""
+    rows = [
+        (name, f"{gamma:.4g}", *_order_cells(orders, orders.sel(gamma=gamma), prefix))
+        for prefix, name in _ERRORS
+        if f"{prefix}order" in orders
+        for gamma in orders.gamma.values
+    ]
+    header = (
+        "error",
+        "gamma",
+        "order [95%]",
+        "predicted",
+        "law",
+        "constant",
+        "predicted",
+        "eps window/m",
+        "points",
+        "verdict",
+    )
+    return table(header, rows, left=1)
+
+
+def _order_cells(orders: xr.Dataset, line: xr.Dataset, prefix: str) -> tuple[str, ...]:
+    return (
+        _interval(line, prefix),
+        _plain(_value(line, f"{prefix}order_predicted")),
+        str(line[f"{prefix}law"].item()),
+        number(float(line[f"{prefix}constant"])),
+        number(_value(line, f"{prefix}constant_predicted")),
+        _window(line, prefix),
+        f"{int(line[f'{prefix}points'])}",
+        _verdict(orders, line, prefix),
+    )
+
+
+def lemma_table(orders: xr.Dataset) -> str:
+    """One line a gamma: the lemmas' exponent, and their constants as measured."""
     rows = []
     for gamma in orders.gamma.values:
         line = orders.sel(gamma=gamma)
-        rows.append(
-            (
-                f"{gamma:.4g}",
-                _interval(line, ""),
-                f"{float(line.beta):.3g}",
-                _window(line),
-                f"{int(line.points)}",
-                number(float(line.C0)),
-                number(float(line.C)),
-                _interval(line, "dissipation_"),
-                _verdict(orders, line),
-            )
-        )
-    header = (
-        "gamma",
-        "order [95%]",
-        "beta",
-        "eps window/m",
-        "points",
-        "C0",
-        "C",
-        "dissipation order [95%]",
-        "state / dissipation",
-    )
-    return table(header, rows)
+        constants = number(float(line.C0)), number(float(line.C))
+        rows.append((f"{gamma:.4g}", f"{float(line.beta):.3g}", *constants))
+    return table(("gamma", "beta", "C0 of Lemma 7", "C of Lemma 9"), rows)
 
 
 def failed_table(failed: Sequence[dict[str, Any]]) -> str:
@@ -183,10 +202,9 @@ def flag_names(variable: xr.DataArray) -> dict[int, str]:
     return {int(value): name for value, name in zip(values, names, strict=True)}
 
 
-def _verdict(orders: xr.Dataset, line: xr.Dataset) -> str:
-    known = [name for name in ("verdict", "dissipation_verdict") if name in orders]
-    words = [flag_names(orders[name])[int(line[name])] for name in known]
-    return " / ".join(words).replace("_", " ")
+def _verdict(orders: xr.Dataset, line: xr.Dataset, prefix: str) -> str:
+    name = f"{prefix}verdict"
+    return flag_names(orders[name])[int(line[name])].replace("_", " ")
 
 
 def _value(cell: xr.Dataset, name: str) -> float:
@@ -210,6 +228,10 @@ def _interval(line: xr.Dataset, prefix: str) -> str:
     return f"{order:.3f} [{low:.3f}, {high:.3f}]"
 
 
-def _window(line: xr.Dataset) -> str:
-    low, high = float(line.eps_min), float(line.eps_max)
+def _window(line: xr.Dataset, prefix: str) -> str:
+    low, high = float(line[f"{prefix}eps_min"]), float(line[f"{prefix}eps_max"])
     return f"{low:.3g} to {high:.3g}" if np.isfinite(low) else "-"
+
+
+def _plain(order: float) -> str:
+    return f"{order:.4g}" if np.isfinite(order) else "-"

@@ -1,0 +1,86 @@
+"""Forces of a slide for eps -> 0, as a multiple of a power of eps, and the law's name."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .orbit import Orbit, periodic_orbit
+from .well_force import WellForce
+
+FREE, AVERAGED, SLIPS, BETWEEN = "free", "averaged", "slips", "between"
+_SAME = 1e-9  # gamma at the threshold
+_SMALL = 1e-6  # drop of the force in a well, of its range: far enough down
+_REST = 1e-6, 1e-9  # drop and drag, of the range: a slide whose tips rest, deeply
+
+
+class LimitOrbit(NamedTuple):
+    """`F - rho ~ force eps^order` (N) at moments of a slide, and the law that says so."""
+
+    force: Orbit
+    order: float
+    law: str
+
+
+def threshold(well: WellForce) -> float:
+    """gamma at which tips begin to rest: `(p - 1)/p`, 1/2 for the usual fold."""
+    return 1 - 1 / well.flatness
+
+
+def limit_orbit(
+    well: WellForce, speed: np.ndarray, stiffness: np.ndarray, gamma: float
+) -> LimitOrbit:
+    """At moments of these speeds (m/s) and stiffnesses (N/m), shape (m,).
+
+    Below the threshold (law "averaged") wells are passed without a rest: the force is that
+    of the averaged equation, of order `gamma p/(p - 1)`, the same all over a well. Above it
+    ("slips") a tip rests at the fold until it falls into the next well, of order 1. At the
+    threshold ("between") both are of order 1, and the constant is a number.
+    """
+    rests = gamma - threshold(well)
+    if rests < -_SAME:
+        force = averaged_force(well, speed)
+        return LimitOrbit(Orbit(force, force, force), gamma / threshold(well), AVERAGED)
+    if rests <= _SAME:
+        eps = _SMALL * well.range / stiffness
+        orbit = periodic_orbit(well, stiffness * eps, speed * eps**gamma)
+        scaled = (values / eps + well.shift for values in orbit)
+        return LimitOrbit(Orbit(*scaled), 1.0, BETWEEN)
+    # A slip ends on the next rising flank: one well on, less by what is flat of it.
+    way = 1.0 - _flat_share(well)
+    top = well.shift + 0.0 * stiffness
+    falling = Orbit(top, top - way * stiffness, top - 0.5 * way**2 * stiffness)
+    return LimitOrbit(falling, 1.0, SLIPS)
+
+
+def averaged_force(well: WellForce, drag: np.ndarray) -> np.ndarray:
+    """Force beyond rho (N) for a small viscous force where tips do not rest.
+
+    From `int dY/(f + gap) = 1/drag` as f -> 0, where the integral is `B f^(1/p - 1)`. For
+    a sine it is `drag^2/(2 rho)`, for p = 2 `2 pi^2 drag^2/|W'''|`.
+    """
+    power = threshold(well)
+    # Above rounding of a flank's gaps, which is far below those of any other top.
+    force = np.log(well.range) + (-12.0 if power == 1.0 else -27.0)
+    level = np.interp(force, well.log_forces, well.log_times) + power * force
+    return (np.exp(level) * drag) ** (1 / power)
+
+
+def fold_force(well: WellForce, pull: np.ndarray) -> tuple[np.ndarray, float]:
+    """Force beyond rho that a tip at rest needs to fall, over eps^order, and 1/(1 + gamma)
+    of the order; `pull` = k v in N/s.
+
+    For p = 2 it is `2.338 (k v)^(2/3) (|W'''|/2)^(-1/3)`, of order 2 (1 + gamma)/3, with
+    the first zero of Airy's function.
+    """
+    power = 1 / (1 + threshold(well))
+    drop, drag = (np.asarray(share * well.range) for share in _REST)
+    found = periodic_orbit(well, drop, drag).largest
+    return found * (pull / (drop * drag)) ** power, power
+
+
+def _flat_share(well: WellForce) -> float:
+    """Share of a period on which W' is at its extreme."""
+    if np.isfinite(well.flatness):
+        return 0.0
+    near = well.gap < 1e-6 * well.range
+    return float(np.sum(np.diff(well.place)[near[1:] & near[:-1]]))

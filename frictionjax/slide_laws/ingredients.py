@@ -1,0 +1,165 @@
+"""What the laws of a slide need of a scene: the force of a well, speeds of the limit."""
+
+from typing import Any, NamedTuple
+
+import jax
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..coefficients import Coefficients
+from ..extrema import slope_of
+from ..potentials import AbstractPotential, BristlePotential
+from ..programs import Program, in_chunks
+from ..scene import Scene
+from ..strip import CHUNK, strips_at
+
+_EVEN = 1024  # places of a period
+_NEAREST, _FARTHEST, _BESIDE = 1e-4, 0.06, 96  # more of them on each side of an extreme
+_TOGETHER = 2048  # places of one compiled call
+_ZOOMS, _PARTS = 4, 1024  # of the search for an extreme: 1e-11 of a period
+_MOMENTS = 512  # of [0, T], beside the turning points of the load
+_SMALL = 1e-3  # of the largest eps: there, and at half of it, is V_eps' - W' looked at
+
+
+class SlideData(NamedTuple):
+    """Arrays that `predict_errors` needs, as a data set keeps them.
+
+    Over `phase`, a period of the state from its own start: `phase` Y in periods, shape
+    (n,); `force` W'(Y) and `change` Q'(0; Y), in N and N/m. Over moments of [0, T], shape
+    (m,): `length` in s, `pull`, by which the load changes, in N, `speed` of the limit in
+    m/s, 0 where it rests, `stiffness` Phi'' in N/m.
+    """
+
+    phase: np.ndarray
+    force: np.ndarray
+    change: np.ndarray
+    length: np.ndarray
+    pull: np.ndarray
+    speed: np.ndarray
+    stiffness: np.ndarray
+
+    def columns(self) -> dict[str, tuple[str, np.ndarray]]:
+        """As variables of a data set, all but the phase, which is a coordinate."""
+        return {
+            name: (dim, getattr(self, field)) for name, (dim, field) in _COLUMNS.items()
+        }
+
+    @classmethod
+    def of(cls, data: Any) -> "SlideData | None":
+        """What a data set of `sweep` holds; None where it holds none."""
+        if not {"phase", *_COLUMNS} <= set(data.variables):
+            return None
+        fields = {field: data[name].values for name, (_, field) in _COLUMNS.items()}
+        return cls(phase=data.phase.values, **fields)
+
+
+_COLUMNS = {
+    "well_force": ("phase", "force"),
+    "well_force_change": ("phase", "change"),
+    "moment_length": ("moment", "length"),
+    "moment_pull": ("moment", "pull"),
+    "slide_speed": ("moment", "speed"),
+    "slide_stiffness": ("moment", "stiffness"),
+}
+
+
+def slide_data(scene: Scene, found: Coefficients, eps: np.ndarray) -> SlideData | None:
+    """What the laws need of a scene with these coefficients, for known values.
+
+    None where the load turns more often than there are moments: nothing slides long.
+    """
+    turns = np.asarray(scene.turning_points())
+    turns = np.unique(turns[turns < float(scene.duration)])
+    if turns.size >= CHUNK - _MOMENTS:
+        return None
+    wells = _wells(scene.potential, _SMALL * float(np.max(eps)))
+    return SlideData(*wells, *_moments(scene, found, turns))
+
+
+@Program
+def _forces(potential: AbstractPotential, eps: Float[Array, ""], y: Float[Array, " n"]):
+    """State, W' and Q' at places `y` of the tip, the last to second order in `eps`."""
+    if isinstance(potential, BristlePotential):
+        height, slope = jax.jvp(potential.profile, (y,), (np.ones(y.shape),))
+        a = potential.a()
+        state, force = y + a * height, potential.alpha() * slope / (1 + a * slope)
+    else:
+        state, force = y, jax.vmap(slope_of(potential._leading))(y)
+
+    def change(size):
+        whole = jax.vmap(lambda place: potential.tip_force(place, size)[0])(y)
+        return (whole - force) / size
+
+    sizes = jax.lax.map(change, np.array([0.5, 1.0]) * eps)
+    return state, force, 2 * sizes[0] - sizes[1]
+
+
+def _wells(
+    potential: AbstractPotential, eps: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Phase, W' and Q' over a period, more densely around both extremes of W'.
+
+    The tip coordinate is held where Q' is found from forces: at an extreme of W', where
+    alone it counts, the phase may be held as well.
+    """
+
+    def at(places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        size = np.asarray(eps)
+        return in_chunks(_forces, _TOGETHER, (potential, size), (places,))
+
+    even = np.arange(_EVEN) / _EVEN
+    leading = at(even)[1]
+    around = np.geomspace(_NEAREST, _FARTHEST, _BESIDE)
+    beside = np.concatenate([-around[::-1], [0.0], around])
+    tops = [_top(at, even[int(np.argmax(sign * leading))], sign) for sign in (1, -1)]
+    places = np.unique(np.concatenate([even, *((top + beside) % 1.0 for top in tops)]))
+    return at(places)
+
+
+def _top(at, place: float, sign: int) -> float:
+    """Where `sign W'` is largest, from the best of the even places."""
+    width = 1 / _EVEN
+    for _ in range(_ZOOMS):
+        near = place + width * np.linspace(-1, 1, _PARTS + 1)
+        values = sign * at(near)[1]
+        # Of a flat top, or where rounding says so, the middle.
+        best = np.flatnonzero(values >= values.max())
+        place, width = float(near[best].mean()), 4 * width / _PARTS
+    return place
+
+
+def _moments(
+    scene: Scene, found: Coefficients, turns: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Length, pull, speed, stiffness of stretches between times, turning points among them.
+
+    Speed is that of the strip's edge, so it is right in a stretch in which the limit begins
+    to move too; stiffness is that of the edges' states, found again at the limit's own.
+    """
+    rho = float(found.rho_plus), float(found.rho_minus)
+    ends = np.linspace(0.0, float(scene.duration), _MOMENTS)
+    times = np.unique(np.concatenate([ends, turns]))
+    load, lower, upper = strips_at(scene, *rho, times)
+    length, pull = np.diff(times), np.diff(load)
+    first = np.where(pull > 0, lower[:-1], upper[:-1])
+    last = np.where(pull > 0, lower[1:], upper[1:])
+    edge = last - first
+    z = _played(float(scene.z0), lower, upper)
+    known = np.flatnonzero((edge != 0) & (pull != 0))
+    speed = np.where((np.diff(z) != 0) & (pull != 0), edge / length, 0.0)
+    if not known.size:
+        return length, pull, speed, np.ones_like(speed)
+    places = 0.5 * (first + last)[known]
+    order = np.argsort(places)
+    values = (pull[known] / edge[known])[order]
+    stiffness = np.interp(0.5 * (z[1:] + z[:-1]), places[order], values)
+    return length, pull, speed, stiffness
+
+
+def _played(start: float, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    """The limit's states: the play operator."""
+    z, states = start, []
+    for low, high in zip(lower.tolist(), upper.tolist(), strict=True):
+        z = min(max(z, low), high)
+        states.append(z)
+    return np.array(states)

@@ -1,0 +1,122 @@
+"""The force that holds the tip back on its way through a well, in one direction."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+_RELIABLE = 1e-11  # of the force's range: what is smaller is rounding of W'
+_DECADE = 10.0  # of distances from the top, over which its flatness is measured
+_WHOLE = 0.06  # flatness that is this near an even number is one
+_FLATTEST = 12.0  # beyond, a top is a straight flank
+_NEAREST, _NODES = 1e-13, 160  # nodes between the table's and that distance
+_FORCES = np.log(np.geomspace(1e-16, 1e3, 192))  # of the range, for passage times
+
+
+class WellForce(NamedTuple):
+    """Distance of W' from its extreme, over one period around it.
+
+    `place`: Y - Y* in the direction of motion, from -1/2 to 1/2 about, shape (n,);
+    `gap` = rho - W' in N, > 0 but at the top, where `place` is 0. `shift`: Q'(0; Y*) in
+    N/m, by which rho changes with eps. `flatness`: p of `gap ~ |Y - Y*|^p`, infinite on a
+    straight flank. `rho`, `range`: max W' and max W' - min W' in N. `log_times`: logarithm
+    of `int dY/(f + gap)` at `log_forces`.
+    """
+
+    place: np.ndarray
+    gap: np.ndarray
+    shift: float
+    flatness: float
+    rho: float
+    range: float
+    log_forces: np.ndarray
+    log_times: np.ndarray
+
+
+def well_force(
+    phase: np.ndarray, force: np.ndarray, change: np.ndarray, sign: int
+) -> WellForce:
+    """Of motion to the right (`sign` = 1) or to the left (-1), from a table of a period.
+
+    Below what rounding leaves of `rho - W'` the power law of the top is continued.
+    """
+    held = sign * force
+    top = int(np.argmax(held))
+    place = sign * (phase - phase[top])
+    place = place - np.floor(place + 0.5)
+    order = np.argsort(place)
+    place, gap = place[order], held[top] - held[order]
+    width = float(gap.max())
+    left, right = (_side(sign * place, gap, width) for sign in (-1, 1))
+    flatness = _flatness(left.power, right.power)
+    place = np.concatenate([-left.place[::-1], [0.0], right.place])
+    gap = np.concatenate(
+        [left.gap[::-1], [min(left.gap[0], right.gap[0]) * 1e-3], right.gap]
+    )
+    closed = np.append(place, place[0] + 1.0), np.append(gap, gap[0])
+    log_forces = _FORCES + np.log(width)
+    times = passage_time(*closed, np.exp(log_forces))
+    shift, rho = float(sign * change[top]), float(held[top])
+    return WellForce(*closed, shift, flatness, rho, width, log_forces, np.log(times))
+
+
+class _Side(NamedTuple):
+    """One side of the top: distances from it that grow, gaps, the power between them."""
+
+    place: np.ndarray
+    gap: np.ndarray
+    power: float
+
+
+def _side(place: np.ndarray, gap: np.ndarray, width: float) -> _Side:
+    beyond = place > 0
+    order = np.argsort(place[beyond])
+    place, gap = place[beyond][order], gap[beyond][order]
+    least = _RELIABLE * width
+    known = np.flatnonzero(gap > least)
+    first = int(known[0])
+    near = place[first:] <= _DECADE * place[first]
+    near[:4] = True
+    near = np.flatnonzero(near) + first
+    flat = place[first] > 0.5 / _DECADE or np.any(gap[near] <= least)
+    power = np.inf
+    if not flat:
+        power = float(np.polyfit(np.log(place[near]), np.log(gap[near]), 1)[0])
+    place, gap = place[first:], gap[first:]
+    inner = np.geomspace(_NEAREST, place[0], _NODES, endpoint=False)
+    if not np.isfinite(power) or power > _FLATTEST:
+        inner_gap = np.full(_NODES, 1e-3 * least)
+    else:
+        inner_gap = gap[0] * (inner / place[0]) ** power
+    return _Side(np.append(inner, place), np.append(inner_gap, gap), power)
+
+
+def _flatness(left: float, right: float) -> float:
+    """p of a top whose sides have these powers: the flatter one decides."""
+    power = max(left, right)
+    if not np.isfinite(power) or power > _FLATTEST:
+        return np.inf
+    whole = 2.0 * round(0.5 * power)
+    return whole if abs(power - whole) < _WHOLE else power
+
+
+def passage_time(place: np.ndarray, gap: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """`int_0^1 dY/(f + gap)` at each f of `force`, any shape; gaps linear between nodes."""
+    low = force[..., None] + gap
+    rise = np.diff(low, axis=-1) / low[..., :-1]
+    steady = np.abs(rise) < 1e-6
+    share = np.where(steady, 1 - 0.5 * rise, np.log1p(rise) / np.where(steady, 1.0, rise))
+    return np.sum(np.diff(place) / low[..., :-1] * share, axis=-1)
+
+
+def gap_at(well: WellForce, place: np.ndarray) -> np.ndarray:
+    """`rho - W'` at any places of the period: powers of the distance between nodes."""
+    found = np.empty(place.shape)
+    for sign in (1, -1):
+        side = sign * well.place > 0
+        order = np.argsort(sign * well.place[side])
+        far = np.log((sign * well.place[side])[order])
+        gaps = np.log(well.gap[side][order])
+        asked = sign * place >= 0
+        distance = np.log(np.maximum(np.abs(place[asked]), 1e-300))
+        found[asked] = np.exp(np.interp(distance, far, gaps))
+    return found
