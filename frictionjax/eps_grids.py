@@ -8,8 +8,10 @@ import numpy as np
 from .arguments import require, require_flags, require_real
 from .cost_prediction import predict_cost
 from .grids import grid_of
-from .orders import fit_order
+from .law_orders import STATE, fit_with_law
+from .orders import Fit
 from .scene import Scene, require_scene
+from .slide_laws import NO_LAW, Law, SlideData, predict_errors
 from .sweeps import sweep
 from .wiggly.status import Status
 
@@ -114,9 +116,10 @@ def order_cost(
     ts = float(scene.duration) * np.linspace(0, 1, _TIMES)
     data = sweep(scene, pilot, gamma, ts, accuracy, dissipation=False).isel(gamma=0)
     errors = data.sup_error.where(data.status == int(Status.OK)).values
+    measured = _Pilot(pilot, errors, accuracy * pilot, *_predicted(data, pilot, gamma))
     grids = []
     for start, stop, points in _candidates():
-        found = _intervals(pilot, errors, accuracy, start, stop, points)
+        found = _intervals(measured, start, stop, points)
         if found is not None:
             ends = float(pilot[start]), float(pilot[stop])
             some = np.geomspace(*ends, points)
@@ -135,14 +138,31 @@ def _candidates() -> Iterator[tuple[int, int, int]]:
                     yield start, stop, points
 
 
-def _intervals(
-    pilot: np.ndarray,
-    errors: np.ndarray,
-    accuracy: float,
-    start: int,
-    stop: int,
-    points: int,
-) -> dict[str, Any] | None:
+class _Pilot(NamedTuple):
+    """Errors of the pilot's eps, how well they are known, and what the law has for them."""
+
+    eps: np.ndarray
+    errors: np.ndarray
+    uncertainty: np.ndarray
+    predicted: np.ndarray | None
+    law: Law
+
+    def order(self, row: list[int]) -> Fit:
+        """The order from these of its eps, as `study` gives it."""
+        predicted = None if self.predicted is None else self.predicted[row]
+        known = self.eps[row], self.errors[row], self.uncertainty[row]
+        return fit_with_law(*known, predicted, self.law, STATE).fit
+
+
+def _predicted(data: Any, pilot: np.ndarray, gamma: float) -> tuple[np.ndarray | None, Law]:
+    known = SlideData.of(data)
+    if known is None:
+        return None, NO_LAW
+    found = predict_errors(known, pilot, np.array([gamma]))["sup_error"]
+    return found.errors[0], found.laws[0]
+
+
+def _intervals(pilot: _Pilot, start: int, stop: int, points: int) -> dict[str, Any] | None:
     """Widest half interval of the order over the phases, median order, ends, how many.
 
     None where a grid gives no interval.
@@ -154,8 +174,7 @@ def _intervals(
     rows = np.unique(np.clip(places.round().astype(int), start, stop), axis=0)
     fits = []
     for row in {tuple(np.unique(row).tolist()) for row in rows}:
-        chosen = list(row)
-        fits.append(fit_order(pilot[chosen], errors[chosen], accuracy * pilot[chosen]))
+        fits.append(pilot.order(list(row)))
     lows, highs, orders = (
         np.array([getattr(fit, name) for fit in fits]) for name in ("low", "high", "order")
     )

@@ -5,8 +5,9 @@ import pytest
 
 import frictionjax as fx
 from frictionjax import cost_prediction, eps_grids
-from frictionjax.eps_grids import EpsGrid, _candidates, _intervals, chosen
+from frictionjax.eps_grids import EpsGrid, _candidates, _intervals, _Pilot, chosen
 from frictionjax.machine_cost import MachineCost
+from frictionjax.slide_laws import NO_LAW
 
 RANGE = [5e-2, 1e-5]
 
@@ -61,11 +62,15 @@ def test_out_of_reach_is_said(scene):
 PILOT = np.geomspace(1e-1, 1e-6, eps_grids._PILOT)
 
 
+def lawless(pilot, errors):
+    return _Pilot(pilot, errors, 1e-9 * pilot, None, NO_LAW)
+
+
 def grids_of(errors, pilot=PILOT, second=lambda eps: 0.01):
     """All grids of a pilot with these errors, a cell of each taking as long as said."""
     grids = []
     for start, stop, points in _candidates():
-        found = _intervals(pilot, errors, 1e-9, start, stop, points)
+        found = _intervals(lawless(pilot, errors), start, stop, points)
         if found is not None:
             ends = float(pilot[start]), float(pilot[stop])
             seconds = sum(second(eps) for eps in np.geomspace(*ends, points))
@@ -76,20 +81,20 @@ def grids_of(errors, pilot=PILOT, second=lambda eps: 0.01):
 def test_intervals_of_known_errors():
     rng = np.random.default_rng(0)
     power = 3 * PILOT**1.5
-    exact = _intervals(PILOT, power, 1e-9, 0, 47, 12)
+    exact = _intervals(lawless(PILOT, power), 0, 47, 12)
     assert exact["half_width"] < 1e-9
     assert exact["order"] == pytest.approx(1.5)
     noisy = power * np.exp(0.02 * rng.normal(size=PILOT.size))
-    few = _intervals(PILOT, noisy, 1e-9, 0, 47, 6)
-    many = _intervals(PILOT, noisy, 1e-9, 0, 47, 48)
-    short = _intervals(PILOT, noisy, 1e-9, 38, 47, 8)
+    few = _intervals(lawless(PILOT, noisy), 0, 47, 6)
+    many = _intervals(lawless(PILOT, noisy), 0, 47, 48)
+    short = _intervals(lawless(PILOT, noisy), 38, 47, 8)
     assert many["half_width"] < few["half_width"]
     assert many["half_width"] < short["half_width"]
     assert abs(many["order"] - 1.5) < 2 * many["half_width"]
     # Rounding leaves fewer different grids: said, not seven.
     assert (many["laid"], few["laid"]) == (1, 7)
     # Failed cells, or too few, give no interval.
-    assert _intervals(PILOT, np.full(48, np.nan), 1e-9, 0, 47, 6) is None
+    assert _intervals(lawless(PILOT, np.full(48, np.nan)), 0, 47, 6) is None
 
 
 def bent(scatter):

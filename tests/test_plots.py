@@ -43,7 +43,8 @@ def convergence(**kwargs):
 
 def test_convergence_shows_points_fits_and_failures():
     found, orders, figure = convergence()
-    state, energy = drawn(figure)
+    state, energy, strip = drawn(figure)
+    assert strip.get_ylabel().startswith("sup$_t$ dist")
     assert state.get_xscale() == state.get_yscale() == "log"
     assert energy.get_ylabel().endswith("(J)")
     points = [line for line in state.lines if line.get_linestyle() == "None"]
@@ -85,7 +86,7 @@ def test_minor_ticks_where_decades_are_few():
 def test_convergence_without_dissipation_or_orders():
     found = sweep_like(dissipation=False).isel(eps=[0, 1])
     axes = drawn(fx.plot.draw_convergence(found, fx.study(found).orders))
-    assert len(axes) == 1
+    assert len(axes) == 2  # distances from the limit and from the strip
     assert "$\\gamma$ = 1: too few points for an order" in labels(axes[0])
 
 

@@ -12,6 +12,7 @@ from frictionjax.report.tables import (
     coefficient_table,
     coefficients_of,
     failed_table,
+    lemma_table,
     order_table,
     row_table,
     sweep_table,
@@ -35,7 +36,9 @@ def test_coefficients():
     assert float(lines["ratio"][0]) == pytest.approx(
         float(-LAW.rho_plus / LAW.rho_minus), rel=1e-5
     )
-    assert len(lines) == 10
+    assert float(lines["normal_minus"][0]) == pytest.approx(float(LAW.normal_minus), 1e-5)
+    assert " ".join(lines["alpha"][2:]) == "normal force without friction"
+    assert len(lines) == 12
 
 
 def test_coefficients_with_errors():
@@ -71,16 +74,24 @@ def test_without_dissipation_its_columns_are_empty():
 def test_order_table():
     orders = fx.study(sweep_like()).orders
     lines = order_table(orders).splitlines()
-    assert len(lines) == 3
-    assert lines[1].split()[1] == "0.500"
-    assert lines[1].endswith("converges / converges")
+    assert [line.split()[0] for line in lines[1:]] == [
+        *("state", "state", "dissipation", "dissipation", "from", "from")
+    ]
+    assert lines[1].split()[1:3] == ["0.5", "0.500"]
+    assert lines[1].split()[5:7] == ["-", "free"]  # nothing is known of its wells
+    assert lines[1].endswith("converges")
     assert "0.01 to 0.1" in lines[1]
+
+
+def test_lemma_table():
+    lines = lemma_table(fx.study(sweep_like()).orders).splitlines()
+    assert [line.split()[:2] for line in lines[1:]] == [["0.5", "0.5"], ["1", "1"]]
 
 
 def test_an_order_from_too_few_points_is_a_dash():
     orders = fx.study(sweep_like().isel(eps=[0, 1])).orders
     line = order_table(orders).splitlines()[1]
-    assert line.split()[1] == "-"
+    assert line.split()[2] == "-"
     assert line.endswith("too few points")
 
 
@@ -92,8 +103,8 @@ def test_failed_cells_are_listed():
 
 
 def test_rows_of_a_map():
-    names = ("rho_plus", "rho_minus", "ratio", "mu_plus", "mu_minus", "omega_plus")
-    values = {n: np.array([1.0, 3.0]) for n in (*names, "omega_minus", "explained")}
+    names = [name for name in coefficients_of(LAW) if name not in ("alpha", "a")]
+    values = {name: np.array([1.0, 3.0]) for name in (*names, "explained")}
     text = row_table(RowCoefficients(values, 9e-6, [0, 2], {1: "too steep"}, {}))
     assert text.startswith("2 rows, period 9e-06 m")
     assert text.splitlines()[2].split()[:4] == ["rho_plus", "2", "1.4", "N"]

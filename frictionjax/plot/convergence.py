@@ -18,6 +18,12 @@ _PANELS = (
         "sup$_t$ |D$_\\epsilon$ - D| (J)",
         "Dissipated energy: distance from the limit",
     ),
+    (
+        "strip_",
+        "strip_excess",
+        "sup$_t$ dist(z$_\\epsilon$, strip) (m)",
+        "State: distance from the strip",
+    ),
 )
 
 _MANY_DECADES = 3

@@ -10,7 +10,9 @@ from .well_force import WellForce
 FREE, AVERAGED, SLIPS, BETWEEN = "free", "averaged", "slips", "between"
 _SAME = 1e-9  # gamma at the threshold
 _SMALL = 1e-6  # drop of the force in a well, of its range: far enough down
-_REST = 1e-6, 1e-9  # drop and drag, of the range: a slide whose tips rest, deeply
+# Drop and drag, of the range, of a tip that rests and then leaves its fold before the force
+# has dropped: drop/drag^2 is large, drop^2/drag small.
+_REST = 1e-9, 1e-7
 
 
 class LimitOrbit(NamedTuple):
@@ -65,17 +67,27 @@ def averaged_force(well: WellForce, drag: np.ndarray) -> np.ndarray:
     return (np.exp(level) * drag) ** (1 / power)
 
 
-def fold_force(well: WellForce, pull: np.ndarray) -> tuple[np.ndarray, float]:
-    """Force beyond rho that a tip at rest needs to fall, over eps^order, and 1/(1 + gamma)
-    of the order; `pull` = k v in N/s.
+def fold_force(
+    well: WellForce, speed: np.ndarray, stiffness: np.ndarray, gamma: float
+) -> tuple[np.ndarray, float]:
+    """Largest force beyond rho over eps^order (N) where tips rest before a slip, and order.
 
-    For p = 2 it is `2.338 (k v)^(2/3) (|W'''|/2)^(-1/3)`, of order 2 (1 + gamma)/3, with
-    the first zero of Airy's function.
+    For gamma < p/(p - 1) it is what a tip needs to leave its fold: for p = 2
+    `2.338 (k v)^(2/3) (|W'''|/2)^(-1/3)`, of order 2 (1 + gamma)/3, with the first zero of
+    Airy's function. Above, the force drops before that, and what is left is the viscous
+    force v eps^gamma of a tip that creeps over the steepest place.
     """
+    creeps = gamma * threshold(well) - 1
+    if creeps > _SAME:
+        return speed, gamma
+    if creeps >= -_SAME:
+        eps = _SMALL * well.range / stiffness
+        orbit = periodic_orbit(well, stiffness * eps, speed * eps**gamma)
+        return orbit.largest / eps**gamma, gamma
     power = 1 / (1 + threshold(well))
     drop, drag = (np.asarray(share * well.range) for share in _REST)
     found = periodic_orbit(well, drop, drag).largest
-    return found * (pull / (drop * drag)) ** power, power
+    return found * (stiffness * speed / (drop * drag)) ** power, (1 + gamma) * power
 
 
 def _flat_share(well: WellForce) -> float:
@@ -83,4 +95,4 @@ def _flat_share(well: WellForce) -> float:
     if np.isfinite(well.flatness):
         return 0.0
     near = well.gap < 1e-6 * well.range
-    return float(np.sum(np.diff(well.place)[near[1:] & near[:-1]]))
+    return float(np.sum(np.diff(well.place)[near[1:] | near[:-1]]))

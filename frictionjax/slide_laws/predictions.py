@@ -232,7 +232,6 @@ def _strip_law(
         return NO_LAW
     folds = []
     for one in held:
-        force, power = fold_force(one.well, one.speed * one.stiffness)
-        constant = float(np.max(force / one.stiffness))
-        folds.append(Law((1 + gamma) * power, constant, SLIPS))
+        force, order = fold_force(one.well, one.speed, one.stiffness, gamma)
+        folds.append(Law(order, float(np.max(force / one.stiffness)), SLIPS))
     return min(folds, key=lambda law: (law.order, -law.constant))

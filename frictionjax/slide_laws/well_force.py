@@ -5,11 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 _RELIABLE = 1e-11  # of the force's range: what is smaller is rounding of W'
+_NONE = 1e-14  # of the range: no gap
 _DECADE = 10.0  # of distances from the top, over which its flatness is measured
 _WHOLE = 0.06  # flatness that is this near an even number is one
 _FLATTEST = 12.0  # beyond, a top is a straight flank
 _NEAREST, _NODES = 1e-13, 160  # nodes between the table's and that distance
-_FORCES = np.log(np.geomspace(1e-16, 1e3, 192))  # of the range, for passage times
+_FORCES = np.log(np.geomspace(1e-26, 1e3, 288))  # of the range, for passage times
 
 
 class WellForce(NamedTuple):
@@ -46,6 +47,7 @@ def well_force(
     order = np.argsort(place)
     place, gap = place[order], held[top] - held[order]
     width = float(gap.max())
+    gap = np.maximum(gap, _NONE * width)  # of a second top of the same height
     left, right = (_side(sign * place, gap, width) for sign in (-1, 1))
     flatness = _flatness(left.power, right.power)
     place = np.concatenate([-left.place[::-1], [0.0], right.place])
@@ -84,7 +86,7 @@ def _side(place: np.ndarray, gap: np.ndarray, width: float) -> _Side:
     place, gap = place[first:], gap[first:]
     inner = np.geomspace(_NEAREST, place[0], _NODES, endpoint=False)
     if not np.isfinite(power) or power > _FLATTEST:
-        inner_gap = np.full(_NODES, 1e-3 * least)
+        inner_gap = np.full(_NODES, _NONE * width)
     else:
         inner_gap = gap[0] * (inner / place[0]) ** power
     return _Side(np.append(inner, place), np.append(inner_gap, gap), power)
