@@ -82,7 +82,10 @@ def heights_of(
         asked = asked_of(pixel, height_scale, length_unit, height_unit, decimal)
         data = Path(path).read_bytes()
         text = None if is_instrument_text(data) else decoded(data)
-        samples = read_instrument(path, asked) if text is None else read_text(text, asked)
+        if text is None:
+            samples = read_instrument(data, Path(path).suffix.lower(), asked)
+        else:
+            samples = read_text(text, asked)
         samples = without_gaps(samples)
     except OSError as error:
         raise ValueError(f"{path}: {error.strerror or error}") from None

@@ -1,7 +1,7 @@
 """Formats of instruments, through SurfaceTopography."""
 
+import io
 import warnings
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,7 @@ def is_instrument_text(data: bytes) -> bool:
     return begins.startswith(tuple(name.encode() for name in _TEXTS))
 
 
-def read_instrument(path: Any, asked: Asked) -> Samples:
+def read_instrument(data: bytes, suffix: str, asked: Asked) -> Samples:
     """Heights of a file that is no plain text, NaN where one is missing.
 
     Several channels: the file's first one of heights. Raises `ValueError` where no
@@ -39,8 +39,9 @@ def read_instrument(path: Any, asked: Asked) -> Samples:
         except ImportError:
             require(False, "file", "binary", _EXTRA)
         try:
-            with open_topography(str(path)) as reader:
-                return _samples(reader, Path(path).suffix.lower(), asked)
+            # Out of memory: some readers leave files open.
+            with open_topography(io.BytesIO(data)) as reader:
+                return _samples(reader, suffix, asked)
         except Exception as error:  # each reader has errors of its own
             said = " ".join(str(error).split())[:200]
             unknown = type(error).__name__ == "CannotDetectFileFormat"
