@@ -1,4 +1,4 @@
-"""One grooved surface, written as instruments write it, from their formats' descriptions."""
+"""One grooved surface, written as instruments write it, after the formats' descriptions."""
 
 import struct
 import warnings

@@ -74,7 +74,9 @@ def test_arrays_without_units_ask_for_them(shape, tmp_path):
     np.save(path, z)
     with pytest.raises(ValueError, match=r"bare.npy: pixel = 'nothing'"):
         read_heights(path)
-    with pytest.raises(ValueError, match=r"mean slope of .*needs length_unit and height_un"):
+    with pytest.raises(
+        ValueError, match=r"mean slope of .*needs length_unit and height_un"
+    ):
         read_heights(path, pixel=PIXEL)
     measured = read(path, pixel=1e6 * PIXEL, length_unit="um", height_unit="nm")
     assert measured.heights == pytest.approx(1e-9 * np.atleast_2d(z), rel=1e-12)

@@ -53,8 +53,8 @@ def _pairs(table: Table, headings: Headings, asked: Asked) -> _Raw:
     """A trace: positions and heights."""
     x, line = table.block[:, 0], int(table.lines[0])
     samples = _trace(table, x, table.block[:, 1], column=2)
-    length = [s for s in headings.length if asked.pixel is None]
-    if _counts(x) and asked.length is None and not _lengths(length):
+    unit = asked.length is not None or _are_lengths(headings.length)
+    if _counts(x) and (asked.pixel is not None or not unit):
         needs = f"pixel, the distance of samples, for a count {_COUNTS}; or length_unit"
         pixel = asked.pixel_in_metres
         require(pixel is not None, f"line {line}, column 1", f"{x[0]:g}, {x[1]:g}", needs)
@@ -70,7 +70,7 @@ def _pairs(table: Table, headings: Headings, asked: Asked) -> _Raw:
     return _Raw(samples, scale, f"line {line}, columns 1 and 2")
 
 
-def _lengths(stated: list[Stated]) -> bool:
+def _are_lengths(stated: list[Stated]) -> bool:
     """Whether the file gives a unit of positions that is one: samples are none."""
     return bool(stated) and not any(
         s.text.lower().startswith(("px", "pixel", "sample", "count")) for s in stated

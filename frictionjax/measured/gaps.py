@@ -47,7 +47,7 @@ def _cut(samples: Samples) -> Samples:
     lost = samples.x.size - (last - first)
     if not lost:
         return samples
-    note = f"{lost} samples at the ends missing: cut off"
+    note = f"samples missing at the ends, cut off: {lost}"
     x, heights = samples.x[first:last], samples.heights[:, first:last]
     lines, columns = (
         part[:, first:last] if part.size else part

@@ -1,5 +1,6 @@
 """Formats of instruments, through SurfaceTopography."""
 
+import contextlib
 import io
 import warnings
 from typing import Any
@@ -32,7 +33,8 @@ def read_instrument(data: bytes, suffix: str, asked: Asked) -> Samples:
     Several channels: the file's first one of heights. Raises `ValueError` where no
     reader knows the file, and where it has no sizes or units and the user gives none.
     """
-    with warnings.catch_warnings():  # of optional packages and odd headers: no failures
+    # Readers warn of optional packages and odd headers, and print what they tried.
+    with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
         warnings.simplefilter("ignore")
         try:
             from SurfaceTopography.IO import open_topography

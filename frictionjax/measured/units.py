@@ -57,7 +57,7 @@ def require_unit(name: str, unit: str | None) -> float | None:
 _CELL = (  # `Z (nm)`, `[um]`, `X/mm`, `x_um`, `Distance, um`, `Lateral um`, `nm`
     re.compile(r"[(\[{<]\s*([^()\[\]{}<>]*?)\s*[)\]}>]$"),
     re.compile(r"(?:.*[/_,\s])?([^/_,\s]+)$"),
-    re.compile(r".*\s(A|in)$"),  # "Profile A", "measured in"
+    re.compile(r"(.*\s(A|in)|[nN]/[aA])$"),  # "Profile A", "measured in"
 )
 _OTHERS = re.compile(r"m?V|deg|rad|px|pixels?|samples?|counts?|a\.?u\.?|s|\u00b0|%")
 
