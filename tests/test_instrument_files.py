@@ -105,7 +105,7 @@ def test_files_that_nobody_reads_are_refused_in_one_line(content, tmp_path):
     path = tmp_path / "odd.dat"
     path.write_bytes(content)
     with pytest.raises(ValueError, match=r"odd\.dat: ") as caught:
-        read_heights(path)
+        read_heights(path, pixel=1.0, height_unit="m")
     assert "\n" not in str(caught.value)
 
 

@@ -44,6 +44,8 @@ TEXTS = {
     "x y z": "x(um) y(um) z(nm)\n" + lines(ACROSS, UP, np.tile(NM, 3), by=" "),
     "Gwyddion": SIZES + "# Value units: nm\n" + lines(*np.tile(NM, (3, 1)).T),
     "one column": f"pixel size=0.25 um\nHeight [nm]\n{lines(NM)}",
+    "empty cells at the end": "x (um),z (nm)\n" + lines(UM, NM, by=",") + ",,\n,\n",
+    "the pixel of a trace": "pixel size=0.25 um\nx (um)\tz (nm)\n" + lines(UM, NM),
     "uneven": "x (um)\tz (nm)\n" + lines(np.delete(UM, [7, 91]), np.delete(NM, [7, 91])),
 }
 

@@ -27,12 +27,19 @@ def read_text(text: str, asked: Asked) -> Samples:
     table = read_table(text, asked.decimal)
     headings = read_headings(table.said, table.block.shape[1], table.dialect)
     columns = table.block.shape[1]
-    if headings.pixel is None and headings.width is None and not headings.sizes:
-        if columns == 2:
-            return _in_metres(_pairs(table, headings, asked), headings, asked)
-        if columns == 3 and _is_grid(table.block):
-            return _in_metres(_grid(table, headings, asked), headings, asked)
-    return _in_metres(_map(table, headings, asked), headings, asked)
+    mapped = headings.pixel is not None or bool(headings.sizes)
+    if columns == 2 and not (mapped and not _are_positions(table.block[:, 0])):
+        raw = _pairs(table, headings, asked)
+    elif columns == 3 and not mapped and _is_grid(table.block):
+        raw = _grid(table, headings, asked)
+    else:
+        raw = _map(table, headings, asked)
+    return _in_metres(raw, headings, asked)
+
+
+def _are_positions(x: np.ndarray) -> bool:
+    """Whether a column rises all along, which no map of two samples a row does."""
+    return x.size >= 8 and bool(np.all(np.diff(x) > 0))
 
 
 def _in_metres(raw: _Raw, headings: Headings, asked: Asked) -> Samples:

@@ -35,7 +35,8 @@ def read_table(text: str, decimal: str | None) -> Table:
     Raises `ValueError` where rows differ in length, text follows numbers, or there are no
     numbers.
     """
-    lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip()]
+    numbered = enumerate(text.splitlines(), 1)
+    lines = [(n, line) for n, line in numbered if line.strip().strip(' \t,;"')]
     dialect = find_dialect(lines, decimal)
     rows: list[_Row] = []
     said: list[tuple[int, str]] = []
