@@ -148,7 +148,7 @@ def _through_surface_topography(method):
             from SurfaceTopography import Topography
 
             sizes = 1e6 * PIXEL * COUNT, 1e6 * PIXEL * len(z)
-            surface = Topography(np.ascontiguousarray(1e6 * z.T), sizes, unit="µm")
+            surface = Topography(np.ascontiguousarray(1e6 * z.T), sizes, unit="\u00b5m")
             getattr(surface, method)(str(path))
 
     return write

@@ -25,22 +25,23 @@ def lines(*columns, by="\t", decimal=".", form="%.6f"):
 
 MM, MICRO = UM / 1e3, NM / 1e3
 ACROSS, UP = np.tile(UM, 3), np.repeat([0.0, 0.25, 0.5], COUNT)
-SIZES = f"# Channel: Topography\n# Width: {1e6 * PIXEL * COUNT:g} µm\n# Height: 1 µm\n"
+SIZES = f"# Channel: Topography\n# Width: {1e6 * PIXEL * COUNT:g} \u00b5m\n# Height: 1 \u00b5m\n"
 TEXTS = {
     "metres": "# x [m], z [m]\n" + lines(UM / 1e6, NM / 1e9, by=" ", form="%.9e"),
-    "points": "X (µm)\tZ (nm)\n" + lines(UM, NM),
-    "commas, semicolons": "X (µm);Z (nm)\n" + lines(UM, NM, by=";", decimal=","),
+    "points": "X (\u00b5m)\tZ (nm)\n" + lines(UM, NM),
+    "commas, semicolons": "X (\u00b5m);Z (nm)\n" + lines(UM, NM, by=";", decimal=","),
     "commas, tabs": "x [um]\tz [nm]\n" + lines(UM, NM, decimal=","),
     "commas, spaces": "x [um] z [nm]\n" + lines(UM, NM, by="  ", decimal=","),
     "table of an office": "X/mm,Z/um\n" + lines(MM, MICRO, by=",", form="%.9f"),
     "quoted": '"x_um","z_nm"\n'
     + lines(UM, NM, by='","', decimal=",", form='"%.6f"').replace('""', '"'),
     "whole numbers": "X/nm,Z/pm\n" + lines(1e3 * UM, 1e3 * NM, by=",", form="%.0f"),
-    "a line of units": "Position;Height\n[µm];[nm]\n" + lines(UM, NM, by=";"),
+    "a line of units": "Position;Height\n[\u00b5m];[nm]\n" + lines(UM, NM, by=";"),
     "comments": "# X units: um\n# Value units: nm\n" + lines(UM, NM),
     "one unit": "Units = micrometers\n" + lines(UM, MICRO, by=" "),
     "exponents of Fortran": "um nm\n" + lines(UM, NM, form="%.8e").replace("e", "D"),
-    "angstrom, inches": "x (in);z (Å)\n" + lines(UM / 25400, 10 * NM, by=";", form="%.9f"),
+    "angstrom, inches": "x (in);z (\u00c5)\n"
+    + lines(UM / 25400, 10 * NM, by=";", form="%.9f"),
     "x y z": "x(um) y(um) z(nm)\n" + lines(ACROSS, UP, np.tile(NM, 3), by=" "),
     "Gwyddion": SIZES + "# Value units: nm\n" + lines(*np.tile(NM, (3, 1)).T),
     "one column": f"pixel size=0.25 um\nHeight [nm]\n{lines(NM)}",
@@ -90,7 +91,9 @@ def test_the_same_surface_in_texts(name, tmp_path):
     "encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "utf-32", "cp1252"]
 )
 def test_texts_in_any_encoding(encoding, tmp_path):
-    measured = read(written(tmp_path, TEXTS["commas, tabs"].replace("um", "µm"), encoding))
+    measured = read(
+        written(tmp_path, TEXTS["commas, tabs"].replace("um", "\u00b5m"), encoding)
+    )
     assert measured.heights == pytest.approx(heights(1), abs=1e-15)
     first = lines(UM, NM)  # without a heading, the first row is the first line
     path = written(tmp_path, first, encoding)
@@ -198,7 +201,7 @@ def test_dialects(rows, separator, decimal):
     ("cell", "unit"),
     [
         ("Z (nm)", "nm"),
-        ("X [µm]", "µm"),
+        ("X [\u00b5m]", "\u00b5m"),
         ("X/mm", "mm"),
         ("height_m", "m"),
         ("Distance, um", "um"),
@@ -215,7 +218,9 @@ def test_units_of_headings(cell, unit):
 
 
 def test_units():
-    assert {metres(u) for u in ("um", "µm", "μm", "micron", "Micrometres", "UM")} == {1e-6}
+    assert {
+        metres(u) for u in ("um", "\u00b5m", "\u03bcm", "micron", "Micrometres", "UM")
+    } == {1e-6}
     assert metres("Mm") is metres("V") is metres("") is None
     assert metres("in") == metres("inches") == 0.0254
 
