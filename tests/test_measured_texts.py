@@ -25,7 +25,7 @@ def lines(*columns, by="\t", decimal=".", form="%.6f"):
 
 MM, MICRO = UM / 1e3, NM / 1e3
 ACROSS, UP = np.tile(UM, 3), np.repeat([0.0, 0.25, 0.5], COUNT)
-SIZES = f"# Channel: Topography\n# Width: {1e6 * PIXEL * COUNT:g} \u00b5m\n# Height: 1 \u00b5m\n"
+SIZES = f"# Channel: Topo\n# Width: {1e6 * PIXEL * COUNT:g} \u00b5m\n# Height: 1 \u00b5m\n"
 TEXTS = {
     "metres": "# x [m], z [m]\n" + lines(UM / 1e6, NM / 1e9, by=" ", form="%.9e"),
     "points": "X (\u00b5m)\tZ (nm)\n" + lines(UM, NM),
