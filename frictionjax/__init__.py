@@ -16,6 +16,7 @@ _HOME = {
     "bristles": "bristles",
     "supports": "supports",
     "loads": "loads",
+    "measured": "measured",
     "plot": "plot",
     "Scene": "scene",
     "GivenPotential": "potentials",
@@ -54,6 +55,7 @@ __all__ = [*_HOME, "__version__"]
 if TYPE_CHECKING:
     from . import bristles as bristles
     from . import loads as loads
+    from . import measured as measured
     from . import plot as plot
     from . import profiles as profiles
     from . import supports as supports

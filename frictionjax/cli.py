@@ -57,11 +57,22 @@ _surface = _options(
         help="Another bristle than the scene's: slanted (k 1, rest length 2.4, "
         "height 1, angle 1) or angular (k 1, length 1.414, height 1, rest angle 0.3).",
     ),
-    click.option("--heights", metavar="FILE", help="Measured trace or map as the surface."),
+    click.option(
+        "--heights",
+        metavar="FILE",
+        help="Measured trace or map as the surface: a text or a format of an instrument.",
+    ),
     click.option("--harmonics", type=click.IntRange(1), help="Of its periodic part. [8]"),
     click.option("--period", type=float, help="In m; found in the data otherwise."),
-    click.option("--pixel", type=float, help="Distance of samples in m."),
-    click.option("--height-scale", type=float, help="m per unit of the file."),
+    click.option(
+        "--pixel", type=float, help="Distance of samples in m, or in --length-unit."
+    ),
+    click.option("--length-unit", help="Of positions, as um. [what the file says]"),
+    click.option("--height-unit", help="Of heights, as nm. [what the file says]"),
+    click.option(
+        "--height-scale", type=float, help="m per unit of the heights, for --height-unit."
+    ),
+    click.option("--decimal", help="Mark of decimals: . or , [as the file shows]"),
     click.option(
         "--row",
         type=click.IntRange(0),
@@ -145,6 +156,8 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
         if job.rows is not None:
             numbers["error"] = job.error
             numbers["rows"] = {"mean": job.rows.mean, "std": job.rows.std}
+        for line in job.notes[1:]:
+            click.echo(line, err=True)
         click.echo(json.dumps(numbers, indent=2))
         return
     sections = [("", line) for line in job.notes]

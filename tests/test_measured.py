@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.measured import Measured, fit_profile, read_heights, row_coefficients
+from frictionjax.measured import (
+    Measured,
+    MeasuredWarning,
+    fit_profile,
+    read_heights,
+    row_coefficients,
+)
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 BRISTLE = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
@@ -21,15 +27,16 @@ def written(folder, text):
 @pytest.mark.parametrize(
     "text",
     [
-        "0 1.5   \n1e-6 2.5\t\n3e-6 -0.5\n",
-        "x (m), height (m)\n# comment\n0,1.5\n1e-6,2.5\n\n3e-6,-0.5,\n",
-        "Position Height\n0; 1.5\n# in between\n1e-6; 2.5\n3e-6; -0.5",
+        "x [m]\tz [m]\n0 1.5   \n1e-6 2.5\t\n3e-6 -0.5\n",
+        "x (m), height (um)\n# comment\n0,1.5\n1e-6,2.5\n\n3e-6,-0.5,\n",
+        "x/m Height/nm\n0; 1.5\n# in between\n1e-6; 2.5\n3e-6; -0.5",
     ],
 )
 def test_two_columns(text, tmp_path):
     found = read_heights(written(tmp_path, text), height_scale=2.0)
     assert found.x.tolist() == [0.0, 1e-6, 3e-6]
     assert found.heights.tolist() == [[3.0, 5.0, -1.0]]
+    assert found.notes == ()
 
 
 MAP = "h=2 w=3\npixel size=2e-006 m\ndata unit=rad\nheight conversion factor (-> m)=1e-8\n"
@@ -43,8 +50,9 @@ def test_map(tmp_path):
 
 
 def test_a_map_of_two_columns_is_told_by_its_pixel(tmp_path):
-    found = read_heights(written(tmp_path, "pixel size=1e-6 m\n1 2\n3 4\n"))
-    assert found.heights.shape == (2, 2)
+    found = read_heights(written(tmp_path, "pixel size=1 um\nUnits: um\n1 2\n3 4\n"))
+    assert found.heights.tolist() == [[1e-6, 2e-6], [3e-6, 4e-6]]
+    assert found.x.tolist() == [0.0, 1e-6]
 
 
 def test_options_go_before_the_header(tmp_path):
@@ -54,9 +62,10 @@ def test_options_go_before_the_header(tmp_path):
 
 
 def test_a_single_column_is_a_trace(tmp_path):
-    found = read_heights(written(tmp_path, "1\n2\n3\n"), pixel=0.5)
-    assert found.x.tolist() == [0.0, 0.5, 1.0]
-    assert found.heights.tolist() == [[1.0, 2.0, 3.0]]
+    path = written(tmp_path, "1\n2\n3\n")
+    found = read_heights(path, pixel=0.5, length_unit="mm", height_unit="um")
+    assert found.x.tolist() == [0.0, 5e-4, 1e-3]
+    assert found.heights == pytest.approx(1e-6 * np.array([[1.0, 2.0, 3.0]]))
 
 
 @pytest.mark.parametrize(
@@ -66,14 +75,15 @@ def test_a_single_column_is_a_trace(tmp_path):
         ("words\nonly\n", {}, "numbers = 'nothing'"),
         ("1 2 3\n4 5\n", {"pixel": 1.0}, "line 2 = '2 numbers': needs 3 numbers"),
         ("1 2\n3 4\nend of file\n", {}, "line 3 = 'end of file': needs numbers"),
-        ("1 2\n3 nan\n", {}, "numbers = 'not finite'"),
-        ("1 2\n1 3\n", {}, r"positions = \[1\. 1\.\]: needs increasing"),
+        ("x/m z/m\n1 2\n3 nan\n4 5\n", {}, "line 3, column 2 = 'missing, with 33%'"),
+        ("1 2\n1 3\n", {}, "line 2, column 1 = 1: needs increasing"),
         ("1 2\n3 4\n", {"pixel": 1.0}, "pixel = 1: needs none"),
-        (ROWS, {}, "pixel = 'nothing': needs the distance of samples"),
+        (ROWS, {}, "line 1 = '3 columns': needs 2 .*, or pixel"),
+        ("1 2 3 4\n", {}, "pixel = 'nothing': needs the distance of samples"),
         (ROWS, {"pixel": -1.0}, "pixel = -1: needs pixel > 0"),
         (MAP.replace("h=2", "h=5") + ROWS, {}, "h = 5: needs 2"),
         (MAP.replace("2e-006", "??") + ROWS, {}, r"pixel size = '\?\? m'"),
-        ("pixel size=1 m\ndata unit=rad\n" + ROWS, {}, "height_scale = 'nothing': .*rad"),
+        ("pixel size=1 m\ndata unit=rad\n" + ROWS, {}, "line 2 = 'rad': .*height_scale"),
     ],
 )
 def test_unreadable_files_say_why(text, options, message, tmp_path):
@@ -107,6 +117,33 @@ def test_rows_are_moved_into_phase_before_their_mean():
     assert ours.rho_plus == pytest.approx(float(theirs.rho_plus), rel=1e-3)
     assert ours.rho_minus == pytest.approx(float(theirs.rho_minus), rel=1e-3)
     assert found.explained > 0.999
+
+
+def test_a_map_in_python_is_read_as_from_a_file():
+    measured = grooves()
+    shell = fit_profile(measured, harmonics=3)
+    found = fx.profiles.Fourier.from_heights(measured.x, measured.heights, harmonics=3)
+    assert np.array_equal(found.profile.sin, shell.profile.sin)
+    assert (found.period, found.explained) == (shell.period, shell.explained)
+    plain = fx.profiles.Fourier.from_heights(measured.x, measured.heights.mean(0), 1e-5, 3)
+    assert np.hypot(plain.profile.cos, plain.profile.sin)[0] < 0.018  # smeared out
+    assert np.hypot(found.profile.cos, found.profile.sin)[0] > 0.0199
+
+
+@pytest.mark.parametrize(
+    ("x", "heights", "message"),
+    [
+        (np.arange(40.0), np.zeros((0, 40)), "heights"),
+        (np.arange(40.0), np.full((3, 40), np.nan), "finite heights"),
+        (np.arange(40.0), np.zeros((3, 40)), "heights that vary"),
+        (np.arange(39.0), np.zeros((3, 40)), "the shape"),
+        (-np.arange(40.0), np.zeros((3, 40)), "increasing positions"),
+        (np.arange(40.0), np.zeros((2, 3, 40)), "heights"),
+    ],
+)
+def test_wrong_maps_are_named(x, heights, message):
+    with pytest.raises(ValueError, match=message):
+        fx.profiles.Fourier.from_heights(x, heights)
 
 
 def test_one_row():
@@ -172,7 +209,8 @@ def test_the_grooved_surface():
 
 @needs_data
 def test_the_line_scan():
-    found = read_heights(DATA / "stylus_line_scan.txt")
+    with pytest.warns(MeasuredWarning, match="line 1, columns 1 and 2: no unit of lengths"):
+        found = read_heights(DATA / "stylus_line_scan.txt")
     assert found.heights.shape == (1, 3001)
     assert found.x[-1] == pytest.approx(5e-5, rel=1e-3)
     assert np.ptp(found.heights) < 1e-7

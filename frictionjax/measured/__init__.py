@@ -1,6 +1,7 @@
 """Measured surfaces: files of instruments, their periodic profile, their friction."""
 
 from .files import Measured as Measured
+from .files import MeasuredWarning as MeasuredWarning
 from .files import read_heights as read_heights
 from .fit import fit_profile as fit_profile
 from .rows import RowCoefficients as RowCoefficients

@@ -11,6 +11,7 @@ from ..arguments import Real, as_real, is_known, known_numbers, require
 from ..trigonometry import fourier_sum
 from .heights import HeightsFit, fit_heights
 from .profile import AbstractProfile
+from .rows import fit_map
 
 
 class Fourier(AbstractProfile):
@@ -47,9 +48,11 @@ class Fourier(AbstractProfile):
     def from_heights(
         cls, x: Any, heights: Any, period: float | None = None, harmonics: int = 8
     ) -> "HeightsFit[Fourier]":
-        """Periodic profile of a measured trace.
+        """Periodic profile of a measured trace, or of a map.
 
-        `x`: positions in m, increasing, shape (n,). `heights`: in m, shape (n,).
+        `x`: positions in m, increasing, shape (n,). `heights`: in m, shape (n,); of a map,
+        (rows, n): the mean over its rows, each moved so that its fundamental is in phase
+        first, since grooves cross the rows at an angle (`.explained`: their mean).
         `period`: in m; found in the data where it is None. `harmonics`: how many.
 
         A straight trend and all harmonics are fitted together by least squares, which
@@ -60,6 +63,7 @@ class Fourier(AbstractProfile):
         Raises `ValueError` for wrong shapes, values that are not finite, less than
         1.5 periods, or more harmonics than the samples can tell apart.
         """
-        fit = fit_heights(x, heights, period, harmonics)
+        fit_all = fit_map if np.ndim(heights) == 2 else fit_heights
+        fit = fit_all(x, heights, period, harmonics)
         profile = cls(as_real(fit.cos / fit.period), as_real(fit.sin / fit.period))
         return HeightsFit(profile, fit.period, fit.explained)

@@ -13,9 +13,9 @@ from ..measured import (
     Measured,
     RowCoefficients,
     fit_profile,
-    read_heights,
     row_coefficients,
 )
+from ..measured.files import heights_of
 from ..scene import Scene
 from ..scene_files import default_study, load_study
 
@@ -57,29 +57,30 @@ def read_job(
     path: str | None,
     bristle: str | None = None,
     heights: str | None = None,
-    pixel: float | None = None,
-    height_scale: float | None = None,
-    **fit: Any,
+    *,
+    period: float | None = None,
+    harmonics: int | None = None,
+    row: int | None = None,
+    **file: Any,
 ) -> Job:
     """The scene of a file (None: the embedded one), its bristle and surface exchanged.
 
-    `fit`: `period`, `harmonics`, `row` of the measured surface. Raises `ValueError`, one
-    line, for whatever is wrong.
+    `heights`: a measured surface, and its `period`, `harmonics`, `row`; `file`: options
+    of `read_heights`. Raises `ValueError`, one line, for whatever is wrong.
     """
-    file = default_study() if path is None else load_study(path)
-    study = {**default_study().study, **file.study}
-    chosen = file.scene.bristle if bristle is None else named_bristle(bristle)
+    known = default_study() if path is None else load_study(path)
+    study = {**default_study().study, **known.study}
+    chosen = known.scene.bristle if bristle is None else named_bristle(bristle)
     assert chosen is not None
     if heights is None:
-        given = {"pixel": pixel, "height_scale": height_scale, **fit}
+        given = {**file, "period": period, "harmonics": harmonics, "row": row}
         for name, value in given.items():
             require(value is None, name, value, "--heights FILE beside it")
-        return Job(exchanged(file.scene, file.scene.profile, chosen), study, [], None)
-    measured = read_heights(heights, pixel, height_scale)
-    harmonics = 8 if fit["harmonics"] is None else fit["harmonics"]
-    row, period = fit["row"], fit["period"]
+        return Job(exchanged(known.scene, known.scene.profile, chosen), study, [], None)
+    measured = heights_of(heights, **file)
+    harmonics = 8 if harmonics is None else harmonics
     found = fit_profile(measured, period, harmonics, row)
-    scene = exchanged(file.scene, found.profile, chosen)
+    scene = exchanged(known.scene, found.profile, chosen)
     notes = _notes(heights, measured, found, row)
     rows = None
     if measured.heights.shape[0] > 1:
@@ -106,7 +107,7 @@ def _notes(path: str, measured: Measured, found: Any, row: int | None) -> list[s
             f"Note: {periods:.2g} periods in a trace, {found.explained:.0%} explained: "
             "the surface is hardly periodic, its friction says little"
         )
-    return lines
+    return lines + [f"Note: {path}: {note}" for note in measured.notes]
 
 
 def number_list(name: str, text: str) -> list[float]:

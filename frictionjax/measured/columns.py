@@ -1,0 +1,168 @@
+"""Which columns of a text file are positions, which are heights."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arguments import require
+from .headings import Headings, Stated, read_headings
+from .samples import Samples
+from .scales import Asked, Scale, completed, require_metres, scale_of
+from .sentinels import without_sentinels
+from .table import Table, read_table
+
+_COUNTS = "0, 1, 2, ..."
+
+
+class _Raw(NamedTuple):
+    """Samples in the file's units, and the m per unit of their positions, where known."""
+
+    samples: Samples
+    length: Scale | None
+    place: str
+
+
+def read_text(text: str, asked: Asked) -> Samples:
+    """Heights of a text file, NaN where one is missing; see `read_heights`."""
+    table = read_table(text, asked.decimal)
+    headings = read_headings(table.said, table.block.shape[1], table.dialect)
+    columns = table.block.shape[1]
+    mapped = headings.pixel is not None or bool(headings.sizes)
+    if columns == 2 and not (mapped and not _are_positions(table.block[:, 0])):
+        raw = _pairs(table, headings, asked)
+    elif columns == 3 and not mapped and _is_grid(table.block):
+        raw = _grid(table, headings, asked)
+    else:
+        raw = _map(table, headings, asked)
+    return _in_metres(raw, headings, asked)
+
+
+def _are_positions(x: np.ndarray) -> bool:
+    """Whether a column rises all along, which no map of two samples a row does."""
+    return x.size >= 8 and bool(np.all(np.diff(x) > 0))
+
+
+def _in_metres(raw: _Raw, headings: Headings, asked: Asked) -> Samples:
+    samples = without_sentinels(raw.samples)
+    # A factor is for whatever unit the heights have, as the user's is.
+    free = headings.factor is not None or asked.height_scale is not None
+    stated = [] if free else headings.height
+    value = headings.factor if asked.heights is None else asked.heights
+    height, notes = scale_of(value, stated, "height_unit or height_scale")
+    along, up, unsaid = completed(raw.length, height, raw.place)
+    x, heights = along * samples.x, up * samples.heights
+    if unsaid:
+        require_metres(x, heights, raw.place)
+    return samples._replace(x=x, heights=heights, notes=[*samples.notes, *notes, *unsaid])
+
+
+def _pairs(table: Table, headings: Headings, asked: Asked) -> _Raw:
+    """A trace: positions and heights."""
+    x, line = table.block[:, 0], int(table.lines[0])
+    samples = _trace(table, x, table.block[:, 1], column=2)
+    unit = asked.length is not None or _are_lengths(headings.length)
+    if _counts(x) and (asked.pixel is not None or not unit):
+        needs = f"pixel, the distance of samples, for a count {_COUNTS}; or length_unit"
+        pixel = asked.pixel_in_metres
+        require(pixel is not None, f"line {line}, column 1", f"{x[0]:g}, {x[1]:g}", needs)
+        assert pixel is not None
+        note = f"line {line}, column 1: counts samples, of {pixel:.6g} m each"
+        samples = samples._replace(x=x * pixel, notes=[note])
+        return _Raw(samples, Scale(1.0, "pixel"), f"line {line}, column 2")
+    needs = "none: the file has a column of positions"
+    require(asked.pixel is None, "pixel", asked.pixel, needs)
+    _require_positions(x, table.lines, column=1)
+    scale, notes = scale_of(asked.length, headings.length, "length_unit")
+    samples = samples._replace(notes=notes)
+    return _Raw(samples, scale, f"line {line}, columns 1 and 2")
+
+
+def _are_lengths(stated: list[Stated]) -> bool:
+    """Whether the file gives a unit of positions that is one: samples are none."""
+    return bool(stated) and not any(
+        s.text.lower().startswith(("px", "pixel", "sample", "count")) for s in stated
+    )
+
+
+def _counts(x: np.ndarray) -> bool:
+    first = x[0]
+    return first in (0, 1) and x.size > 3 and np.array_equal(x, first + np.arange(x.size))
+
+
+def _trace(table: Table, x: np.ndarray, heights: np.ndarray, column: int) -> Samples:
+    lines = table.lines[None, :]
+    return Samples(x, heights[None, :], [], lines, np.full_like(lines, column))
+
+
+def _require_positions(x: np.ndarray, lines: np.ndarray, column: int) -> None:
+    lost = np.flatnonzero(np.isnan(x))
+    if lost.size:
+        place = f"line {lines[lost[0]]}, column {column}"
+        require(False, place, "missing", "a position")
+    back = np.flatnonzero(np.diff(x) <= 0) + 1
+    if back.size:
+        place = f"line {lines[back[0]]}, column {column}"
+        require(False, place, float(x[back[0]]), "increasing positions")
+
+
+def _is_grid(block: np.ndarray) -> bool:
+    """Whether columns are x, y and z on a grid, row by row or column by column."""
+    x, y = block[:, 0], block[:, 1]
+    if np.isnan(block[:, :2]).any():
+        return False
+    across, up = np.unique(x), np.unique(y)
+    size = across.size * up.size
+    return across.size > 3 and size == len(block) == len(np.unique(block[:, :2], axis=0))
+
+
+def _grid(table: Table, headings: Headings, asked: Asked) -> _Raw:
+    """A map: x, y and z in three columns."""
+    order = np.lexsort((table.block[:, 0], table.block[:, 1]))
+    rows = np.unique(table.block[:, 1]).size
+    across, _, heights = table.block[order].T.reshape(3, rows, -1)
+    lines = table.lines[order].reshape(rows, -1)
+    needs = "none: the file has positions"
+    require(asked.pixel is None, "pixel", asked.pixel, needs)
+    place = f"line {int(table.lines[0])}, columns 1 to 3"
+    scale, notes = scale_of(asked.length, headings.length, "length_unit")
+    note = f"{place}: x, y and z, {rows} rows of {across.shape[1]}"
+    samples = Samples(across[0], heights, [note, *notes], lines, np.full_like(lines, 3))
+    return _Raw(samples, scale, place)
+
+
+def _map(table: Table, headings: Headings, asked: Asked) -> _Raw:
+    """A map, one row a line; or a trace in one column."""
+    block, line = table.block, int(table.lines[0])
+    place = f"line {line}, column 1"
+    one = block.shape[1] == 1
+    heights = block.T if one else block
+    for key, size in zip("hw", heights.shape, strict=True):
+        said = headings.sizes.get(key, size)
+        require(said == size, key, said, f"{size}, the size of the block of numbers")
+    pixel = _pixel(headings, asked, heights.shape[1])
+    if block.shape[1] == 3 and pixel is None:
+        needs = "2 (positions, heights), x y z on a grid, or pixel for a map"
+        require(False, f"line {line}", "3 columns", needs)
+    needs = "the distance of samples in m, or in length_unit"
+    require(pixel is not None, "pixel", "nothing", needs)
+    counts = not one and (_counts(block[:, 0]) or _counts(block[0]))
+    require(not counts, place, _COUNTS, "heights: numbers of rows or columns are none")
+    assert pixel is not None
+    lines, columns = np.broadcast_arrays(
+        table.lines[:, None], np.arange(1, block.shape[1] + 1)
+    )
+    if one:
+        lines, columns = lines.T, columns.T
+    x = pixel.value * np.arange(heights.shape[1])
+    samples = Samples(x, heights, [], lines, columns)
+    return _Raw(samples, Scale(1.0, pixel.said), place)
+
+
+def _pixel(headings: Headings, asked: Asked, count: int) -> Scale | None:
+    """Distance of samples in m: the user's, the file's, or from its width."""
+    pixel = asked.pixel_in_metres
+    if pixel is not None:
+        return Scale(pixel, "pixel")
+    if headings.pixel is not None:
+        return Scale(headings.pixel, "the pixel size")
+    return None if headings.width is None else Scale(headings.width / count, "the width")
