@@ -91,7 +91,7 @@ def sweeps(count: int, seed: int, folder: Path) -> Iterator[tuple[str, str, xr.D
 
 
 class Row(NamedTuple):
-    """One interval: whether it holds the predicted order, its width, and by a law or not."""
+    """One interval: whether it holds the predicted order, its width, whether by a law."""
 
     held: bool
     width: float
