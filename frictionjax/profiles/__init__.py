@@ -2,6 +2,7 @@
 
 from .custom import Custom as Custom
 from .fourier import Fourier as Fourier
+from .polyline import Polyline as Polyline
 from .profile import AbstractProfile as AbstractProfile
 from .sine import Sine as Sine
 from .spline import Spline as Spline
