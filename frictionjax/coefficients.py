@@ -1,5 +1,6 @@
 """Friction coefficients of the limit system (Lemma 2, Lemma 3)."""
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -20,7 +21,8 @@ class Coefficients(eqx.Module):
     `alpha`: normal force F'(0) in N. `a`: A'(0). `omega_plus`, `omega_minus`: extreme
     slopes of the surface. `mu_plus`, `mu_minus`: extreme slopes as the bristle sees them.
     `rho_plus` > 0 > `rho_minus`: friction forces in N against motion to the right and to
-    the left.
+    the left. `omega_plus_error` and the like: how far off they may be where the surface is
+    known by samples (`SlopeErrors`); None where it is exact, or nothing says so.
     """
 
     rho_plus: Real
@@ -31,6 +33,10 @@ class Coefficients(eqx.Module):
     omega_minus: OfBristle = None
     mu_plus: OfBristle = None
     mu_minus: OfBristle = None
+    omega_plus_error: OfBristle = None
+    omega_minus_error: OfBristle = None
+    rho_plus_error: OfBristle = None
+    rho_minus_error: OfBristle = None
 
     def __repr__(self) -> str:
         if not is_known(self):
@@ -59,6 +65,23 @@ def coefficients(potential: AbstractPotential) -> Coefficients:
         omega_minus=extrema.min,
         mu_plus=mu_plus,
         mu_minus=mu_minus,
+    )
+
+
+def with_errors(found: Coefficients, plus: Real, minus: Real) -> Coefficients:
+    """The coefficients with errors of the steepest slopes, and of rho by these.
+
+    `d rho/d omega = alpha/(1 + a omega)^2`, an end at a time.
+    """
+    by_plus = jnp.abs(found.alpha) * plus / (1 + found.a * found.omega_plus) ** 2
+    by_minus = jnp.abs(found.alpha) * minus / (1 + found.a * found.omega_minus) ** 2
+    presses = found.alpha > 0
+    return dataclasses.replace(
+        found,
+        omega_plus_error=plus,
+        omega_minus_error=minus,
+        rho_plus_error=jnp.where(presses, by_plus, by_minus),
+        rho_minus_error=jnp.where(presses, by_minus, by_plus),
     )
 
 

@@ -5,4 +5,6 @@ from .fourier import Fourier as Fourier
 from .polyline import Polyline as Polyline
 from .profile import AbstractProfile as AbstractProfile
 from .sine import Sine as Sine
+from .slope_errors import SlopeErrors as SlopeErrors
+from .slope_errors import SlopesUndetermined as SlopesUndetermined
 from .spline import Spline as Spline

@@ -60,8 +60,8 @@ class Polyline(AbstractProfile):
         if is_known(self.x, self.heights, self.radius):
             _require_points(self.x, self.heights)
             require_real("profile.radius", self.radius, "radius > 0", lambda r: r > 0)
-            known = (np.asarray(v) for v in (self.x, self.heights, self.radius))
-            found = _corners(*known, np)
+            known = [np.asarray(v) for v in (self.x, self.heights, self.radius)]
+            found = _corners(known[0], known[1], known[2], np)
             _require_room(found, float(self.radius))
             self.points = _resolving(found)
 

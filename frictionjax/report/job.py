@@ -2,6 +2,7 @@
 
 import math
 import re
+import warnings
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ from ..measured import (
     read_heights,
     row_coefficients,
 )
+from ..profiles import SlopesUndetermined
 from ..scene import Scene
 from ..scene_files import default_study, load_study
 
@@ -63,9 +65,36 @@ def read_job(
 ) -> Job:
     """The scene of a file (None: the embedded one), its bristle and surface exchanged.
 
-    `fit`: `period`, `harmonics`, `row` of the measured surface. Raises `ValueError`, one
-    line, for whatever is wrong.
+    `fit`: `period`, `harmonics`, `row`, `smoothing` of the measured surface. What warns of
+    the surface is a note. Raises `ValueError`, one line, for whatever is wrong.
     """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", SlopesUndetermined)
+        job = _read_job(path, bristle, heights, pixel, height_scale, **fit)
+    return job._replace(notes=job.notes + _said_of(caught))
+
+
+def _said_of(caught: list[warnings.WarningMessage]) -> list[str]:
+    """Notes of what warned of the surface; other warnings go on."""
+    notes: dict[str, None] = {}
+    for warning in caught:
+        if issubclass(warning.category, SlopesUndetermined):
+            notes[f"Note: {warning.message}"] = None
+        else:
+            warnings.warn_explicit(
+                warning.message, warning.category, warning.filename, warning.lineno
+            )
+    return list(notes)
+
+
+def _read_job(
+    path: str | None,
+    bristle: str | None,
+    heights: str | None,
+    pixel: float | None,
+    height_scale: float | None,
+    **fit: Any,
+) -> Job:
     file = default_study() if path is None else load_study(path)
     study = {**default_study().study, **file.study}
     chosen = file.scene.bristle if bristle is None else named_bristle(bristle)
@@ -77,13 +106,13 @@ def read_job(
         return Job(exchanged(file.scene, file.scene.profile, chosen), study, [], None)
     measured = read_heights(heights, pixel, height_scale)
     harmonics = 8 if fit["harmonics"] is None else fit["harmonics"]
-    row, period = fit["row"], fit["period"]
-    found = fit_profile(measured, period, harmonics, row)
+    row, period, smoothing = fit["row"], fit["period"], fit.get("smoothing")
+    found = fit_profile(measured, period, harmonics, row, smoothing)
     scene = exchanged(file.scene, found.profile, chosen)
     notes = _notes(heights, measured, found, row)
     rows = None
     if measured.heights.shape[0] > 1:
-        rows = row_coefficients(measured, chosen, harmonics, found.period)
+        rows = row_coefficients(measured, chosen, harmonics, found.period, smoothing)
     return Job(scene, study, notes, rows, row)
 
 
@@ -100,6 +129,8 @@ def _notes(path: str, measured: Measured, found: Any, row: int | None) -> list[s
         f"{path}: {size}; period {found.period:.4g} m, the surface's real eps, "
         f"explains {found.explained:.0%} of the variance"
     ]
+    if found.smoothing is not None:
+        lines.append(f"Smoothed by a Gaussian filter of cut-off {found.smoothing:.4g} m")
     periods = float(np.ptp(measured.x)) / found.period
     if periods < _FEW_PERIODS or found.explained < 0.5:
         lines.append(

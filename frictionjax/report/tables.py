@@ -58,9 +58,40 @@ def coefficients_of(found: Coefficients) -> dict[str, float]:
     return {name: numbers[name] for name, _, _ in _LAW if name in numbers}
 
 
+def errors_of(
+    found: Coefficients, standard: dict[str, float] | None = None
+) -> dict[str, float]:
+    """Errors by name, of what samples leave of the surface; empty where nothing is known.
+
+    `standard`: errors over the rows of a map. They see scatter and no corners, the others
+    both: the larger one of each is the error.
+    """
+    known = dict(standard or {})
+    if found.omega_plus_error is None:
+        return known
+    for side in ("plus", "minus"):
+        omega, mu = (float(getattr(found, f"{name}_{side}")) for name in ("omega", "mu"))
+        of_omega = float(getattr(found, f"omega_{side}_error"))
+        known |= _larger(known, f"omega_{side}", of_omega)
+        known |= _larger(known, f"mu_{side}", of_omega * (mu / omega) ** 2)
+        known |= _larger(known, f"rho_{side}", float(getattr(found, f"rho_{side}_error")))
+    plus, minus = float(found.rho_plus), float(found.rho_minus)
+    parts = float(found.rho_plus_error) / abs(plus) + float(found.rho_minus_error) / abs(
+        minus
+    )
+    return known | _larger(known, "ratio", abs(plus / minus) * parts)
+
+
+def _larger(known: dict[str, float], name: str, error: float) -> dict[str, float]:
+    return {name: max(known.get(name, 0.0), error)}
+
+
 def coefficient_table(found: Coefficients, error: dict[str, float] | None = None) -> str:
-    """Friction coefficients with their units and meanings, standard errors if known."""
-    numbers = coefficients_of(found)
+    """Friction coefficients with their units and meanings, and errors if known.
+
+    `error`: standard errors over the rows of a map, beside those of `errors_of`.
+    """
+    numbers, error = coefficients_of(found), errors_of(found, error)
     rows = [
         (name, _signed(numbers[name]), *_plus_minus(name, error), unit.ljust(4), meaning)
         for name, unit, meaning in _LAW
