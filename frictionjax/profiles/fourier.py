@@ -10,7 +10,13 @@ from jaxtyping import Array, Float
 from ..arguments import Real, as_real, is_concrete, is_known, known_numbers, require
 from ..trigonometry import fourier_sum
 from .heights import HeightsFit, fit_heights
-from .slope_errors import AbstractSampled, SlopeErrors, of_waves, warn_of
+from .slope_errors import (
+    AbstractSampled,
+    SlopeErrors,
+    of_waves,
+    require_slope_error,
+    warn_of,
+)
 from .steepest import Waves, extreme_slopes
 
 
@@ -41,6 +47,7 @@ class Fourier(AbstractSampled):
         require(np.all(np.isfinite(cos)), "profile.cos", cos, "finite coefficients")
         require(np.all(np.isfinite(sin)), "profile.sin", sin, "finite coefficients")
         require(np.any(cos) or np.any(sin), "profile.cos", cos, "a coefficient != 0")
+        require_slope_error(self.slope_error)
 
     def __call__(self, y: Real) -> Real:
         return fourier_sum(self.cos, self.sin, jnp.asarray(y))

@@ -41,7 +41,7 @@ class SeriesFit(NamedTuple):
 
 _MOST = 16  # harmonics that decide on the period
 _ROUNDING = 1e-12  # of the largest height: what varies less is rounding
-_BEYOND = 4  # times the harmonics asked for, to see what they leave out
+_BEYOND, _SEEN = 4, 128  # times the harmonics asked for, and how many, to see the rest
 _LONGEST = 2.9  # periods in the trace that a multiple of the strongest wave needs
 
 
@@ -141,7 +141,9 @@ def fit_heights(
     solution = np.linalg.lstsq(design, heights, rcond=None)[0]
     left = float(np.mean((heights - design @ solution) ** 2))
     c = _complex(solution) / period
-    waves = _waves(x, heights, period, max(harmonics, min(_BEYOND * harmonics, most)))
+    waves = _waves(
+        x, heights, period, max(harmonics, min(_BEYOND * harmonics, most, _SEEN))
+    )
     if smoothing is not None:
         gain = gaussian_gain(smoothing, period, max(harmonics, waves.c.size))
         c, waves = gain[:harmonics] * c, waves._replace(gain=gain[: waves.c.size])

@@ -3,11 +3,11 @@
 import abc
 import math
 import warnings
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arguments import require
+from ..arguments import is_known, known_numbers, require
 from .profile import AbstractProfile
 from .steepest import Waves, error_of, noise_of, series, steepest
 
@@ -70,6 +70,15 @@ class AbstractSampled(AbstractProfile):
     @abc.abstractmethod
     def slope_errors(self) -> SlopeErrors | None:
         """How far its steepest slopes may be off; None where nothing says so."""
+
+
+def require_slope_error(given: Any) -> None:
+    """Check `slope_error` of a profile: None, or two numbers >= 0."""
+    if given is None or not is_known(given):
+        return
+    error = known_numbers(given)
+    good = error.shape == (2,) and bool(np.all(error >= 0))
+    require(good, "profile.slope_error", given, "two numbers >= 0, or None")
 
 
 def of_waves(slopes: tuple[float, float], waves: Waves, samples=None) -> SlopeErrors:

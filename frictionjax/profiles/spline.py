@@ -7,7 +7,14 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..arguments import Real, as_real, is_concrete, is_known, known_numbers, require
-from .slope_errors import AbstractSampled, SlopeErrors, of_heights, require_once, warn_of
+from .slope_errors import (
+    AbstractSampled,
+    SlopeErrors,
+    of_heights,
+    require_once,
+    require_slope_error,
+    warn_of,
+)
 from .smoothing import gaussian_gain
 
 
@@ -38,6 +45,7 @@ class Spline(AbstractSampled):
         if is_known(heights):
             _require_heights(heights)
         self.slope_error = None if slope_error is None else as_real(slope_error)
+        require_slope_error(self.slope_error)
         self.coefficients = _coefficients(heights, jnp)
         if is_concrete(heights):
             warn_of(self.slope_errors(), heights.shape[0], stacklevel=5)  # equinox calls

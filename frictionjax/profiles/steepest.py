@@ -17,7 +17,7 @@ import numpy as np
 _LADDER = (2, 4, 8)  # of the last harmonic that stands out: how many the windows are of
 _CERTAIN = 2.0  # standard deviations
 _SHARE = 1.1  # of what windows and interpolant differ by: they err a little themselves
-_APART = 3.5  # standard deviations of a band of harmonics above its noise
+_APART, _MORE = 3.5, 4.0  # standard deviations of a band above its noise, and a little
 _FEW, _TOO_FEW = 3.0, 0.6  # a flank of 2 samples is known to half, one of 1 not at all
 _LET_THROUGH = 0.75  # of the noise of slopes, by windows
 _ROUNDING = 1e-15
@@ -50,12 +50,10 @@ class Steepest(NamedTuple):
 def series(c: np.ndarray, count: int, order: int = 0) -> np.ndarray:
     """`Re sum_k c_k exp(2 pi i k y)`, or a derivative, at y = 0, 1/count, ..."""
     k = np.arange(1, c.size + 1)
-    waves = c * (2j * np.pi * k) ** order
-    if count > 2 * c.size:
-        spectrum = np.zeros(count // 2 + 1, complex)
-        spectrum[1 : c.size + 1] = 0.5 * count * waves
-        return np.fft.irfft(spectrum, count)
-    return (np.exp(2j * np.pi * np.outer(np.arange(count) / count, k)) @ waves).real
+    spectrum = np.zeros(count, complex)
+    # On so few places waves that differ by `count` are the same.
+    np.add.at(spectrum, k % count, count * c * (2j * np.pi * k) ** order)
+    return np.fft.ifft(spectrum).real
 
 
 def steepest(waves: Waves, samples: np.ndarray | None = None) -> Steepest:
@@ -95,13 +93,13 @@ def _of_noise(rivals: int, deviation: float) -> float:
 def last_of_note(waves: Waves) -> int:
     """The last harmonic that stands out of the noise with its neighbours; 1 at least."""
     energy = np.abs(waves.c / np.maximum(waves.noise, 1e-300)) ** 2
-    last = 1
-    for k in range(1, energy.size + 1):
-        band = energy[k - 1 : k + max(1, k // 3)]
-        mean, spread = 2 * band.size, 2 * math.sqrt(band.size)
-        if float(np.sum(band)) > mean + _APART * spread + 4:
-            last = k
-    return last
+    summed = np.append(0.0, np.cumsum(energy))
+    k = np.arange(1, energy.size + 1)
+    ends = np.minimum(k + np.maximum(1, k // 3), energy.size)
+    size = ends - k + 1
+    # Of `size` harmonics in noise the energy is 2 size, give or take 2 sqrt(size).
+    stands = summed[ends] - summed[k - 1] > 2 * size + 2 * _APART * np.sqrt(size) + _MORE
+    return int(max(k[stands], default=1))
 
 
 def _by_windows(heights: np.ndarray, deviation: float) -> Steepest:

@@ -104,7 +104,8 @@ def coefficient_table(found: Coefficients, error: dict[str, float] | None = None
 def _plus_minus(name: str, error: dict[str, float] | None) -> tuple[str, ...]:
     if not error:
         return ()
-    return ("" if name in _BRISTLE else f"{error[name]:.2g}",)
+    known = name in error and name not in _BRISTLE
+    return (f"{error[name]:.2g}" if known else "",)
 
 
 def row_table(rows: RowCoefficients) -> str:
