@@ -22,6 +22,7 @@ class Corners(NamedTuple):
     `ends`: of the zones that belong to a point, in the middle of what is straight of the
     flank after it. `before`, `turn`: slope of the flank before the point, and by how much
     the next is larger. `width`: of the corner, half of it on either side of the point.
+    `straight`: what two corners leave of the flank after the point.
     """
 
     ends: Any
@@ -72,6 +73,7 @@ class Polyline(AbstractProfile):
         # The last zone ends where the first begins, a little before or after y = 1.
         y = jnp.where(y >= corners.ends[-1], y - 1, y)
         y = jnp.where(y < corners.ends[-1] - 1, y + 1, y)
+        # (All corners added up: 2.4 times the time for 4 points, 12 times for 32.)
         zone = jnp.sum(y[..., None] >= corners.ends[:-1], axis=-1)
         width = jnp.maximum(corners.width, _NARROWEST)[zone]
         along = y - self.x[zone]

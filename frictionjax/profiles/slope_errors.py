@@ -16,12 +16,12 @@ _FEWEST = 8  # heights that say anything of what is between them
 _DESIGNED = 16  # heights: fewer are points of a design, whose spline is what is meant
 _SAME = 1e-9  # of the range: an end point that was copied
 _ALIKE = 0.02  # of the range: one that was measured again
-_SMOOTHER, _AS_SHARP = 0.3, 2.0  # the seam without the point, in terms of it with it
+_SMOOTHER, _AS_SHARP = 0.3, 2.0  # the seam without the point, in terms of with it
 
 ADVICE = (
-    "Straight flanks with corners: profiles.Polyline(x, heights, radius). Noise: "
-    "smoothing of a stated length, Fourier.from_heights(..., smoothing=) or "
-    "Spline.smoothed(heights, length)"
+    "Straight flanks with corners are profiles.Polyline(x, heights, radius); noise asks "
+    "for smoothing of a stated length: Fourier.from_heights(..., smoothing=), --smoothing "
+    "or profiles.Spline.smoothed(heights, length)"
 )
 REPEATED = "the point y = 1 is the first one again and is not repeated"
 
@@ -121,9 +121,9 @@ def warn_of(
 def require_once(heights: np.ndarray) -> None:
     """Check that the last height is not the first one again, at y = 1.
 
-    It is where the two agree and the seam is smoother by far without the last one. Raises
-    `ValueError` where it is a copy; warns where it may be one: measured again, or at a
-    corner, which is as sharp with it.
+    It is where the two agree, no other neighbours do, and the seam is smoother without
+    the last one: a `ValueError`. A warning where it may be: as sharp without it, at a
+    corner, or nearly equal and smoother by far, measured again.
     """
     if heights.size < 5:
         return
@@ -133,7 +133,7 @@ def require_once(heights: np.ndarray) -> None:
     smoother = _seam(heights[:-1]) / max(_seam(heights), 1e-300)
     alone = apart[-1] <= _SAME * size < np.min(apart[:-1])
     said = f"{heights[0]:.6g} and {heights[-1]:.6g} at its ends"
-    copied = alone and smoother < _SMOOTHER
+    copied = alone and smoother < 1
     require(not copied, "profile.heights", said, f"one period: {REPEATED}")
     if smoother < _SMOOTHER or (alone and smoother < _AS_SHARP):
         text = f"profile.heights = {said}: leave out the last if it is y = 1: {REPEATED}"

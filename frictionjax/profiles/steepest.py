@@ -20,6 +20,7 @@ _SHARE = 1.1  # of what windows and interpolant differ by: they err a little the
 _APART, _MORE = 3.5, 4.0  # standard deviations of a band above its noise, and a little
 _FEW, _TOO_FEW = 3.0, 0.6  # a flank of 2 samples is known to half, one of 1 not at all
 _LET_THROUGH = 0.75  # of the noise of slopes, by windows
+_FINE, _STEPS = 16, 3  # places in the shortest wave, and Newton steps from the best
 _ROUNDING = 1e-15
 
 
@@ -79,9 +80,8 @@ def steepest(waves: Waves, samples: np.ndarray | None = None) -> Steepest:
 
 def _by_waves(c: np.ndarray, deviation: float) -> Steepest:
     """From waves that end in noise, so that no corner shows above it."""
-    slopes = series(c, 8 * c.size, order=1)
-    top = _summit(slopes, smooth=True)
-    rivals = int(np.sum(slopes[::4] > top - 2 * deviation))
+    top = _largest_slope(c)
+    rivals = int(np.sum(series(c, 2 * c.size, order=1) > top - 2 * deviation))
     return Steepest(top, _of_noise(rivals, deviation))
 
 
@@ -120,16 +120,15 @@ def _by_windows(heights: np.ndarray, deviation: float) -> Steepest:
     return Steepest(sixth, 0.5 * abs(sixth - fourth) + lost + noise)
 
 
-def _summit(values: np.ndarray, smooth: bool = False) -> float:
+def _summit(values: np.ndarray) -> float:
     """Largest value of a periodic sequence, between its entries too.
 
-    By the parabola; where values need not be smooth, as bent as the flattest of three: a
-    plateau has no summit beside it.
+    By the parabola, as bent as the flattest of three: a plateau has no summit beside it.
     """
     top = int(np.argmax(values))
     near = values[np.arange(top - 2, top + 3) % values.size]
     bends = 2 * near[1:-1] - near[:-2] - near[2:]
-    bend = float(bends[1] if smooth else np.min(bends))
+    bend = float(np.min(bends))
     if bend <= 0:
         return float(values[top])
     shift = np.clip((near[3] - near[1]) / (2 * bends[1]), -0.5, 0.5)
@@ -138,8 +137,19 @@ def _summit(values: np.ndarray, smooth: bool = False) -> float:
 
 def extreme_slopes(c: np.ndarray) -> tuple[float, float]:
     """Largest and smallest slope of `Re sum_k c_k exp(2 pi i k y)`."""
-    slopes = series(c, 32 * max(4, c.size), order=1)
-    return _summit(slopes, smooth=True), -_summit(-slopes, smooth=True)
+    return _largest_slope(c), -_largest_slope(-c)
+
+
+def _largest_slope(c: np.ndarray) -> float:
+    count = _FINE * max(2, c.size)
+    slopes = series(c, count, order=1)
+    turns = 2j * np.pi * np.arange(1, c.size + 1)
+    y = int(np.argmax(slopes)) / count
+    for _ in range(_STEPS):
+        waves = c * turns**2 * np.exp(turns * y)
+        bend, next_bend = np.sum(waves).real, np.sum(waves * turns).real
+        y -= float(np.clip(bend / min(next_bend, -1e-300), -0.5 / count, 0.5 / count))
+    return max(float(np.max(slopes)), float(np.sum(c * turns * np.exp(turns * y)).real))
 
 
 def error_of(slope: float, reference: Steepest) -> float:
