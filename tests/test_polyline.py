@@ -19,6 +19,11 @@ SURFACES = {  # four points each: one program for all
     "a groove with flat land": ([0.3, 0.45, 0.5, 0.9], [0.0, -0.03, -0.03, 0.0], 0.05),
     "corners that touch": ([0.0, 0.25, 0.5, 0.75], [0.0, 0.025, 0.0, 0.025], 0.8333333),
     "a corner over the seam": ([0.01, 0.4, 0.7, 0.95], [0.0, 0.04, 0.01, 0.03], 0.03),
+    "a corner into the next period": (
+        [0.05, 0.3, 0.6, 0.99],
+        [0.03, 0.01, 0.04, 0.0],
+        0.03,
+    ),
 }
 
 
