@@ -27,7 +27,11 @@ REPEATED = "the point y = 1 is the first one again and is not repeated"
 
 
 class SlopesUndetermined(UserWarning):
-    """Samples that determine a steepest slope, and so friction, to 10% or worse."""
+    """Samples that determine a steepest slope, and so friction, to 10% or worse.
+
+    It is no error at any size: the profile is a surface all the same, if not the one that
+    was measured, and what is said of it is right.
+    """
 
 
 class SlopeErrors(NamedTuple):

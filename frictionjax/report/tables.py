@@ -1,5 +1,6 @@
 """Plain-text tables with aligned columns."""
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -75,11 +76,12 @@ def errors_of(
         known |= _larger(known, f"omega_{side}", of_omega)
         known |= _larger(known, f"mu_{side}", of_omega * (mu / omega) ** 2)
         known |= _larger(known, f"rho_{side}", float(getattr(found, f"rho_{side}_error")))
-    plus, minus = float(found.rho_plus), float(found.rho_minus)
-    parts = float(found.rho_plus_error) / abs(plus) + float(found.rho_minus_error) / abs(
-        minus
+    parts = (
+        float(getattr(found, f"rho_{side}_error")) / float(getattr(found, f"rho_{side}"))
+        for side in ("plus", "minus")
     )
-    return known | _larger(known, "ratio", abs(plus / minus) * parts)
+    ratio = abs(coefficients_of(found)["ratio"])
+    return known | _larger(known, "ratio", ratio * math.hypot(*parts))
 
 
 def _larger(known: dict[str, float], name: str, error: float) -> dict[str, float]:
