@@ -1,6 +1,7 @@
 """The command line. Only click is imported here: `--help` must not wait for JAX."""
 
 import json
+import math
 import os
 import sys
 import threading
@@ -64,6 +65,12 @@ _surface = _options(
     ),
     click.option("--harmonics", type=click.IntRange(1), help="Of its periodic part. [8]"),
     click.option("--period", type=float, help="In m; found in the data otherwise."),
+    click.option(
+        "--smoothing",
+        type=float,
+        metavar="LENGTH",
+        help="Cut-off in m of a Gaussian filter of the surface.",
+    ),
     click.option(
         "--pixel", type=float, help="Distance of samples in m, or in --length-unit."
     ),
@@ -147,14 +154,17 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
     _start()
     from .friction_law import friction as friction_of
     from .report.job import joined, read_job
-    from .report.tables import coefficient_table, coefficients_of, row_table
+    from .report.tables import coefficient_table, coefficients_of, errors_of, row_table
 
     job = read_job(scene, **surface)
     law = friction_of(job.scene)
     if as_json:
         numbers: dict[str, Any] = coefficients_of(law)
+        error = errors_of(law, job.error)
+        if job.rows is not None or error:
+            finite = {name: e if math.isfinite(e) else None for name, e in error.items()}
+            numbers["error"] = finite
         if job.rows is not None:
-            numbers["error"] = job.error
             numbers["rows"] = {"mean": job.rows.mean, "std": job.rows.std}
         for line in job.notes[1:]:
             click.echo(line, err=True)

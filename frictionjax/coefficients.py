@@ -1,5 +1,6 @@
 """Friction coefficients of the limit system (Lemma 2, Lemma 3)."""
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -29,6 +30,9 @@ class Coefficients(eqx.Module):
     alpha < 0, for every bristle. `normal = alpha - a rho`: on a symmetric surface friction
     depends on direction only because the normal force does. (The paper calls alpha the
     normal force, and mu = rho/alpha is friction per normal force at rest only.)
+
+    `omega_plus_error` and the like: how far off they may be where the surface is known by
+    samples (`SlopeErrors`); None where it is exact, or nothing says so.
     """
 
     rho_plus: Real
@@ -41,6 +45,10 @@ class Coefficients(eqx.Module):
     mu_minus: OfBristle = None
     normal_plus: OfBristle = None
     normal_minus: OfBristle = None
+    omega_plus_error: OfBristle = None
+    omega_minus_error: OfBristle = None
+    rho_plus_error: OfBristle = None
+    rho_minus_error: OfBristle = None
 
     def __repr__(self) -> str:
         if not is_known(self):
@@ -73,6 +81,23 @@ def coefficients(potential: AbstractPotential) -> Coefficients:
         mu_minus=mu_minus,
         normal_plus=alpha - a * rho_plus,  # = F'(0)/(1 + a omega), the steepest place's
         normal_minus=alpha - a * rho_minus,
+    )
+
+
+def with_errors(found: Coefficients, plus: Real, minus: Real) -> Coefficients:
+    """The coefficients with errors of the steepest slopes, and of rho by these.
+
+    `d rho/d omega = alpha/(1 + a omega)^2`, an end at a time.
+    """
+    by_plus = jnp.abs(found.alpha) * plus / (1 + found.a * found.omega_plus) ** 2
+    by_minus = jnp.abs(found.alpha) * minus / (1 + found.a * found.omega_minus) ** 2
+    presses = found.alpha > 0
+    return dataclasses.replace(
+        found,
+        omega_plus_error=plus,
+        omega_minus_error=minus,
+        rho_plus_error=jnp.where(presses, by_plus, by_minus),
+        rho_minus_error=jnp.where(presses, by_minus, by_plus),
     )
 
 

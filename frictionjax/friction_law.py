@@ -10,8 +10,9 @@ from jaxtyping import Array
 from .admissibility import admissible_coefficients
 from .arguments import Real, require, require_x64
 from .bristles import AbstractBristle
-from .coefficients import Coefficients
+from .coefficients import Coefficients, with_errors
 from .potentials import AbstractPotential, BristlePotential, potential
+from .profiles.slope_errors import AbstractSampled
 
 _STEPS = 6  # of Newton: H' is a parabola at worst, where xi is close to rho
 
@@ -20,7 +21,9 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
     """Friction coefficients of a scene, or of a profile and a bristle.
 
     `friction(scene)` or `friction(profile, bristle)`; no trajectory is built. Scalars,
-    differentiable in every parameter of the parts (`jax.grad` through `rho_plus`).
+    differentiable in every parameter of the parts (`jax.grad` through `rho_plus`). Of a
+    surface known by samples `omega_plus_error`, `rho_plus_error` and the like say how well
+    the samples determine them.
 
     Raises `ValueError` naming the hypothesis of the paper that fails: `omega_plus > 0 >
     omega_minus`, `alpha != 0`, `1 + a omega > 0` at both ends, the bristle's own bounds.
@@ -38,7 +41,15 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
     else:
         wiggle = potential(scene_or_profile, bristle)
     require_x64(wiggle)
-    return admissible_coefficients(wiggle)
+    return _with_errors_of_samples(wiggle, admissible_coefficients(wiggle))
+
+
+def _with_errors_of_samples(wiggle: AbstractPotential, found: Coefficients) -> Coefficients:
+    profile = wiggle.profile if isinstance(wiggle, BristlePotential) else None
+    known = profile.slope_errors() if isinstance(profile, AbstractSampled) else None
+    if known is None:
+        return found
+    return with_errors(found, jnp.asarray(known.error_plus), jnp.asarray(known.error_minus))
 
 
 def dissipation_potential(rho_plus: Real, rho_minus: Real, v: Real) -> Real:

@@ -1,6 +1,5 @@
 """Scene files: a scene and its study as TOML."""
 
-import dataclasses
 import inspect
 import tomllib
 from importlib import resources
@@ -18,7 +17,7 @@ from .potentials import BristlePotential
 from .scene import Scene
 
 _PARTS = {
-    "profile": (profiles, ("Sine", "Fourier", "Spline")),
+    "profile": (profiles, ("Sine", "Fourier", "Spline", "Polyline")),
     "bristle": (
         bristles,
         ("Homothetic", "VerticalSpring", "SlantedSpring", "AngularSpring"),
@@ -30,7 +29,7 @@ _TOP = ("duration", "z0")
 _STUDY = ("eps", "gamma", "accuracy")
 _READING = ("pixel", "height_scale")
 _WHOLE = ("harmonics", "row")
-_FIT = ("period", *_WHOLE)
+_FIT = ("period", "smoothing", *_WHOLE)
 
 
 _SAVED = "a profile and a bristle: what Python functions give cannot be saved"
@@ -197,10 +196,10 @@ def _entries_of(table: str, part: eqx.Module) -> dict[str, Any]:
     module, kinds = _PARTS[table]
     saved = kind in kinds and type(part) is getattr(module, kind)
     require(saved, f"scene.{table}", kind, f"one of {', '.join(kinds)}: no functions")
-    names = [field.name for field in dataclasses.fields(part)]
-    if isinstance(part, profiles.Spline):
-        names = ["heights"]
-    return {"kind": kind} | {name: _plain(getattr(part, name)) for name in names}
+    names = list(inspect.signature(type(part).__init__).parameters)[1:]  # without self
+    given = {name: getattr(part, name) for name in names}
+    known = {name: value for name, value in given.items() if value is not None}
+    return {"kind": kind} | {name: _plain(value) for name, value in known.items()}
 
 
 def _plain(value: Any) -> Any:

@@ -111,7 +111,10 @@ def test_a_slanted_spring_upright_is_a_vertical_one():
     upright = fx.friction(WAVES, fx.bristles.SlantedSpring(2.0, 1.3, 1.0, 0.0))
     vertical = fx.friction(WAVES, fx.bristles.VerticalSpring(2.0, 1.3, 1.0))
     for name, value in vars(vertical).items():
-        np.testing.assert_allclose(getattr(upright, name), value, rtol=1e-14, err_msg=name)
+        if value is not None:
+            np.testing.assert_allclose(
+                getattr(upright, name), value, rtol=1e-14, err_msg=name
+            )
 
 
 def build_spline(p):

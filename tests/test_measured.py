@@ -13,6 +13,7 @@ from frictionjax.measured import (
     read_heights,
     row_coefficients,
 )
+from frictionjax.profiles.steepest import extreme_slopes
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 BRISTLE = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
@@ -155,6 +156,7 @@ def test_one_row():
         fit_profile(measured, 1e-5, 2, row=6)
 
 
+@pytest.mark.filterwarnings("ignore::frictionjax.profiles.SlopesUndetermined")
 def test_coefficients_over_rows():
     measured = grooves(noise=0.3)
     found = row_coefficients(measured, BRISTLE, harmonics=2)
@@ -168,12 +170,27 @@ def test_coefficients_over_rows():
     assert 0 < found.std["rho_plus"] < 0.3 * found.mean["rho_plus"]
 
 
+@pytest.mark.filterwarnings("ignore::frictionjax.profiles.SlopesUndetermined")
 def test_error_of_the_mean_profile_is_what_fresh_noise_shows():
     maps = [grooves(20, noise=0.3, seed=seed) for seed in range(30)]
     laws = [fx.friction(fit_profile(m, 1e-5, 2).profile, BRISTLE) for m in maps]
     scatter = np.std([float(law.rho_plus) for law in laws])
     found = [row_coefficients(m, BRISTLE, 2, 1e-5).error["rho_plus"] for m in maps[:4]]
     assert np.mean(found) == pytest.approx(scatter, rel=0.4)
+
+
+def test_slopes_of_a_noisy_map_are_known_better_than_those_of_a_row():
+    exact = extreme_slopes(np.array([-0.02j, -0.004j]))
+    measured = grooves(60, noise=0.02)
+    found = fit_profile(measured, 1e-5, 3).slopes
+    one = fit_profile(measured, 1e-5, 3, row=0).slopes
+    for errors in (found, one):
+        assert abs(errors.omega_plus - exact[0]) < errors.error_plus
+        assert abs(errors.omega_minus - exact[1]) < errors.error_minus
+    assert found.relative < 0.4 * one.relative < 0.04
+    smooth = fit_profile(measured, 1e-5, 3, smoothing=5e-6)
+    assert smooth.smoothing == 5e-6
+    assert smooth.slopes.omega_plus < found.omega_plus
 
 
 def test_rows_that_the_bristle_does_not_admit_are_listed():

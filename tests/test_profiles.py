@@ -95,6 +95,7 @@ def test_what_is_not_periodic_and_smooth_is_named(case):
         fx.profiles.Custom(fn)
 
 
+@pytest.mark.filterwarnings("ignore::frictionjax.profiles.SlopesUndetermined")
 def test_no_false_alarm_on_smooth_functions():
     rng = np.random.default_rng(0)
     orders = np.arange(1, 65)

@@ -5,12 +5,14 @@ import pytest
 from sweep_like import EPS, sweep_like
 
 import frictionjax as fx
+from frictionjax.coefficients import with_errors
 from frictionjax.measured import RowCoefficients
 from frictionjax.report.job import number_list, read_job
 from frictionjax.report.place import filled, require_folder
 from frictionjax.report.tables import (
     coefficient_table,
     coefficients_of,
+    errors_of,
     failed_table,
     lemma_table,
     order_table,
@@ -161,6 +163,33 @@ def test_an_interrupted_folder_is_left_alone(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         work()
     assert not list(tmp_path.iterdir())
+
+
+def test_a_sawtooth_in_a_file_is_told_what_its_samples_leave_open(tmp_path):
+    x = np.arange(320) * 1e-5 / 64
+    heights = 1e-5 * np.interp(x * 1e5 % 1, [0.0, 0.8, 1.0], [0.0, 0.05, 0.0])
+    np.savetxt(tmp_path / "saw.txt", np.stack([x, heights], axis=1))
+    fit = {"heights": tmp_path / "saw.txt", "period": 1e-5, "harmonics": 3, "row": None}
+    job = read_job(None, **fit)
+    (note,) = [line for line in job.notes if "steepest slopes open" in line]
+    assert note.startswith("Note: the samples leave")
+    errors = errors_of(fx.friction(job.scene))
+    assert errors["omega_plus"] > 0.02
+    assert set(errors) == set(coefficients_of(LAW)) - {"alpha", "a"}
+    smooth = read_job(None, **fit, smoothing=5e-6)
+    assert any("cut-off 5e-06 m" in line for line in smooth.notes)
+    assert not any("steepest slopes open" in line for line in smooth.notes)
+    with pytest.raises(ValueError, match="smoothing = 1e-06: needs --heights FILE"):
+        read_job(None, period=None, harmonics=None, row=None, smoothing=1e-6)
+
+
+def test_of_two_errors_the_larger_is_shown():
+    found = with_errors(LAW, np.float64(0.01), np.float64(0.02))
+    standard = dict.fromkeys(coefficients_of(LAW), 0.015)
+    errors = errors_of(found, standard)
+    assert errors["omega_plus"] == 0.015
+    assert errors["omega_minus"] == 0.02
+    assert errors_of(LAW, standard) == standard
 
 
 def test_a_named_bristle_takes_the_place_of_the_scenes():

@@ -161,12 +161,20 @@ def test_unreadable_files(tmp_path):
 def measured_scene(folder, options):
     x = np.linspace(0.0, 1e-4, 401)
     trace = 1e-7 * np.sin(2 * np.pi * x / 1e-5)
-    np.savetxt(folder / "trace.txt", np.stack([x, trace], axis=1))
+    np.savetxt(folder / "trace.txt", np.stack([x, trace], axis=1), header="x (m) z (m)")
     profile = f'[profile]\nkind = "Fourier"\nheights = "trace.txt"\n{options}\n'
     start, _, rest = TEXT.partition("[profile]")
     path = folder / "scene.toml"
     path.write_text(start + profile + rest[rest.index("[bristle]") :])
     return path
+
+
+def test_a_measured_trace_is_smoothed(tmp_path):
+    options = "period = 1e-5\nharmonics = 3\nsmoothing = 1e-5"
+    one = fx.load_scene(measured_scene(tmp_path, options))
+    assert one.profile.sin == pytest.approx([0.005, 0.0, 0.0], abs=1e-8)
+    again = parse_scene(scene_document(one), "again").scene
+    np.testing.assert_array_equal(again.profile.slope_error, one.profile.slope_error)
 
 
 def test_a_measured_trace_is_a_profile(tmp_path):

@@ -9,7 +9,7 @@ import numpy as np
 from .. import bristles, profiles
 
 _BRISTLES = ("Homothetic", "VerticalSpring", "SlantedSpring", "AngularSpring")
-_PROFILES = ("Sine", "Fourier", "Spline")
+_PROFILES = ("Sine", "Fourier", "Spline", "Polyline")
 _PARTS: dict[str, Any] = {name: getattr(bristles, name) for name in _BRISTLES}
 _PARTS |= {name: getattr(profiles, name) for name in _PROFILES}
 
@@ -25,8 +25,10 @@ def part_entry(part: Any) -> dict[str, Any]:
     if kind == "Spline":
         count = np.size(part.coefficients)
         return {"kind": kind, "heights": [float(part(k / count)) for k in range(count)]}
-    names = [field.name for field in dataclasses.fields(part)]
-    return {"kind": kind} | {k: np.asarray(getattr(part, k)).tolist() for k in names}
+    names = [f.name for f in dataclasses.fields(part) if not f.metadata.get("static")]
+    given = {name: getattr(part, name) for name in names}
+    known = {name: value for name, value in given.items() if value is not None}
+    return {"kind": kind} | {k: np.asarray(value).tolist() for k, value in known.items()}
 
 
 def part_of(entry: dict[str, Any]) -> Any:

@@ -47,7 +47,7 @@ def dump(fit: Any) -> str:
     document["profile"] = {"cos": _rows(fit.profile.cos), "sin": _rows(fit.profile.sin)}
     document["bristles"] = [part_entry(bristle) for bristle in fit.bristles]
     document["coefficients"] = [
-        {name: float(value) for name, value in vars(found).items()}
+        {name: float(value) for name, value in vars(found).items() if value is not None}
         for found in fit.coefficients
     ]
     for name in ("targets", "residuals"):

@@ -1,9 +1,12 @@
 """Periodic profile of a measured surface."""
 
-from ..arguments import require
+from collections.abc import Sequence
+
+from ..arguments import as_real, require
 from ..profiles import Fourier
-from ..profiles.heights import HeightsFit, find_period
-from ..profiles.rows import mean_in_phase
+from ..profiles.heights import HeightsFit, SeriesFit
+from ..profiles.rows import fit_rows as fit_rows_of
+from ..profiles.rows import mean_in_phase, series_of
 from .files import Measured
 
 
@@ -12,32 +15,40 @@ def fit_profile(
     period: float | None = None,
     harmonics: int = 8,
     row: int | None = None,
+    smoothing: float | None = None,
 ) -> HeightsFit[Fourier]:
-    """One periodic profile of a measured surface, with `.period` and `.explained`.
+    """One periodic profile of a measured surface, as `Fourier.from_heights` returns it.
 
     `row`: which row, from 0; None: the mean over all rows, each moved so that its
     fundamental is in phase first, since grooves cross the rows of a map at an angle.
+    `smoothing`: cut-off in m of a Gaussian filter along the rows; None: no filter.
 
     Raises `ValueError` as `Fourier.from_heights`, and for a row that is not there.
     """
-    x, heights = measured.x, measured.heights
-    rows = heights.shape[0]
+    heights = measured.heights
     if row is not None:
+        rows = heights.shape[0]
         require(0 <= row < rows, "row", row, f"0 <= row <= {rows - 1}")
-        return Fourier.from_heights(x, heights[row], period, harmonics)
-    return Fourier.from_heights(x, heights, period, harmonics)
+        heights = heights[row]
+    return Fourier.from_heights(measured.x, heights, period, harmonics, smoothing)
 
 
 def fit_rows(
-    measured: Measured, period: float | None, harmonics: int
-) -> list[HeightsFit[Fourier]]:
-    """A profile for each row, with one period (m), found on all rows together if None."""
-    x, heights = measured.x, measured.heights
-    if period is None:
-        period = find_period(x, heights, harmonics)
-    return [Fourier.from_heights(x, row, period, harmonics) for row in heights]
+    measured: Measured,
+    period: float | None,
+    harmonics: int,
+    smoothing: float | None = None,
+) -> list[SeriesFit]:
+    """A fit of each row, with one period (m), found on all rows together if None."""
+    return fit_rows_of(measured.x, measured.heights, period, harmonics, smoothing)
 
 
-def mean_profile(fits: list[HeightsFit[Fourier]]) -> Fourier:
+def row_profile(fit: SeriesFit) -> Fourier:
+    """The profile of one row, for its friction alone."""
+    return Fourier(as_real(fit.cos), as_real(fit.sin))
+
+
+def mean_profile(fits: Sequence[SeriesFit]) -> Fourier:
     """Mean of profiles that differ in phase."""
-    return Fourier(*mean_in_phase([(f.profile.cos, f.profile.sin) for f in fits]))
+    mean = mean_in_phase([series_of(fit) for fit in fits])
+    return Fourier(as_real(mean.real), as_real(-mean.imag))

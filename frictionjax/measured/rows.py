@@ -9,9 +9,9 @@ from ..arguments import require
 from ..bristles import AbstractBristle
 from ..friction_law import friction
 from ..profiles import Fourier
-from ..profiles.heights import HeightsFit
+from ..profiles.heights import SeriesFit
 from .files import Measured
-from .fit import fit_rows, mean_profile
+from .fit import fit_rows, mean_profile, row_profile
 
 _LAW = (
     "rho_plus",
@@ -62,23 +62,24 @@ def row_coefficients(
     bristle: AbstractBristle,
     harmonics: int = 8,
     period: float | None = None,
+    smoothing: float | None = None,
 ) -> RowCoefficients:
     """Friction coefficients of every row of a map, fitted with one period for all.
 
     Besides the numbers of `friction`, `ratio` = -rho_plus/rho_minus and `explained`, the
     share of a row's variance that its periodic profile explains. Noise adds to the extreme
     slopes of a row, so the mean over rows lies above the friction of the mean profile,
-    whose standard error is `.error`.
+    whose standard error is `.error`. `smoothing`: as in `Fourier.from_heights`.
 
     Raises `ValueError` where the heights have no period, or no row is admissible.
     """
-    fits = fit_rows(measured, period, harmonics)
+    fits = fit_rows(measured, period, harmonics, smoothing)
     found: list[dict[str, float]] = []
     used: list[int] = []
     refused: dict[int, str] = {}
     for index, fit in enumerate(fits):
         try:
-            found.append(_law(fit.profile, bristle) | {"explained": fit.explained})
+            found.append(_law(row_profile(fit), bristle) | {"explained": fit.explained})
             used.append(index)
         except ValueError as error:
             refused[index] = str(error)
@@ -95,7 +96,7 @@ def _law(profile: Fourier, bristle: AbstractBristle) -> dict[str, float]:
     return numbers | {"ratio": -numbers["rho_plus"] / numbers["rho_minus"]}
 
 
-def _jackknife(fits: list[HeightsFit[Fourier]], bristle) -> dict[str, float]:
+def _jackknife(fits: list[SeriesFit], bristle) -> dict[str, float]:
     """Standard errors by leaving out one block of rows after the other."""
     count = min(_BLOCKS, len(fits))
     if count < 2:

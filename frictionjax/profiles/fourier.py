@@ -7,23 +7,35 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_known, known_numbers, require
+from ..arguments import Real, as_real, is_concrete, is_known, known_numbers, require
 from ..trigonometry import fourier_sum
 from .heights import HeightsFit, fit_heights
-from .profile import AbstractProfile
 from .rows import fit_map
+from .slope_errors import (
+    AbstractSampled,
+    SlopeErrors,
+    of_waves,
+    require_slope_error,
+    warn_of,
+)
+from .steepest import Waves, extreme_slopes
 
 
-class Fourier(AbstractProfile):
+class Fourier(AbstractSampled):
     """`w(y) = sum_n cos_n cos(2 pi n y) + sin_n sin(2 pi n y)`, n = 1, 2, ...
 
-    `cos`, `sin`: coefficients in periods, shape (harmonics,) each.
+    `cos`, `sin`: coefficients in periods, shape (harmonics,) each. `slope_error`: of
+    omega_plus and omega_minus, shape (2,), where the series stands for a measured surface
+    (`from_heights`); None where it is exact.
 
     Raises `ValueError` where the shapes differ, a coefficient is not finite or all are 0.
     """
 
     cos: Float[Array, " harmonics"] = eqx.field(converter=as_real)
     sin: Float[Array, " harmonics"] = eqx.field(converter=as_real)
+    slope_error: Float[Array, "2"] | None = eqx.field(
+        default=None, converter=lambda error: None if error is None else as_real(error)
+    )
 
     def __check_init__(self):
         if not is_known(self.cos, self.sin):
@@ -36,6 +48,7 @@ class Fourier(AbstractProfile):
         require(np.all(np.isfinite(cos)), "profile.cos", cos, "finite coefficients")
         require(np.all(np.isfinite(sin)), "profile.sin", sin, "finite coefficients")
         require(np.any(cos) or np.any(sin), "profile.cos", cos, "a coefficient != 0")
+        require_slope_error(self.slope_error)
 
     def __call__(self, y: Real) -> Real:
         return fourier_sum(self.cos, self.sin, jnp.asarray(y))
@@ -44,9 +57,21 @@ class Fourier(AbstractProfile):
     def points(self) -> int:
         return 64 * max(4, self.cos.shape[0])
 
+    def slope_errors(self) -> SlopeErrors | None:
+        """How far the steepest slopes may be off; None where nothing says so."""
+        if self.slope_error is None or not is_concrete(self):
+            return None
+        slopes = extreme_slopes(np.asarray(self.cos) - 1j * np.asarray(self.sin))
+        return SlopeErrors(*slopes, *map(float, self.slope_error))
+
     @classmethod
     def from_heights(
-        cls, x: Any, heights: Any, period: float | None = None, harmonics: int = 8
+        cls,
+        x: Any,
+        heights: Any,
+        period: float | None = None,
+        harmonics: int = 8,
+        smoothing: float | None = None,
     ) -> "HeightsFit[Fourier]":
         """Periodic profile of a measured trace, or of a map.
 
@@ -54,16 +79,31 @@ class Fourier(AbstractProfile):
         (rows, n): the mean over its rows, each moved so that its fundamental is in phase
         first, since grooves cross the rows at an angle (`.explained`: their mean).
         `period`: in m; found in the data where it is None. `harmonics`: how many.
+        `smoothing`: cut-off in m of a Gaussian filter, by which waves of that length are
+        halved (ISO 16610-21); None: no filter.
 
         A straight trend and all harmonics are fitted together by least squares, which
-        averages over the periods in the trace. Returns `.profile`, `.period` in m and
+        averages over the periods in the trace. Returns `.profile`, `.period` in m,
         `.explained`, the share of the detrended variance that the periodic profile
-        explains. `w` = height/period, so slopes are those measured.
+        explains, `.slopes`, the steepest slopes with their errors (corners that so few
+        harmonics overshoot, noise, too few samples), and `.smoothing`. `w` =
+        height/period, so slopes are those measured.
 
-        Raises `ValueError` for wrong shapes, values that are not finite, less than
-        1.5 periods, or more harmonics than the samples can tell apart.
+        Warns (`SlopesUndetermined`) where a steepest slope, and so friction, is open by
+        more than 10%. Raises `ValueError` for wrong shapes, values that are not finite,
+        less than 1.5 periods, more harmonics than the samples can tell apart, or a filter
+        that leaves nothing.
         """
         fit_all = fit_map if np.ndim(heights) == 2 else fit_heights
-        fit = fit_all(x, heights, period, harmonics)
-        profile = cls(as_real(fit.cos / fit.period), as_real(fit.sin / fit.period))
-        return HeightsFit(profile, fit.period, fit.explained)
+        fit = fit_all(x, heights, period, harmonics, smoothing)
+        profile, slopes = cls.of_measured(fit.cos, fit.sin, fit.waves)
+        warn_of(slopes)
+        return HeightsFit(profile, fit.period, fit.explained, slopes, smoothing)
+
+    @classmethod
+    def of_measured(
+        cls, cos: np.ndarray, sin: np.ndarray, waves: Waves
+    ) -> "tuple[Fourier, SlopeErrors]":
+        """A series in periods with the errors that measured waves leave to its slopes."""
+        errors = of_waves(extreme_slopes(cos - 1j * sin), waves)
+        return cls(as_real(cos), as_real(sin), as_real(errors[2:])), errors

@@ -5,29 +5,43 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from ..arguments import known_numbers, require
+from .slope_errors import SlopeErrors
+from .smoothing import gaussian_gain
+from .steepest import Waves
 
 _Profile = TypeVar("_Profile")
 
 
 class HeightsFit(NamedTuple, Generic[_Profile]):
-    """Result of `Fourier.from_heights`."""
+    """Result of `Fourier.from_heights`.
+
+    `period` in m. `explained`: share of the detrended variance, before any smoothing.
+    `slopes`: steepest slopes of the profile, with errors. `smoothing`: cut-off in m.
+    """
 
     profile: _Profile
     period: float
     explained: float
+    slopes: SlopeErrors | None = None
+    smoothing: float | None = None
 
 
 class SeriesFit(NamedTuple):
-    """Fourier coefficients in the unit of the heights, period in that of x."""
+    """Fourier coefficients in periods, smoothed; the period in the unit of x.
+
+    `waves`: of more harmonics than were asked for, with their noise.
+    """
 
     cos: np.ndarray
     sin: np.ndarray
     period: float
     explained: float
+    waves: Waves
 
 
 _MOST = 16  # harmonics that decide on the period
 _ROUNDING = 1e-12  # of the largest height: what varies less is rounding
+_BEYOND, _SEEN = 4, 128  # times the harmonics asked for, and how many, to see the rest
 _LONGEST = 2.9  # periods in the trace that a multiple of the strongest wave needs
 
 
@@ -89,7 +103,13 @@ def _refine(
     return float(search.x), float(search.fun) / max(1e-300, 1 - (2 * fits + 2) / x.size)
 
 
-def fit_heights(x: Any, heights: Any, period: float | None, harmonics: int) -> SeriesFit:
+def fit_heights(
+    x: Any,
+    heights: Any,
+    period: float | None,
+    harmonics: int,
+    smoothing: float | None = None,
+) -> SeriesFit:
     """Fit trend and harmonics of `period` to a trace; see `Fourier.from_heights`."""
     x = known_numbers(x).astype(float)
     heights = known_numbers(heights).astype(float)
@@ -120,5 +140,29 @@ def fit_heights(x: Any, heights: Any, period: float | None, harmonics: int) -> S
     design = _design(x, period, harmonics)
     solution = np.linalg.lstsq(design, heights, rcond=None)[0]
     left = float(np.mean((heights - design @ solution) ** 2))
+    c = _complex(solution) / period
+    waves = _waves(
+        x, heights, period, max(harmonics, min(_BEYOND * harmonics, most, _SEEN))
+    )
+    if smoothing is not None:
+        gain = gaussian_gain(smoothing, period, max(harmonics, waves.c.size))
+        c, waves = gain[:harmonics] * c, waves._replace(gain=gain[: waves.c.size])
+    return SeriesFit(c.real, -c.imag, float(period), 1.0 - left / variance, waves)
+
+
+def _complex(solution: np.ndarray) -> np.ndarray:
+    """Coefficients of `Re sum_k c_k exp(2 pi i k y)` in a solution of `_design`."""
     cos, sin = np.split(solution[2:], 2)
-    return SeriesFit(cos, sin, float(period), 1.0 - left / variance)
+    return cos - 1j * sin
+
+
+def _waves(x: np.ndarray, heights: np.ndarray, period: float, harmonics: int) -> Waves:
+    """All waves that the samples tell apart, and their noise, from what these leave."""
+    harmonics = min(harmonics, max(1, (x.size - 3) // 3))
+    design = _design(x, period, harmonics)
+    solution = np.linalg.lstsq(design, heights, rcond=None)[0]
+    left = float(np.sum((heights - design @ solution) ** 2))
+    free = max(1, x.size - design.shape[1])
+    rounding = _ROUNDING * float(np.ptp(heights))
+    noise = max(np.sqrt(left / free), rounding) * np.sqrt(2 / x.size) / period
+    return Waves(_complex(solution) / period, np.full(harmonics, noise), np.ones(harmonics))

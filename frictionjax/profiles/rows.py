@@ -7,19 +7,34 @@ import numpy as np
 
 from ..arguments import known_numbers, require
 from .heights import SeriesFit, find_period, fit_heights
+from .steepest import Waves
+
+_BLOCKS = 10  # of neighbouring rows, which are not independent of each other
 
 
-def fit_map(x: Any, heights: Any, period: float | None, harmonics: int) -> SeriesFit:
+def fit_map(
+    x: Any,
+    heights: Any,
+    period: float | None,
+    harmonics: int,
+    smoothing: float | None = None,
+) -> SeriesFit:
     """Fit of a map (rows, n): the mean of its rows; see `Fourier.from_heights`."""
-    fits = fit_rows(x, heights, period, harmonics)
+    fits = fit_rows(x, heights, period, harmonics, smoothing)
     if len(fits) == 1:  # a trace: its phase is kept
         return fits[0]
-    cos, sin = mean_in_phase([(fit.cos, fit.sin) for fit in fits])
+    mean = mean_in_phase([series_of(fit) for fit in fits])
     explained = float(np.mean([fit.explained for fit in fits]))
-    return SeriesFit(cos, sin, fits[0].period, explained)
+    return SeriesFit(mean.real, -mean.imag, fits[0].period, explained, mean_waves(fits))
 
 
-def fit_rows(x: Any, heights: Any, period: float | None, harmonics: int) -> list[SeriesFit]:
+def fit_rows(
+    x: Any,
+    heights: Any,
+    period: float | None,
+    harmonics: int,
+    smoothing: float | None = None,
+) -> list[SeriesFit]:
     """A fit for each row of a map, with one period, found on all rows if None.
 
     Raises `ValueError` as `Fourier.from_heights`.
@@ -29,7 +44,7 @@ def fit_rows(x: Any, heights: Any, period: float | None, harmonics: int) -> list
     require(good, "heights", rows.shape, "heights of a map, shape (rows, n)")
     if period is None and len(rows) > 1:
         period = _common_period(known_numbers(x), rows.astype(float), harmonics)
-    return [fit_heights(x, row, period, harmonics) for row in rows]
+    return [fit_heights(x, row, period, harmonics, smoothing) for row in rows]
 
 
 def _common_period(x: np.ndarray, rows: np.ndarray, harmonics: int) -> float | None:
@@ -41,14 +56,32 @@ def _common_period(x: np.ndarray, rows: np.ndarray, harmonics: int) -> float | N
     return find_period(x.astype(float), rows, harmonics)
 
 
-def mean_in_phase(coefficients: Sequence[tuple[Any, Any]]) -> tuple[Any, Any]:
-    """Mean of cosine and sine coefficients of series that differ in phase."""
-    waves = np.mean([_in_phase(cos, sin) for cos, sin in coefficients], axis=0)
-    return waves.real, -waves.imag
+def series_of(fit: SeriesFit) -> np.ndarray:
+    """Coefficients of `Re sum_n c_n exp(2 pi i n y)`, shape (harmonics,)."""
+    return fit.cos - 1j * fit.sin
 
 
-def _in_phase(cos: Any, sin: Any) -> np.ndarray:
-    """Coefficients of `sum_n c_n exp(2 pi i n y)`, moved so that `c_1` is positive."""
-    waves = np.asarray(cos) - 1j * np.asarray(sin)
+def mean_in_phase(series: Sequence[np.ndarray]) -> np.ndarray:
+    """Mean of complex coefficients of series that differ in phase."""
+    return np.mean([_in_phase(waves) for waves in series], axis=0)
+
+
+def mean_waves(fits: Sequence[SeriesFit]) -> Waves:
+    """Mean of all waves that the rows tell apart, moved into phase, and its noise.
+
+    The noise is what rows leave of their own, or the scatter over blocks of rows where
+    that is larger: rows may differ, and neighbours are not independent.
+    """
+    rows = np.array([_in_phase(fit.waves.c) for fit in fits])
+    blocks = np.array_split(rows, min(_BLOCKS, len(fits)))
+    means = np.array([block.mean(axis=0) for block in blocks])
+    between = np.var(means, axis=0, ddof=1) / (2 * len(blocks))
+    own = np.mean([fit.waves.noise**2 for fit in fits], axis=0) / len(fits)
+    noise = np.sqrt(np.maximum(own, between))
+    return Waves(rows.mean(axis=0), noise, fits[0].waves.gain)
+
+
+def _in_phase(waves: np.ndarray) -> np.ndarray:
+    """Moved so that `c_1` is positive."""
     turn = np.exp(-1j * np.angle(waves[0]))
     return waves * turn ** np.arange(1, waves.size + 1)

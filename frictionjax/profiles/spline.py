@@ -6,11 +6,19 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_known, known_numbers, require
-from .profile import AbstractProfile
+from ..arguments import Real, as_real, is_concrete, is_known, known_numbers, require
+from .slope_errors import (
+    AbstractSampled,
+    SlopeErrors,
+    of_heights,
+    require_once,
+    require_slope_error,
+    warn_of,
+)
+from .smoothing import gaussian_gain
 
 
-class Spline(AbstractProfile):
+class Spline(AbstractSampled):
     """Periodic cubic spline through `heights` at y = 0, 1/n, ..., (n-1)/n.
 
     `heights`: in periods, shape (n,), n >= 4; the point y = 1 is the first one again and
@@ -19,20 +27,58 @@ class Spline(AbstractProfile):
     The leaf is the B-spline coefficients, so evaluation solves nothing; gradients with
     respect to heights go through the constructor.
 
-    Raises `ValueError` for fewer than 4 heights, a wrong shape, or heights that are not
-    finite or all equal.
+    A spline through samples of corners, or through noise, is steeper than what was
+    measured: `.slope_errors()` says by how much, and 16 heights or more that leave a
+    steepest slope open by more than 10% are a `SlopesUndetermined` warning. (Fewer are
+    taken for points of a design.) `slope_error`: of omega_plus and omega_minus, where
+    they are known better than the heights tell, shape (2,).
+
+    Raises `ValueError` for fewer than 4 heights, a wrong shape, heights that are not
+    finite or all equal, or the first one again at the end.
     """
 
     coefficients: Float[Array, " n"]
+    slope_error: Float[Array, "2"] | None = None
 
-    def __init__(self, heights: Any):
+    def __init__(self, heights: Any, slope_error: Any = None):
         heights = as_real(heights)
         if is_known(heights):
             _require_heights(heights)
-        # c_{k-1} + 4 c_k + c_{k+1} = 6 h_k is circulant: diagonal after an FFT.
-        count = heights.shape[0]
-        symbol = (4 + 2 * np.cos(2 * np.pi * np.arange(count // 2 + 1) / count)) / 6
-        self.coefficients = jnp.fft.irfft(jnp.fft.rfft(heights) / symbol, count)
+        self.slope_error = None if slope_error is None else as_real(slope_error)
+        require_slope_error(self.slope_error)
+        self.coefficients = _coefficients(heights, jnp)
+        if is_concrete(heights):
+            warn_of(self.slope_errors(), heights.shape[0], stacklevel=5)  # equinox calls
+
+    @classmethod
+    def smoothed(cls, heights: Any, length: float) -> "Spline":
+        """The spline through heights that a Gaussian filter has smoothed.
+
+        `length`: its cut-off in periods; waves of that length are halved (ISO 16610-21).
+        The errors of the slopes are those of the smoothed surface, by the noise that the
+        heights show before.
+
+        Raises `ValueError` as `Spline`, and for a length that is not in (0, 2.5].
+        """
+        known = known_numbers(heights).astype(float)
+        _require_heights(known)
+        gain = gaussian_gain(length, 1.0, known.size // 2)
+        spectrum = np.fft.rfft(known) * np.append(1.0, gain)
+        smooth = np.fft.irfft(spectrum, known.size)
+        errors = of_heights(known, _steepest(_coefficients(smooth, np)), gain)
+        return cls(smooth, None if errors is None else errors[2:])
+
+    def slope_errors(self) -> SlopeErrors | None:
+        """How far the steepest slopes may be off, if the heights are samples.
+
+        None for fewer than 8 heights, and for traced ones.
+        """
+        if not is_concrete(self):
+            return None
+        slopes = _steepest(np.asarray(self.coefficients))
+        if self.slope_error is not None:
+            return SlopeErrors(*slopes, *map(float, self.slope_error))
+        return of_heights(np.asarray(self.heights), slopes)
 
     @property
     def heights(self) -> Float[Array, " n"]:
@@ -64,9 +110,29 @@ class Spline(AbstractProfile):
         return 16 * max(16, self.coefficients.shape[0])
 
 
+def _coefficients(heights: Any, xp: Any) -> Any:
+    # c_{k-1} + 4 c_k + c_{k+1} = 6 h_k is circulant: diagonal after an FFT.
+    count = heights.shape[0]
+    symbol = (4 + 2 * np.cos(2 * np.pi * np.arange(count // 2 + 1) / count)) / 6
+    return xp.fft.irfft(xp.fft.rfft(heights) / symbol, count)
+
+
+def _steepest(c: np.ndarray) -> tuple[float, float]:
+    """Largest and smallest slope: w' is a parabola between knots, w'' a line."""
+    count = c.size
+    slope = 0.5 * count * (np.roll(c, -1) - np.roll(c, 1))
+    bend = count * (np.roll(c, -1) - 2 * c + np.roll(c, 1))
+    after = np.roll(bend, -1)
+    turns = bend * after < 0
+    share = np.where(turns, bend / np.where(turns, bend - after, 1.0), 0.0)
+    slopes = np.concatenate([slope, slope + 0.5 * share * bend])
+    return float(slopes.max()), float(slopes.min())
+
+
 def _require_heights(given: Any) -> None:
     heights = known_numbers(given)
     enough = heights.ndim == 1 and heights.size >= 4
     require(enough, "profile.heights", given, "4 or more heights, shape (n,)")
     require(np.all(np.isfinite(heights)), "profile.heights", heights, "finite heights")
     require(np.ptp(heights) > 0, "profile.heights", heights, "heights that vary")
+    require_once(heights)

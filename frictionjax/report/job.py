@@ -2,6 +2,7 @@
 
 import math
 import re
+import warnings
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ from ..measured import (
     row_coefficients,
 )
 from ..measured.files import heights_of
+from ..profiles import SlopesUndetermined
 from ..scene import Scene
 from ..scene_files import default_study, load_study
 
@@ -57,34 +59,61 @@ def read_job(
     path: str | None,
     bristle: str | None = None,
     heights: str | None = None,
+    **surface: Any,
+) -> Job:
+    """The scene of a file (None: the embedded one), its bristle and surface exchanged.
+
+    `surface`: of a measured surface in `heights` its `period`, `harmonics`, `row` and
+    `smoothing`, and options of `read_heights`. What warns of the surface is a note. Raises
+    `ValueError`, one line, for whatever is wrong.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", SlopesUndetermined)
+        job = _read_job(path, bristle, heights, **surface)
+    return job._replace(notes=job.notes + _said_of(caught))
+
+
+def _said_of(caught: list[warnings.WarningMessage]) -> list[str]:
+    """Notes of what warned of the surface; other warnings go on."""
+    notes: dict[str, None] = {}
+    for warning in caught:
+        if issubclass(warning.category, SlopesUndetermined):
+            notes[f"Note: {warning.message}"] = None
+        else:
+            warnings.warn_explicit(
+                warning.message, warning.category, warning.filename, warning.lineno
+            )
+    return list(notes)
+
+
+def _read_job(
+    path: str | None,
+    bristle: str | None,
+    heights: str | None,
     *,
     period: float | None = None,
     harmonics: int | None = None,
     row: int | None = None,
+    smoothing: float | None = None,
     **file: Any,
 ) -> Job:
-    """The scene of a file (None: the embedded one), its bristle and surface exchanged.
-
-    `heights`: a measured surface, and its `period`, `harmonics`, `row`; `file`: options
-    of `read_heights`. Raises `ValueError`, one line, for whatever is wrong.
-    """
     known = default_study() if path is None else load_study(path)
     study = {**default_study().study, **known.study}
     chosen = known.scene.bristle if bristle is None else named_bristle(bristle)
     assert chosen is not None
     if heights is None:
-        given = {**file, "period": period, "harmonics": harmonics, "row": row}
-        for name, value in given.items():
+        fit = {"period": period, "harmonics": harmonics, "row": row, "smoothing": smoothing}
+        for name, value in {**file, **fit}.items():
             require(value is None, name, value, "--heights FILE beside it")
         return Job(exchanged(known.scene, known.scene.profile, chosen), study, [], None)
     measured = heights_of(heights, **file)
     harmonics = 8 if harmonics is None else harmonics
-    found = fit_profile(measured, period, harmonics, row)
+    found = fit_profile(measured, period, harmonics, row, smoothing)
     scene = exchanged(known.scene, found.profile, chosen)
     notes = _notes(heights, measured, found, row)
     rows = None
     if measured.heights.shape[0] > 1:
-        rows = row_coefficients(measured, chosen, harmonics, found.period)
+        rows = row_coefficients(measured, chosen, harmonics, found.period, smoothing)
     return Job(scene, study, notes, rows, row)
 
 
@@ -101,6 +130,8 @@ def _notes(path: str, measured: Measured, found: Any, row: int | None) -> list[s
         f"{path}: {size}; period {found.period:.4g} m, the surface's real eps, "
         f"explains {found.explained:.0%} of the variance"
     ]
+    if found.smoothing is not None:
+        lines.append(f"Smoothed by a Gaussian filter of cut-off {found.smoothing:.4g} m")
     periods = float(np.ptp(measured.x)) / found.period
     if periods < _FEW_PERIODS or found.explained < 0.5:
         lines.append(

@@ -1,5 +1,6 @@
 """Plain-text tables with aligned columns."""
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -60,9 +61,43 @@ def coefficients_of(found: Coefficients) -> dict[str, float]:
     return {name: numbers[name] for name, _, _ in _LAW if name in numbers}
 
 
+def errors_of(
+    found: Coefficients, standard: dict[str, float] | None = None
+) -> dict[str, float]:
+    """Errors by name, of what samples leave of the surface; empty where nothing is known.
+
+    `standard`: errors over the rows of a map. They see scatter and no corners, the others
+    both: the larger one of each is the error.
+    """
+    known = dict(standard or {})
+    if found.omega_plus_error is None:
+        return known
+    for side in ("plus", "minus"):
+        omega, mu = (float(getattr(found, f"{name}_{side}")) for name in ("omega", "mu"))
+        of_omega = float(getattr(found, f"omega_{side}_error"))
+        known |= _larger(known, f"omega_{side}", of_omega)
+        known |= _larger(known, f"mu_{side}", of_omega * (mu / omega) ** 2)
+        of_rho = float(getattr(found, f"rho_{side}_error"))
+        known |= _larger(known, f"rho_{side}", of_rho)
+        known |= _larger(known, f"normal_{side}", abs(float(found.a)) * of_rho)
+    parts = (
+        float(getattr(found, f"rho_{side}_error")) / float(getattr(found, f"rho_{side}"))
+        for side in ("plus", "minus")
+    )
+    ratio = abs(coefficients_of(found)["ratio"])
+    return known | _larger(known, "ratio", ratio * math.hypot(*parts))
+
+
+def _larger(known: dict[str, float], name: str, error: float) -> dict[str, float]:
+    return {name: max(known.get(name, 0.0), error)}
+
+
 def coefficient_table(found: Coefficients, error: dict[str, float] | None = None) -> str:
-    """Friction coefficients with their units and meanings, standard errors if known."""
-    numbers = coefficients_of(found)
+    """Friction coefficients with their units and meanings, and errors if known.
+
+    `error`: standard errors over the rows of a map, beside those of `errors_of`.
+    """
+    numbers, error = coefficients_of(found), errors_of(found, error)
     rows = [
         (name, _signed(numbers[name]), *_plus_minus(name, error), unit.ljust(4), meaning)
         for name, unit, meaning in _LAW
@@ -75,7 +110,8 @@ def coefficient_table(found: Coefficients, error: dict[str, float] | None = None
 def _plus_minus(name: str, error: dict[str, float] | None) -> tuple[str, ...]:
     if not error:
         return ()
-    return ("" if name in _BRISTLE else f"{error[name]:.2g}",)
+    known = name in error and name not in _BRISTLE
+    return (f"{error[name]:.2g}" if known else "",)
 
 
 def row_table(rows: RowCoefficients) -> str:

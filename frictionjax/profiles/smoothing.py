@@ -1,0 +1,27 @@
+"""The Gaussian filter of surface metrology."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..arguments import require, require_real
+
+_LEAST = 1e-2  # of the fundamental: what a longer filter leaves is no surface any more
+
+
+def gaussian_gain(length: Any, period: float, harmonics: int) -> np.ndarray:
+    """What a Gaussian filter of cut-off `length` lets through of harmonics 1, 2, ...
+
+    `2^-(length/wavelength)^2`: half of a wave as long as the cut-off (ISO 16610-21, whose
+    weights are Gaussian with alpha = sqrt(ln 2/pi)). A periodic surface has no ends, so
+    the filter is exact. `length`, `period`: in one unit.
+
+    Raises `ValueError` for a length that is not positive, or longer than 2.5 periods.
+    """
+    most = period * math.sqrt(-math.log2(_LEAST))
+    require_real("smoothing", length, "a length > 0", lambda size: size > 0)
+    needs = f"smoothing <= {most:.6g}: a longer one leaves less than 1% of the surface"
+    require(float(length) <= most, "smoothing", length, needs)
+    waves = np.arange(1, harmonics + 1) * (float(length) / period)
+    return np.exp2(-(waves**2))
