@@ -10,7 +10,9 @@ import numpy as np
 
 from .arguments import Real, as_text, is_concrete, require
 from .bristles import AbstractBristle
+from .clearance import clearance
 from .coefficients import Coefficients, coefficients_jit
+from .digits import require_digits
 from .extrema import smallest
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
 from .programs import Program, in_chunks
@@ -96,41 +98,58 @@ def _culprit(potential: BristlePotential) -> tuple[str, object]:
     return "bristle", type(bristle).__name__
 
 
-_stretch = Program(smallest_stretch)
+def _margins_at(potential: AbstractPotential, eps: Real) -> tuple[Real, Real]:
+    """Smallest G, and how far a rod is from cutting the surface, at one eps."""
+    return smallest_stretch(potential, eps), clearance(potential, eps)
+
+
+_one_margin = Program(_margins_at)
 
 
 @Program
-def _some_stretches(potential: AbstractPotential, eps: Real):
-    return jax.lax.map(lambda e: smallest_stretch(potential, e), eps)
+def _some_margins(potential: AbstractPotential, eps: Real):
+    return jax.lax.map(lambda size: _margins_at(potential, size), eps)
 
 
-def _stretches(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:
-    return in_chunks(_some_stretches, _TOGETHER, (potential,), (eps,))
+def _margins(
+    potential: AbstractPotential, eps: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    return in_chunks(_some_margins, _TOGETHER, (potential,), (eps,))
+
+
+def _fits(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:
+    stretch, clear = _margins(potential, eps)
+    return (stretch > 0) & (clear > 0)
 
 
 def require_reach(potential: AbstractPotential, eps: Real) -> None:
-    """Check `G = 1 + A'(eta) w' > 0` at the eps in use (eq. 3.31).
+    """Check what has to hold at the eps in use, with the bristle's geometry there.
 
-    Raises `ValueError` with the eps below which it holds.
+    `G = 1 + A'(eta) w' > 0` (eq. 3.31), and of a rod that only its tip touches the surface,
+    `w' < cot(theta)` of Section 3.3 at the angle in use; of a `GivenPotential` that W and Q
+    keep their digits. Raises `ValueError` with the eps below which it holds.
     """
     if not is_concrete(potential, eps):
         return
     sizes = np.unique(np.asarray(eps, dtype=float))
-    stretch = _stretches(potential, sizes)
-    if np.all(stretch > 0):
+    fits = _fits(potential, sizes)
+    if np.all(fits):
+        require_digits(potential, sizes)
         return
-    worst = float(sizes[~(stretch > 0)][0])
+    worst = float(sizes[~fits][0])
     limit = largest_eps(potential, worst)
-    require(False, "eps", worst, f"eps < {as_text(limit)}, where G = dz/dp > 0 fails")
+    stretch = float(_margins(potential, np.array([worst]))[0][0])
+    fails = "the rod cuts the surface" if stretch > 0 else "G = dz/dp > 0 fails"
+    require(False, "eps", worst, f"eps < {as_text(limit)}, where {fails}")
 
 
 def largest_eps(potential: AbstractPotential, upper: float) -> float:
-    """Largest eps below `upper` up to which `G > 0` holds; 0.0 where there is none.
+    """Largest eps below `upper` up to which G > 0 and a rod clears; 0.0 if there is none.
 
     A scan over 12 decades for the first failure, then bisection in log eps.
     """
     grid = np.geomspace(1e-12 * upper, upper, 241)
-    fails = ~(_stretches(potential, grid) > 0)
+    fails = ~_fits(potential, grid)
     if not fails.any():
         return upper
     first = int(np.argmax(fails))
@@ -139,7 +158,7 @@ def largest_eps(potential: AbstractPotential, upper: float) -> float:
     low, high = float(grid[first - 1]), float(grid[first])
     while high / low > 1 + 1e-9:
         middle = math.sqrt(low * high)
-        if float(_stretch(potential, np.asarray(middle))) > 0:
+        if min(map(float, _one_margin(potential, np.asarray(middle)))) > 0:
             low = middle
         else:
             high = middle

@@ -14,6 +14,7 @@ from .coefficients import Coefficients, with_errors
 from .potentials import AbstractPotential, BristlePotential, potential
 from .profiles.slope_errors import AbstractSampled
 
+_SLACK = 1e-10  # of the interval; rounding of l - Phi' at |l| = 1e4 rho is 1e-12
 _STEPS = 6  # of Newton: H' is a parabola at worst, where xi is close to rho
 
 
@@ -114,8 +115,20 @@ def _with_inflections(slope: Callable[[Real], Real], cells: int) -> Array:
 
 
 def limit_dissipation(
-    potential: AbstractPotential, found: Coefficients, v: Real, xi: Real
+    potential: AbstractPotential,
+    found: Coefficients,
+    v: Real,
+    xi: Real,
+    slack: Real | float = 0.0,
 ) -> Real:
-    """`M(v, xi) = |v| K(xi) + chi(xi)` (eq. 5.4), infinite outside the rho interval."""
-    inside = (xi >= found.rho_minus) & (xi <= found.rho_plus)
-    return jnp.where(inside, jnp.abs(v) * dual_dissipation(potential, xi), jnp.inf)
+    """`M(v, xi) = |v| K(xi) + chi(xi)` (eq. 5.4), infinite outside the rho interval.
+
+    On a slide xi = l - Phi'(z) is rho but for rounding, so the interval is wider by
+    1e-10 (rho_plus - rho_minus), and by `slack` N where l and Phi' are so much larger than
+    rho that a few of their units in the last place are more. K is that of the nearest xi
+    inside.
+    """
+    slack = slack + _SLACK * (found.rho_plus - found.rho_minus)
+    inside = (xi >= found.rho_minus - slack) & (xi <= found.rho_plus + slack)
+    held = jnp.clip(xi, found.rho_minus, found.rho_plus)
+    return jnp.where(inside, jnp.abs(v) * dual_dissipation(potential, held), jnp.inf)

@@ -205,3 +205,83 @@ def test_wrong_supports_are_named():
             fx.supports.Spring(value)
     with pytest.raises(ValueError, match=r"support.energy = 3"):
         fx.supports.Convex(3.0)
+
+
+def steep(ratio):
+    """A sine whose largest slope is that share of cot(theta_lim), under a rod."""
+    rod = fx.bristles.AngularSpring(1.0, 1.5, 1.0, 0.2)
+    return fx.potential(fx.profiles.Sine(ratio / np.tan(float(rod.limit_angle))), rod)
+
+
+def cuts(potential, eps):
+    """Whether a rod is below the surface somewhere, by the lines themselves."""
+    rod, count = potential.bristle, 2048
+    y = np.arange(count) / count
+    heights = np.asarray(potential.profile(jnp.asarray(np.concatenate([y, 1 + y]))))
+    for index in range(count):
+        angle = np.arccos((float(rod.height) - eps * heights[index]) / float(rod.length))
+        ahead = np.arange(1, count)
+        line = heights[index] + ahead / count / np.tan(angle)
+        if np.any(heights[index + ahead] > line):
+            return True
+    return False
+
+
+@pytest.mark.parametrize("ratio", [0.99, 0.998])
+def test_a_rod_clears_the_surface_at_the_eps_in_use(ratio):
+    potential = steep(ratio)
+    largest = largest_eps(potential, 1.0)
+    require_reach(potential, 0.99 * largest)
+    with pytest.raises(ValueError, match=f"needs eps < {largest:.6g}, where the rod cuts"):
+        require_reach(potential, 1.01 * largest)
+    assert not cuts(potential, 0.98 * largest)
+    assert cuts(potential, 1.1 * largest)
+
+
+def test_gentle_slopes_let_a_rod_clear_at_any_eps():
+    assert largest_eps(steep(0.5), 1.0) == 1.0
+
+
+def by_hand(energy, w, alpha):
+    """Lemma 2's Q as it is printed: a small difference of large numbers."""
+    return lambda eps, Y: (energy(eps * w(Y)) - energy(0.0) - alpha * eps * w(Y)) / eps**2
+
+
+def small_sine(Y):
+    return 0.1 / (2 * jnp.pi) * jnp.sin(2 * jnp.pi * Y)
+
+
+BY_HAND = {
+    "spring": by_hand(lambda eta: 0.5 * (1 + eta) ** 2, small_sine, 1.0),
+    "exponential": by_hand(lambda eta: jnp.exp(eta), small_sine, 1.0),
+    "root": lambda eps, Y: (jnp.sqrt(1.0 + eps**2 * small_sine(Y) ** 2) - 1.0) / eps**2,
+}
+
+
+@pytest.mark.parametrize("case", BY_HAND)
+def test_a_Q_that_loses_its_digits_is_refused_where_it_does(case):
+    potential = fx.GivenPotential(small_sine, BY_HAND[case])
+    require_reach(potential, np.array([0.1, 0.01]))
+    with pytest.raises(ValueError, match=r"potential\.Q at eps = 1e-08: noise over"):
+        require_reach(potential, np.array([1e-8]))
+    with pytest.raises(ValueError, match=r"potential\.Q at eps = 1e-07: noise over"):
+        require_reach(potential, np.array([0.1, 1e-6, 1e-7]))
+
+
+def test_a_Q_that_keeps_its_digits_is_taken_at_any_eps():
+    exact = fx.GivenPotential(small_sine, lambda eps, Y: 0.5 * small_sine(Y) ** 2)
+    require_reach(exact, np.geomspace(0.1, 1e-12, 8))
+    kinked = fx.GivenPotential(lambda Y: 0.01 * jnp.abs(jnp.sin(2 * jnp.pi * Y)) ** 2.5)
+    require_reach(kinked, np.array([1e-3]))
+
+
+@pytest.mark.parametrize(
+    "W",
+    [
+        lambda Y: jnp.sqrt(1e20 + 2e10 * small_sine(Y)) - 1e10,
+        lambda Y: small_sine(Y) + 1e-8 * jnp.sin(2**40 * Y),
+    ],
+)
+def test_a_W_that_loses_its_digits_is_refused(W):
+    with pytest.raises(ValueError, match=r"potential\.W"):
+        require_reach(fx.GivenPotential(W), np.array([1e-3]))

@@ -17,6 +17,7 @@ from frictionjax.friction_law import (
 K = eqx.filter_jit(
     lambda potential, xi: jax.vmap(lambda x: dual_dissipation(potential, x))(xi)
 )
+M_OF_SLIDES = eqx.filter_jit(jax.vmap(limit_dissipation, in_axes=(None, None, 0, 0)))
 MID = (np.arange(1 << 15) + 0.5) / (1 << 15)
 
 
@@ -104,6 +105,33 @@ def test_M_bounds_the_power_and_meets_it_while_sliding():
     assert M(0.0, 0.5 * plus) == 0
     assert M(0.0, 1.001 * plus) == np.inf
     assert M(1.0, 1.001 * minus) == np.inf
+    wide = float(plus - minus)
+    assert np.isfinite(M(1.0, plus + 1e-12 * wide))
+    assert np.isfinite(M(1.0, minus - 1e-12 * wide))
+    assert M(1.0, plus + 1e-9 * wide) == M(1.0, minus - 1e-9 * wide) == np.inf
+    near = limit_dissipation(potential, found, 1.0, plus + 1e-9 * wide, slack=2e-9 * wide)
+    assert near == pytest.approx(float(M(1.0, plus)), rel=1e-12)
+
+
+@pytest.mark.parametrize(("stiffness", "amplitude"), [(1.0, 1.0488), (1e4, 1e4)])
+def test_what_the_limit_dissipates_on_its_slides_is_finite(stiffness, amplitude):
+    """xi = l - Phi'(z) is rho but for rounding there: M = rho v, and K(rho) = rho."""
+    scene = fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        fx.supports.Spring(stiffness),
+        fx.loads.Sine(amplitude, 3.0),
+        3.0,
+    )
+    ts = np.linspace(0.0, 3.0, 1501)
+    z = np.asarray(fx.solve_limit(scene, ts).z)
+    speed = np.diff(z, prepend=z[0])
+    slides = np.flatnonzero(speed)
+    xi = np.asarray(jax.vmap(scene.load)(ts))[slides] - stiffness * z[slides]
+    found = fx.friction(scene)
+    assert slides.size > 500
+    rate = M_OF_SLIDES(scene.potential, found, speed[slides][:500], xi[:500])
+    assert rate == pytest.approx(0.1 * np.abs(speed[slides][:500]), rel=1e-7)
 
 
 def test_a_batch_equals_its_lanes():

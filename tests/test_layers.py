@@ -19,7 +19,7 @@ FLOORS = [
     {"roots", "taylor", "extrema", "trigonometry"},
     {"profiles", "bristles", "supports", "loads"},
     {"potentials"},
-    {"coefficients"},
+    {"coefficients", "clearance", "digits"},
     {"admissibility"},
     {"friction_law"},
     {"scene", "measured"},

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..arguments import Real, as_real, is_known, require, require_real
-from .bristle import AbstractBristle, SlopeBounds
+from .bristle import AbstractBristle, Rod, SlopeBounds
 
 
 class AngularSpring(AbstractBristle):
@@ -67,3 +67,8 @@ class AngularSpring(AbstractBristle):
         return SlopeBounds(
             -jnp.tan(limit), 1 / jnp.tan(limit), "-tan(theta_lim)", "cot(theta_lim)"
         )
+
+    def rod(self, eta: Real) -> Rod:
+        """It rises by cot(theta) from the tip to its root, at the angle in use."""
+        reach = self._reach(eta)
+        return Rod((self.height - eta) / reach, reach)

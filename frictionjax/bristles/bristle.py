@@ -21,6 +21,13 @@ class SlopeBounds(NamedTuple):
     upper_name: str = "inf"
 
 
+class Rod(NamedTuple):
+    """A straight rod from the tip to the root: how steeply it rises (1), how far (m)."""
+
+    slope: Real
+    reach: Real
+
+
 class AbstractBristle(eqx.Module):
     """A bristle: two scalar functions of the height `eta` of the surface under its tip.
 
@@ -38,3 +45,7 @@ class AbstractBristle(eqx.Module):
     def slope_bounds(self) -> SlopeBounds:
         """Slopes that the contact allows; without a bound of its own, any."""
         return SlopeBounds()
+
+    def rod(self, eta: Real) -> Rod | None:
+        """The rod that has to clear the surface ahead of a tip at height `eta` (m)."""
+        return None
