@@ -9,7 +9,7 @@ from .arguments import require, require_flags, require_real
 from .cost_prediction import predict_cost
 from .grids import grid_of
 from .orders import fit_order
-from .scene import Scene, require_scene
+from .scene import Scene, known_scene
 from .sweeps import sweep
 from .wiggly.status import Status
 
@@ -104,7 +104,7 @@ def order_cost(
 
     Raises `ValueError` for arguments out of range, or less than two eps.
     """
-    require_scene(scene)
+    scene = known_scene(scene)
     known = grid_of("eps", eps)
     require(known.size >= 2, "eps", known, "a largest and a smallest")
     require_real("within", within, "within > 0", lambda w: w > 0)

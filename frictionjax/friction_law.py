@@ -11,6 +11,7 @@ from .admissibility import admissible_coefficients
 from .arguments import Real, require, require_x64
 from .bristles import AbstractBristle
 from .coefficients import Coefficients
+from .parts import checked
 from .potentials import AbstractPotential, BristlePotential, potential
 
 _STEPS = 6  # of Newton: H' is a parabola at worst, where xi is close to rho
@@ -34,7 +35,7 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
             type(scene_or_profile).__name__,
             "a Scene, or a profile and a bristle",
         )
-        wiggle = scene_or_profile.potential
+        wiggle = checked(scene_or_profile.potential)
     else:
         wiggle = potential(scene_or_profile, bristle)
     require_x64(wiggle)

@@ -15,7 +15,7 @@ from .limit_system import (
 )
 from .progress import progress_bar
 from .provenance import describe
-from .scene import Scene, require_scene, require_times, require_told_apart
+from .scene import Scene, known_scene, require_times, require_told_apart
 from .strip import strips_at
 from .viscosity import viscosity_of
 from .wiggly.engine import integrate_cells
@@ -93,7 +93,7 @@ def sweep(
     Raises `ValueError` for arguments out of range, z0 outside the strip at t = 0 (Theorem
     1 does not apply), or an eps at which the bristle loses contact.
     """
-    require_scene(scene)
+    scene = known_scene(scene)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
     require_flags(progress=progress, dissipation=dissipation, suprema=suprema)

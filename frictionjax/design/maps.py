@@ -11,6 +11,7 @@ import xarray as xr
 from ..arguments import known_numbers, require, require_real, require_x64
 from ..bristles import AbstractBristle
 from ..coefficients import coefficients_jit
+from ..parts import checked
 from ..potentials import potential
 from ..profiles import AbstractProfile, Fourier
 from ..programs import Program
@@ -83,6 +84,7 @@ def design_map(
     profile that is missing, or too much.
     """
     require_x64(bristle)
+    bristle = checked(bristle)
     bristle = with_arrays(bristle)
     axes = [_axis(bristle, label, given) for label, given in (("x", x), ("y", y))]
     names = [axis[0] for axis in axes]

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arguments import as_text, known_numbers, require, require_real
 from ..programs import Program
-from ..scene import Scene, require_times
+from ..scene import Scene, known_scene, require_times
 from ..wiggly.trajectory import solve
 
 QUANTITIES = ("force", "z")
@@ -134,6 +134,7 @@ def simulate_trace(
     """
     require(quantity in QUANTITIES, "quantity", quantity, "one of force, z")
     require_real("noise", noise, "noise >= 0", lambda v: v >= 0)
+    scene = known_scene(scene)
     ts = np.asarray(require_times(scene, ts, 301))
     found = solve(scene, eps, gamma, ts, accuracy, dissipation=False)
     require(found.ok, "scene", found.status.message, "a trajectory that can be trusted")

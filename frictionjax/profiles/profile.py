@@ -9,9 +9,10 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..arguments import Real, in_64_bits, is_concrete, require
+from ..parts import Part
 
 
-class AbstractProfile(eqx.Module):
+class AbstractProfile(Part):
     """The profile `w`: 1-periodic and C^2, a surface of height `eps w(x/eps)`.
 
     An implementer keeps three rules:

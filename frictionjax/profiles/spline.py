@@ -34,6 +34,10 @@ class Spline(AbstractProfile):
         symbol = (4 + 2 * np.cos(2 * np.pi * np.arange(count // 2 + 1) / count)) / 6
         self.coefficients = jnp.fft.irfft(jnp.fft.rfft(heights) / symbol, count)
 
+    def __check_init__(self):
+        if is_known(self.coefficients):
+            _require_heights(self.coefficients)
+
     @property
     def heights(self) -> Float[Array, " n"]:
         """The interpolated heights, shape (n,)."""
