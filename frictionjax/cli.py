@@ -4,6 +4,7 @@ import json
 import os
 import sys
 import threading
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -89,7 +90,10 @@ def _start() -> None:
     os.environ["MPLBACKEND"] = "Agg"  # heard when it is imported, which can wait
     import jax
 
+    from .wiggly.status import FailedCells
+
     keep_compiled()
+    warnings.simplefilter("ignore", FailedCells)  # tables name them
     jax.config.update("jax_enable_x64", True)
     # Threads that import, load programs and plan take turns: at 5 ms each a study took
     # 0.4 s longer.

@@ -7,7 +7,7 @@ import xarray as xr
 
 from .arguments import require
 from .orders import Fit, Verdict, fit_order, local_orders
-from .wiggly.status import Status, status_of
+from .wiggly.status import Status, status_of, warn_of_failed
 
 _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
 
@@ -42,6 +42,8 @@ def study(dataset: xr.Dataset) -> Study:
     (the paper proves no rate for the sup error); the measured constants `C0` of Lemma 7
     and `C` of Lemma 9, the latter a lower bound from the times in the data set.
 
+    Cells that failed are left out, and a warning (`FailedCells`) names them.
+
     Raises `ValueError` where the data set lacks what `sweep` puts there.
     """
     needed = {"sup_error", "status", "strip_excess", "z"}
@@ -51,6 +53,8 @@ def study(dataset: xr.Dataset) -> Study:
     missing = ", ".join(sorted(needed - set(given or ())))
     allowed = "one that `sweep` has made, with suprema=True"
     require(not missing, "dataset", f"one without {missing}", allowed)
+    codes = dataset.status.transpose("gamma", "eps").values
+    warn_of_failed(codes, dataset.gamma.values, dataset.eps.values)
     gammas = dataset.gamma.values
     columns = _columns("", dataset, dataset.accuracy * dataset.eps)
     if "dissipation_error" in dataset:

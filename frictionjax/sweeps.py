@@ -20,7 +20,7 @@ from .strip import strips_at
 from .viscosity import viscosity_of
 from .wiggly.engine import integrate_cells
 from .wiggly.own_methods import is_ours
-from .wiggly.status import Status
+from .wiggly.status import Status, warn_of_failed
 from .wiggly.tolerance import require_accuracy
 
 if TYPE_CHECKING:
@@ -88,7 +88,8 @@ def sweep(
     `dissipation_limit`, the strip `z_minus`, `z_plus` and the load, `data["load"]`. Units
     and provenance are in the attributes; it goes to NetCDF and back without loss.
 
-    A cell that fails has its status and NaNs and does not disturb the others.
+    A cell that fails has its status and NaNs and does not disturb the others; one warning
+    (`FailedCells`, a `UserWarning`) names such cells.
 
     Raises `ValueError` for arguments out of range, z0 outside the strip at t = 0 (Theorem
     1 does not apply), or an eps at which the bristle loses contact.
@@ -126,6 +127,7 @@ def sweep(
     import xarray as xr  # 0.4 s, which another thread may spend while cells run
 
     # All variables at once: one by one they are aligned anew, 1 ms each.
+    warn_of_failed(columns["status"][1], gamma, eps)
     data = xr.Dataset(columns, coords={"gamma": gamma, "eps": eps, "time": np.asarray(ts)})
     return describe(data, scene, accuracy=wanted, solver=name)
 

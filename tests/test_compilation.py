@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+import frictionjax as fx
+
 PROGRAM = """
 import jax, sys
 import frictionjax as fx
@@ -29,3 +31,26 @@ def test_flags_are_set_before_anything_is_computed_or_left_alone(given, when, ex
     command = [sys.executable, "-c", PROGRAM, when]
     done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == expected
+
+
+KEEP = """
+import pathlib, sys
+import frictionjax as fx
+kind = {"text": str, "path": pathlib.Path}[sys.argv[1]]
+print(fx.keep_compiled(kind(sys.argv[2])))
+import jax
+print(jax.config.jax_compilation_cache_dir)
+"""
+
+
+@pytest.mark.parametrize("kind", ["text", "path"])
+def test_a_folder_for_programs_is_a_text_or_a_path(kind, tmp_path):
+    command = [sys.executable, "-c", KEEP, kind, str(tmp_path / "kept")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == 2 * [str(tmp_path / "kept")]
+
+
+@pytest.mark.parametrize("folder", ["", 3, True, b"kept"])
+def test_what_names_no_folder_is_refused(folder):
+    with pytest.raises(ValueError, match=r"folder = .*: needs the path of a folder"):
+        fx.keep_compiled(folder)

@@ -61,7 +61,9 @@ class Solution(eqx.Module):
             return super().__repr__()
         ended, steps = counted(Status, self.status_code), np.asarray(self.stats["steps"])
         if np.ndim(self.status_code):
-            parts = f"{np.shape(self.z)[-1]} times each, up to {np.max(steps)} steps"
+            parts = (
+                f"{np.shape(self.z)[-1]} times each, up to {np.max(steps, initial=0)} steps"
+            )
             return f"Solution(batch {np.shape(self.status_code)}: {ended}; {parts})"
         end = f"z({float(self.ts[-1]):.6g} s) = {float(self.z[-1]):.9g} m"
         return f"Solution({ended}: {self.ts.size} times, {end}, {int(steps)} steps)"
