@@ -11,7 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .arguments import Real, require, require_function, require_whole, require_x64
+from .arguments import Real, as_plain, require, require_function, require_whole, require_x64
 from .bristles import AbstractBristle
 from .extrema import smallest
 from .parts import Part, checked
@@ -221,7 +221,7 @@ class GivenPotential(AbstractPotential):
 
     W_fn: Callable[[Real], Real]
     Q_fn: Callable[[Real, Real], Real]
-    points: int = eqx.field(static=True, default=4096)
+    points: int = eqx.field(static=True, default=4096, converter=as_plain)
 
     def __init__(self, W: Callable, Q: Callable | None = None, points: int = 4096):
         self.W_fn = W

@@ -40,6 +40,7 @@ from .supports import AbstractSupport
 _TRACED_TURNS = 64  # turning points allowed for where the load's numbers are traced
 _TOLD_APART = 1e-13  # of the largest |z|: rounding of z itself is 1e-3 eps there
 _ANEW = "_anew"  # attribute, no field: the scene built of one with other leaves
+_ROUNDED = 8  # spacings of floats by which a time may exceed the duration
 _MOST_TURNS = 2**20  # in a scene: 8 MB a copy of their times
 
 
@@ -252,7 +253,10 @@ def require_told_apart(scene: Scene, eps: Any) -> None:
 
 
 def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " n"]:
-    """Check requested times: sorted, inside [0, duration]; evenly spaced where None."""
+    """Check requested times: sorted, inside [0, duration]; evenly spaced where None.
+
+    Times that exceed it by rounding are moved to its end.
+    """
     duration = jnp.asarray(scene.duration)
     if ts is None:
         return duration * jnp.linspace(0.0, 1.0, fallback)
@@ -268,6 +272,10 @@ def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " 
     require(np.all(np.isfinite(known)), "ts", known, "finite times")
     require(np.all(np.diff(known) >= 0), "ts", known, "times that do not decrease")
     end = float(duration)
-    inside = known[0] >= 0 and known[-1] <= end
+    # 3 * 0.1 > 0.3, and what is added up n times is n spacings off.
+    slack = (_ROUNDED + known.size) * np.spacing(end)
+    inside = known[0] >= -slack and known[-1] <= end + slack
     require(inside, "ts", known[[0, -1]], f"times in [0, duration] = [0, {as_text(end)}]")
-    return ts
+    if known[0] >= 0 and known[-1] <= end:
+        return ts
+    return jnp.asarray(np.clip(known, 0.0, end))

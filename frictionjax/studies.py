@@ -7,6 +7,7 @@ import xarray as xr
 
 from .arguments import require
 from .orders import Fit, Verdict, fit_order, local_orders
+from .selected_cells import whole_grid
 from .wiggly.status import Status, status_of, warn_of_failed
 
 _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
@@ -50,6 +51,7 @@ def study(dataset: xr.Dataset) -> Study:
     given = getattr(dataset, "variables", None)
     allowed = "a data set that `sweep` has made"
     require(given is not None, "dataset", type(dataset).__name__, allowed)
+    dataset = whole_grid(dataset)
     missing = ", ".join(sorted(needed - set(given or ())))
     allowed = "one that `sweep` has made, with suprema=True"
     require(not missing, "dataset", f"one without {missing}", allowed)

@@ -27,7 +27,7 @@ FLOORS = [
     {"certificate_curve"},
     {"certificate_passages", "certificate_tube"},
     {"limit_system", "wiggly", "certificate"},
-    {"provenance"},
+    {"provenance", "selected_cells"},
     {"cells"},
     {"blocks"},
     {"sweeps"},

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import xarray as xr
 
-from ..arguments import as_text, known_numbers, require, require_x64
+from ..arguments import as_text, known_numbers, require, require_whole, require_x64
 from ..bristles import AbstractBristle
 from ..friction_law import friction
 from ..potentials import potential
@@ -140,8 +140,8 @@ def tolerance(
     require_x64(potential(profile, bristle))
     bristle, profile = with_arrays(bristle), with_arrays(profile)
     spread = _spreads(bristle, profile, spreads)
-    whole = isinstance(samples, int) and samples >= 2
-    require(whole, "samples", samples, "a whole number, samples >= 2")
+    require_whole("samples", samples, 2)
+    require_whole("seed", seed, 0)
     levels = known_numbers(quantiles)
     good = levels.ndim == 1 and np.all((levels >= 0) & (levels <= 1))
     require(good, "quantiles", quantiles, "numbers in [0, 1], shape (n,)")

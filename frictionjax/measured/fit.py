@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arguments import require
+from ..arguments import require, require_whole
 from ..profiles import Fourier
 from ..profiles.heights import HeightsFit, find_period
 from .files import Measured
@@ -24,7 +24,8 @@ def fit_profile(
     x, heights = measured
     rows = heights.shape[0]
     if row is not None:
-        require(0 <= row < rows, "row", row, f"0 <= row <= {rows - 1}")
+        require_whole("row", row, 0)
+        require(row < rows, "row", row, f"0 <= row <= {rows - 1}")
         return Fourier.from_heights(x, heights[row], period, harmonics)
     if rows == 1:
         return Fourier.from_heights(x, heights[0], period, harmonics)

@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from ..selected_cells import whole_grid
 from .style import GUIDE, colour, marker, new_figure, styled
 
 _PANELS = (
@@ -32,6 +33,7 @@ def draw(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
     guides have the slope `eps^beta` of the lemmas. A second panel shows the dissipation,
     where the data set has it.
     """
+    dataset = whole_grid(dataset)
     panels = [panel for panel in _PANELS if panel[1] in dataset]
     figure, grid = new_figure(1, len(panels), 5.4 * len(panels), 5.2)
     for axes, (prefix, name, label, title) in zip(grid[0], panels, strict=True):

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..arguments import Real, require_function, require_whole
+from ..arguments import Real, as_plain, require_function, require_whole
 from .profile import AbstractProfile, require_smooth
 
 
@@ -20,7 +20,7 @@ class Custom(AbstractProfile):
     """
 
     fn: Callable[[Real], Real]
-    points: int = eqx.field(static=True, default=4096)
+    points: int = eqx.field(static=True, default=4096, converter=as_plain)
 
     def __check_init__(self):
         require_function("profile.fn", self.fn, "a function of y")

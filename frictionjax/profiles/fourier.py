@@ -57,8 +57,11 @@ class Fourier(AbstractProfile):
         `.explained`, the share of the detrended variance that the periodic profile
         explains. `w` = height/period, so slopes are those measured.
 
+        Samples that are masked (`numpy.ma`) in either are left out.
+
         Raises `ValueError` for wrong shapes, values that are not finite, less than
-        1.5 periods, or more harmonics than the samples can tell apart.
+        1.5 periods, or more harmonics than the samples can tell apart, or parts of a
+        period that are masked in every one.
         """
         fit = fit_heights(x, heights, period, harmonics)
         profile = cls(as_real(fit.cos / fit.period), as_real(fit.sin / fit.period))
