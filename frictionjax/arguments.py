@@ -10,6 +10,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from .surroundings import require_ready
+
 Real = Float[Array, ""]
 """A traced real scalar."""
 
@@ -74,7 +76,10 @@ def as_real(value: Any) -> Any:
     if not _is_numeric(known):
         return value
     exact = known.astype(np.float64)
-    return jnp.asarray(exact) if in_64_bits() else exact
+    if not in_64_bits():
+        return exact
+    require_ready()
+    return jnp.asarray(exact)
 
 
 def known_numbers(value: Any) -> np.ndarray:
@@ -140,6 +145,7 @@ def is_concrete(*trees: Any) -> bool:
 
     Where a caller's `jit` is traced, what is computed from known numbers is traced too.
     """
+    require_ready()
     return is_known(*trees) and not isinstance(_nothing(), jax.core.Tracer)
 
 
@@ -212,6 +218,7 @@ def require_x64(*trees: Any) -> None:
     if not in_64_bits():
         mend = 'run `jax.config.update("jax_enable_x64", True)` before building the scene'
         raise ValueError(f"jax_enable_x64 = False: needs 64-bit floats; {mend}")
+    require_ready()
     for leaf in jax.tree_util.tree_leaves(trees):
         if eqx.is_inexact_array(leaf) and leaf.dtype != np.float64:
             numbers = "build the parts from Python numbers or float64 arrays"

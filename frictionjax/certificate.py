@@ -14,6 +14,7 @@ from .certificate_tube import distance
 from .coefficients import coefficients_jit
 from .outcomes import Outcome
 from .scene import Scene, known_scene, require_times
+from .surroundings import with_nan
 
 # Measured at eps 1e-3 to 0.3, gamma 0.5 to 2, every bristle: true curves with and without
 # noise of eps/100 against the wrong ones.
@@ -70,6 +71,7 @@ class Certificate(NamedTuple):
         return self.status.message
 
 
+@with_nan
 def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
     """Certify any sampled curve, whatever made it, against the scene alone.
 

@@ -46,7 +46,8 @@ def _backend_is_running() -> bool:
 def keep_compiled(folder: str | os.PathLike | None = None) -> Path:
     """Keep compiled programs in `folder`, the user's cache folder where it is None.
 
-    Raises `ValueError` for what names no folder.
+    A folder that cannot be written, or a full disk, is one warning, and nothing more is
+    kept. Raises `ValueError` for what names no folder.
     """
     known = folder is None or (isinstance(folder, str | os.PathLike) and str(folder))
     if not known:
@@ -57,7 +58,8 @@ def keep_compiled(folder: str | os.PathLike | None = None) -> Path:
     from .kept_programs import keep_in
 
     place = user_cache_path("frictionjax") / "xla" if folder is None else Path(folder)
-    keep_in(place / "programs")
-    jax.config.update("jax_compilation_cache_dir", str(place))
     jax.config.update("jax_persistent_cache_min_compile_time_secs", _WORTH_KEEPING)
+    keep_in(place / "programs")
+    if place.is_dir():
+        jax.config.update("jax_compilation_cache_dir", str(place))
     return place

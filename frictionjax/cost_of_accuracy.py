@@ -17,6 +17,7 @@ from .instants import Instants, instants
 from .provenance import explain, origin
 from .references import LEAST_JUDGED, Reference, reference
 from .scene import Scene, known_scene, require_times, require_told_apart
+from .surroundings import with_nan
 from .timed_runs import accounted, clocked, runner, timed
 from .wiggly.general import SCIPY, Run
 from .wiggly.methods import solver_of
@@ -192,6 +193,7 @@ def _label(method: Any) -> str:
     return method.__name__ if isinstance(method, type) else type(method).__name__
 
 
+@with_nan
 def work_precision(
     scene: Scene,
     eps: Any = 1e-2,

@@ -10,6 +10,7 @@ from .cost_prediction import predict_cost
 from .grids import grid_of
 from .orders import fit_order
 from .scene import Scene, known_scene
+from .surroundings import with_nan
 from .sweeps import sweep
 from .wiggly.status import Status
 
@@ -76,6 +77,7 @@ class OrderCost(NamedTuple):
         return kept
 
 
+@with_nan
 def order_cost(
     scene: Scene,
     eps: Any,

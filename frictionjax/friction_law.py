@@ -13,10 +13,12 @@ from .bristles import AbstractBristle
 from .coefficients import Coefficients
 from .parts import checked
 from .potentials import AbstractPotential, BristlePotential, potential
+from .surroundings import with_nan
 
 _STEPS = 6  # of Newton: H' is a parabola at worst, where xi is close to rho
 
 
+@with_nan
 def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> Coefficients:
     """Friction coefficients of a scene, or of a profile and a bristle.
 

@@ -16,6 +16,7 @@ from .programs import Program
 from .scene import Scene, known_scene, require_times
 from .strip import strip_of, strips_at
 from .supports import AbstractSupport
+from .surroundings import with_nan
 
 
 class LimitStatus(Outcome):
@@ -118,6 +119,7 @@ def require_start_in_strip(scene: Scene) -> None:
     require(lower - slack <= z0 <= upper + slack, "scene.z0", z0, needs)
 
 
+@with_nan
 def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     """Solve `0 in dR(z') + Phi'(z) - l(t)` (eq. 2.3), exactly up to rounding.
 

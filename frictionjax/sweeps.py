@@ -17,6 +17,7 @@ from .progress import progress_bar
 from .provenance import describe
 from .scene import Scene, known_scene, require_times, require_told_apart
 from .strip import strips_at
+from .surroundings import with_nan
 from .viscosity import viscosity_of
 from .wiggly.engine import integrate_cells
 from .wiggly.own_methods import is_ours
@@ -58,6 +59,7 @@ _DIMS = ("gamma", "eps", "time")
 _SUPREMA = ("sup_error", "strip_excess", "survey_error")
 
 
+@with_nan
 def sweep(
     scene: Scene,
     eps: Any,
@@ -127,7 +129,7 @@ def sweep(
     import xarray as xr  # 0.4 s, which another thread may spend while cells run
 
     # All variables at once: one by one they are aligned anew, 1 ms each.
-    warn_of_failed(columns["status"][1], gamma, eps)
+    warn_of_failed(columns["status"][1], gamma, eps, frames=1)  # `with_nan`
     data = xr.Dataset(columns, coords={"gamma": gamma, "eps": eps, "time": np.asarray(ts)})
     return describe(data, scene, accuracy=wanted, solver=name)
 

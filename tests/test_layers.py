@@ -12,6 +12,7 @@ ROOT = Path(frictionjax.__file__).parent
 
 # Units on one floor know nothing of each other; a folder is one unit.
 FLOORS = [
+    {"surroundings"},
     {"arguments", "progress", "asymptotes"},
     {"grids", "viscosity", "parts"},
     {"kept_programs"},

@@ -15,6 +15,7 @@ from ..parts import checked
 from ..potentials import potential
 from ..profiles import AbstractProfile, Fourier
 from ..programs import Program
+from ..surroundings import with_nan
 from .free_parameter import FreeParameter, free_parameter, with_arrays
 from .quantities import Slopes, on_slopes, quantity_of, side_of
 
@@ -59,6 +60,7 @@ def asymmetric_profile(steepness: float, asymmetry: float) -> Fourier:
     return Fourier(jnp.zeros(needed), jnp.asarray(slopes / (2 * np.pi * order)))
 
 
+@with_nan
 def design_map(
     bristle: AbstractBristle,
     x: tuple[str, Any] | str = "angle",

@@ -24,6 +24,7 @@ from ..potentials import potential
 from ..profiles import AbstractProfile
 from ..programs import Program, room
 from ..supports import Spring
+from ..surroundings import with_nan
 from ..wiggly.status import Status
 from .slide_period import STEPS, Period, Slide, least_pull, slide_forces
 
@@ -151,6 +152,7 @@ def spring_of(support: Spring | None) -> Spring:
     return checked(support)
 
 
+@with_nan
 def steady_slide(
     profile: AbstractProfile,
     bristle: AbstractBristle,

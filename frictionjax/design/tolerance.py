@@ -14,6 +14,7 @@ from ..friction_law import friction
 from ..potentials import potential
 from ..profiles import AbstractProfile
 from ..programs import Program
+from ..surroundings import with_nan
 from .aligned_text import aligned
 from .free_parameter import FreeParameter, entries_of, free_parameter, with_arrays
 from .quantities import QUANTITIES, on_slopes, quantity_of, side_of, slopes_of
@@ -115,6 +116,7 @@ class Tolerance:
         return f"{told}{flipped}\n{aligned(rows)}"
 
 
+@with_nan
 def tolerance(
     profile: AbstractProfile,
     bristle: AbstractBristle,

@@ -17,6 +17,7 @@ from ..arguments import (
 )
 from ..programs import Program
 from ..scene import Scene, known_scene, require_times
+from ..surroundings import with_nan
 from ..wiggly.trajectory import solve
 
 QUANTITIES = ("force", "z")
@@ -127,6 +128,7 @@ def forces_at(scene: Scene, ts, z):
     )
 
 
+@with_nan
 def simulate_trace(
     scene: Scene,
     eps: Any,

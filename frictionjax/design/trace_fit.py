@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arguments import require, require_real, require_whole
 from ..scene import Scene, known_scene
+from ..surroundings import with_nan
 from .trace import Trace
 from .trace_descent import Descent, Programs, Step, descend
 from .trace_passage import unbounded
@@ -23,6 +24,7 @@ _SPREAD = 0.3  # of coefficients, of starts drawn at random
 _TRIES = 10_000  # of which some are admissible
 
 
+@with_nan
 def fit_trace(
     trace: Trace,
     scene: Scene,

@@ -41,8 +41,13 @@ class FailedCells(UserWarning):
     """Some cells of a data set have numbers that cannot be trusted, or none."""
 
 
-def warn_of_failed(codes: np.ndarray, gamma: np.ndarray, eps: np.ndarray) -> None:
-    """One warning that names the cells (gamma, eps) whose status is not OK."""
+def warn_of_failed(
+    codes: np.ndarray, gamma: np.ndarray, eps: np.ndarray, frames: int = 0
+) -> None:
+    """One warning that names the cells (gamma, eps) whose status is not OK.
+
+    `frames`: how many lie between the caller and the line that it is given for.
+    """
     failed = np.argwhere(codes != int(Status.OK))
     if not failed.size:
         return
@@ -56,7 +61,7 @@ def warn_of_failed(codes: np.ndarray, gamma: np.ndarray, eps: np.ndarray) -> Non
         f"{len(failed)} of {codes.size} cells failed ({'; '.join(named)}{more}), the first "
         f"because {message}; see `status`",
         FailedCells,
-        stacklevel=3,
+        stacklevel=3 + frames,
     )
 
 

@@ -20,6 +20,7 @@ from ..arguments import (
 )
 from ..outcomes import counted, flags, outcomes
 from ..scene import Scene, known_scene, require_times, require_told_apart
+from ..surroundings import with_nan
 from .engine import integrate_cells
 from .integration import MAX_STEPS, integrate
 from .methods import solver_of
@@ -149,6 +150,7 @@ def _in_words(how: np.ndarray, sampled: float) -> str:
     return f"resolved, every slip, in tiles; {share}"
 
 
+@with_nan
 def solve(
     scene: Scene,
     eps: Any,
