@@ -10,6 +10,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from .surroundings import require_ready
+
 Real = Float[Array, ""]
 """A traced real scalar."""
 
@@ -22,6 +24,40 @@ def in_64_bits() -> bool:
     """Whether JAX keeps 64-bit floats."""
     # The attribute is made at run time: types do not know of it.
     return bool(jax.config.jax_enable_x64)  # type: ignore[attr-defined]
+
+
+def is_masked(value: Any) -> bool:
+    """Whether samples are missing: those of NumPy's masked arrays, alone or in a list.
+
+    `np.asarray` drops the mask without a word, and takes what lies under it.
+    """
+    if isinstance(value, np.ma.MaskedArray):
+        return bool(np.ma.is_masked(value))
+    return isinstance(value, list | tuple) and any(is_masked(part) for part in value)
+
+
+def _as_masked(value: Any) -> np.ma.MaskedArray:
+    """One masked array of a list of them; `np.ma.array` would warn, and fill in NaN."""
+    if isinstance(value, list | tuple):
+        return np.ma.stack([_as_masked(part) for part in value])
+    return np.ma.asarray(value)
+
+
+def without_masked(*columns: Any) -> tuple[list[Any], int]:
+    """Columns of samples, those left out that are masked in one of them, and how many.
+
+    Numbers and None stand for all samples. Columns of other shapes stay as they are, for
+    the check of shapes.
+    """
+    rows = [_as_masked(c) if is_masked(c) else c for c in columns]
+    several = [c for c in rows if np.ndim(c) > 0]
+    masked = [np.ma.getmaskarray(c) for c in several if is_masked(c)]
+    shapes = {np.shape(c) for c in several}
+    if not masked or len(shapes) > 1 or masked[0].ndim != 1:
+        return list(columns), 0
+    keep = ~np.any(masked, axis=0)
+    left = [np.ma.getdata(c)[keep] if np.ndim(c) else c for c in rows]
+    return left, int(np.sum(~keep))
 
 
 def as_real(value: Any) -> Any:
@@ -40,16 +76,38 @@ def as_real(value: Any) -> Any:
     if not _is_numeric(known):
         return value
     exact = known.astype(np.float64)
-    return jnp.asarray(exact) if in_64_bits() else exact
+    if not in_64_bits():
+        return exact
+    require_ready()
+    return jnp.asarray(exact)
 
 
 def known_numbers(value: Any) -> np.ndarray:
-    """A concrete value as an array; `None` of shape () where it holds no numbers."""
+    """A concrete value as an array; `None` of shape () where it holds no numbers.
+
+    Neither a truth is a number, nor what is masked.
+    """
+    if is_masked(value) or _has_truths(value):
+        return np.asarray(None)
     try:
         array = np.asarray(value)
     except ValueError:  # a ragged list
         return np.asarray(None)
     return array if _is_numeric(array) else np.asarray(None)
+
+
+def numbers_of(name: str, value: Any) -> np.ndarray:
+    """A concrete value as an array of floats; raises `ValueError` where it is none."""
+    array = known_numbers(value)
+    require(_is_numeric(array), name, value, "numbers")
+    return array.astype(float)
+
+
+def _has_truths(value: Any) -> bool:
+    """True in a list of numbers, which NumPy takes for 1."""
+    if isinstance(value, list | tuple):
+        return any(_has_truths(part) for part in value)
+    return isinstance(value, bool | np.bool_)
 
 
 def _is_numeric(array: np.ndarray) -> bool:
@@ -59,6 +117,11 @@ def _is_numeric(array: np.ndarray) -> bool:
 def as_text(value: Any) -> str:
     """A value as an error message shows it: six digits, arrays shortened."""
     if value is None or isinstance(value, str | bool | np.bool_) or callable(value):
+        return repr(value)
+    if is_masked(value):
+        values = _as_masked(value)
+        return f"a masked array ({np.ma.count_masked(values)} of {values.size} masked)"
+    if _has_truths(value):
         return repr(value)
     try:
         if np.asarray(value).dtype.kind == "c":  # a float of it warns
@@ -82,6 +145,7 @@ def is_concrete(*trees: Any) -> bool:
 
     Where a caller's `jit` is traced, what is computed from known numbers is traced too.
     """
+    require_ready()
     return is_known(*trees) and not isinstance(_nothing(), jax.core.Tracer)
 
 
@@ -124,6 +188,11 @@ def require_whole(name: str, value: Any, least: int = 1) -> None:
     require(whole and value >= least, name, value, f"a whole number >= {least}")
 
 
+def as_plain(value: Any) -> Any:
+    """A scalar of NumPy as Python's: what is static must be no array."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
 def require_flags(**flags: Any) -> None:
     """Check what is on or off: `"no"` would be on."""
     for name, value in flags.items():
@@ -149,6 +218,7 @@ def require_x64(*trees: Any) -> None:
     if not in_64_bits():
         mend = 'run `jax.config.update("jax_enable_x64", True)` before building the scene'
         raise ValueError(f"jax_enable_x64 = False: needs 64-bit floats; {mend}")
+    require_ready()
     for leaf in jax.tree_util.tree_leaves(trees):
         if eqx.is_inexact_array(leaf) and leaf.dtype != np.float64:
             numbers = "build the parts from Python numbers or float64 arrays"
@@ -161,8 +231,6 @@ def require_numbers(name: str, value: Any, allowed: str, test) -> None:
     if not is_known(value):
         return
     array = known_numbers(value)
-    parts = jax.tree_util.tree_leaves(value)
-    truths = any(isinstance(part, bool | np.bool_) for part in parts)
-    require(_is_numeric(array) and not truths, name, value, allowed)
+    require(_is_numeric(array), name, value, allowed)
     good = array.size > 0 and np.all(np.isfinite(array)) and bool(np.all(test(array)))
     require(good, name, value, allowed)

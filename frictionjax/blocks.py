@@ -11,6 +11,7 @@ from .cells import Cell, run_block
 from .grids import cells_of
 from .progress import progress_bar
 from .scene import Scene
+from .surroundings import with_nan
 
 # Lanes of one compiled block. 8 cost 1.0 us a lane and step, 32 cost 0.8, but wide blocks
 # mix cells of unequal length and each waits for its longest.
@@ -56,6 +57,7 @@ def run_blocks(
 def _run(scene, blocks, ts, accuracy, solver, balanced, progress: bool) -> Cell:
     """Run the blocks on all cores and put the cells back in order."""
 
+    @with_nan
     def one(block: Block) -> Cell:
         found = run_block(
             scene,

@@ -13,7 +13,8 @@ from .certificate_passages import folds_of, missing_forces, viscosity_ratio
 from .certificate_tube import distance
 from .coefficients import coefficients_jit
 from .outcomes import Outcome
-from .scene import Scene, require_scene, require_times
+from .scene import Scene, known_scene, require_times
+from .surroundings import with_nan
 
 # Measured at eps 1e-3 to 0.3, gamma 0.5 to 2, every bristle: true curves with and without
 # noise of eps/100 against the wrong ones.
@@ -70,6 +71,7 @@ class Certificate(NamedTuple):
         return self.status.message
 
 
+@with_nan
 def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
     """Certify any sampled curve, whatever made it, against the scene alone.
 
@@ -89,7 +91,7 @@ def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.
     """
-    require_scene(scene)
+    scene = known_scene(scene)
     require_real("eps", eps, "eps > 0", lambda e: e > 0)
     require_real("gamma", gamma, "gamma > 0", lambda g: g > 0)
     ts, z = _require_curve(scene, ts, z)

@@ -1,10 +1,12 @@
 """The command line. Only click is imported here: `--help` must not wait for JAX."""
 
+import errno
 import json
 import math
 import os
 import sys
 import threading
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -19,12 +21,14 @@ class Left(click.Abort):
 class OneLineErrors(click.Group):
     """A group whose commands end with one line on standard error, or in silence.
 
-    Exit status 2 for what the user can mend, 130 for Ctrl-C.
+    Exit status 2 for what the user can mend in the command or around it, 1 for a full
+    disk, 130 for Ctrl-C.
     """
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         """Run the command line and exit."""
         kwargs["standalone_mode"] = False
+        status = 2
         try:
             sys.exit(super().main(*args, **kwargs))
         except Left:
@@ -34,11 +38,19 @@ class OneLineErrors(click.Group):
         except click.ClickException as error:
             message = error.format_message()
         except OSError as error:
-            message = f"{error.filename}: {error.strerror}"
+            where = f"{error.filename}: " if error.filename else ""
+            message = f"{where}{error.strerror or error}"
+            status = 1 if error.errno in (errno.ENOSPC, errno.EDQUOT) else 2
         except ValueError as error:
             message = str(error)
+        except RuntimeError as error:
+            from .surroundings import SurroundingsError
+
+            if not isinstance(error, SurroundingsError):
+                raise
+            message = str(error)
         click.echo(f"Error: {' '.join(message.split())}", err=True)
-        sys.exit(2)
+        sys.exit(status)
 
 
 def _options(*options: Callable) -> Callable:
@@ -107,11 +119,21 @@ def _start() -> None:
     os.environ["MPLBACKEND"] = "Agg"  # heard when it is imported, which can wait
     import jax
 
+    from .wiggly.status import FailedCells
+
+    warnings.simplefilter("ignore", FailedCells)  # tables name them
+    # `keep_compiled` has its own: JAX warns anew for every program.
+    warnings.filterwarnings("ignore", "Error writing persistent compilation cache")
+    warnings.showwarning = _show_warning  # type: ignore[assignment]
     keep_compiled()
     jax.config.update("jax_enable_x64", True)
     # Threads that import, load programs and plan take turns: at 5 ms each a study took
     # 0.4 s longer.
     sys.setswitchinterval(5e-4)
+
+
+def _show_warning(message: Any, *_: Any) -> None:
+    click.echo(f"Warning: {' '.join(str(message).split())}", err=True)
 
 
 def _write(folder: Path, work: Callable[[Path], str]) -> None:

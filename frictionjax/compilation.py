@@ -43,15 +43,23 @@ def _backend_is_running() -> bool:
     return bool(bridge and getattr(bridge, "_backends", None))
 
 
-def keep_compiled(folder: Path | None = None) -> Path:
-    """Keep compiled programs in `folder`, the user's cache folder where it is None."""
+def keep_compiled(folder: str | os.PathLike | None = None) -> Path:
+    """Keep compiled programs in `folder`, the user's cache folder where it is None.
+
+    A folder that cannot be written, or a full disk, is one warning, and nothing more is
+    kept. Raises `ValueError` for what names no folder.
+    """
+    known = folder is None or (isinstance(folder, str | os.PathLike) and str(folder))
+    if not known:
+        raise ValueError(f"folder = {folder!r}: needs the path of a folder, or None")
     import jax
     from platformdirs import user_cache_path
 
     from .kept_programs import keep_in
 
-    place = folder or user_cache_path("frictionjax") / "xla"
-    keep_in(place / "programs")
-    jax.config.update("jax_compilation_cache_dir", str(place))
+    place = user_cache_path("frictionjax") / "xla" if folder is None else Path(folder)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", _WORTH_KEEPING)
+    keep_in(place / "programs")
+    if place.is_dir():
+        jax.config.update("jax_compilation_cache_dir", str(place))
     return place

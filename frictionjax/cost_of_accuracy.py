@@ -16,7 +16,8 @@ from .grids import grid_of
 from .instants import Instants, instants
 from .provenance import explain, origin
 from .references import LEAST_JUDGED, Reference, reference
-from .scene import Scene, require_scene, require_times, require_told_apart
+from .scene import Scene, known_scene, require_times, require_told_apart
+from .surroundings import with_nan
 from .timed_runs import accounted, clocked, runner, timed
 from .wiggly.general import SCIPY, Run
 from .wiggly.methods import solver_of
@@ -192,6 +193,7 @@ def _label(method: Any) -> str:
     return method.__name__ if isinstance(method, type) else type(method).__name__
 
 
+@with_nan
 def work_precision(
     scene: Scene,
     eps: Any = 1e-2,
@@ -238,7 +240,7 @@ def work_precision(
     Mazzia and C. Magherini, Test Set for Initial Value Problem Solvers, release 2.4
     (2008).
     """
-    require_scene(scene)
+    scene = known_scene(scene)
     require_flags(progress=progress)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     names, labels, asked = _required(methods, accuracies, repeats, seconds)

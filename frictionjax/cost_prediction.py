@@ -9,7 +9,8 @@ from .arguments import as_real, require, require_flags, require_real
 from .grids import cells_of, grid_of
 from .limit_system import require_start_in_strip
 from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
-from .scene import Scene, require_scene, require_times, require_told_apart
+from .scene import Scene, known_scene, require_times, require_told_apart
+from .surroundings import with_nan
 from .wiggly.own_methods import OURS, is_ours
 from .wiggly.tolerance import accuracies_of, require_accuracy
 from .wiggly.workload import Workload, workload
@@ -91,6 +92,7 @@ def _one(work: Workload, cell: int) -> Workload:
     return Workload._make([*(column[some] for column in work[:-1]), work.weight])
 
 
+@with_nan
 def predict_cost(
     scene: Scene,
     eps: Any,
@@ -112,7 +114,7 @@ def predict_cost(
 
     Raises `ValueError` for arguments out of range, as `sweep` does.
     """
-    require_scene(scene)
+    scene = known_scene(scene)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
     require_flags(measure=measure)

@@ -10,8 +10,9 @@ from .cost_prediction import predict_cost
 from .grids import grid_of
 from .law_orders import STATE, fit_with_law
 from .orders import Fit
-from .scene import Scene, require_scene
+from .scene import Scene, known_scene
 from .slide_laws import NO_LAW, Law, SlideData, predict_errors
+from .surroundings import with_nan
 from .sweeps import sweep
 from .wiggly.status import Status
 
@@ -78,6 +79,7 @@ class OrderCost(NamedTuple):
         return kept
 
 
+@with_nan
 def order_cost(
     scene: Scene,
     eps: Any,
@@ -106,7 +108,7 @@ def order_cost(
 
     Raises `ValueError` for arguments out of range, or less than two eps.
     """
-    require_scene(scene)
+    scene = known_scene(scene)
     known = grid_of("eps", eps)
     require(known.size >= 2, "eps", known, "a largest and a smallest")
     require_real("within", within, "within > 0", lambda w: w > 0)

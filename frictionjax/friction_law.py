@@ -11,13 +11,16 @@ from .admissibility import admissible_coefficients
 from .arguments import Real, require, require_x64
 from .bristles import AbstractBristle
 from .coefficients import Coefficients, with_errors
+from .parts import checked
 from .potentials import AbstractPotential, BristlePotential, potential
 from .profiles.slope_errors import AbstractSampled
+from .surroundings import with_nan
 
 _SLACK = 1e-10  # of the interval; rounding of l - Phi' at |l| = 1e4 rho is 1e-12
 _STEPS = 6  # of Newton: H' is a parabola at worst, where xi is close to rho
 
 
+@with_nan
 def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> Coefficients:
     """Friction coefficients of a scene, or of a profile and a bristle.
 
@@ -38,7 +41,7 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
             type(scene_or_profile).__name__,
             "a Scene, or a profile and a bristle",
         )
-        wiggle = scene_or_profile.potential
+        wiggle = checked(scene_or_profile.potential)
     else:
         wiggle = potential(scene_or_profile, bristle)
     require_x64(wiggle)

@@ -14,6 +14,7 @@ import pickle
 import sys
 import sysconfig
 import tempfile
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -28,12 +29,39 @@ _OURS = __name__.partition(".")[0]
 _TRUSTED = {_OURS, "builtins", "collections", "equinox", "jax", "jaxlib", "numpy"}
 _MOST = 300  # files in the folder; the oldest go first
 _place: Path | None = None
+_writes = True  # until something could not be written
+_PROBE = 4096  # bytes
+_NEVER = 1e9  # s of compilation from which on JAX keeps a program
 
 
 def keep_in(folder: Path | None) -> None:
-    """Keep the programs that are traced from now on in a folder; None: keep none."""
-    global _place
-    _place = None if folder is None else folder / _stamp()
+    """Keep the programs that are traced from now on in a folder; None: keep none.
+
+    Where it cannot be written, what is in it is used, and one warning says so.
+    """
+    global _place, _writes
+    _place, _writes = None if folder is None else folder / _stamp(), True
+    if _place is not None:
+        _try_to_write(_place / f"probe-{os.getpid()}", bytes(_PROBE))
+        with contextlib.suppress(OSError):
+            (_place / f"probe-{os.getpid()}").unlink()
+
+
+def _try_to_write(path: Path, data: bytes) -> None:
+    """Write a file; where that fails, warn once and write nothing more.
+
+    JAX would go on, with a warning and half a file for every program.
+    """
+    global _writes
+    if not _writes:
+        return
+    try:
+        _write(path, data)
+    except OSError as problem:
+        _writes = False
+        jax.config.update("jax_persistent_cache_min_compile_time_secs", _NEVER)
+        said = f"compiled programs are not kept in {path.parent} ({problem.strerror}): "
+        warnings.warn(said + "every process compiles them anew", stacklevel=2)
 
 
 def _stamp() -> str:
@@ -124,8 +152,7 @@ class _Kept:
             data, program = _traced(self._compiled, numbers)
         except Exception:  # not every program can be written down
             return self._compiled
-        with contextlib.suppress(OSError):  # a folder that cannot be written
-            _write(path, data)
+        _try_to_write(path, data)
         return program
 
 
@@ -163,9 +190,13 @@ def _write(path: Path, data: bytes) -> None:
     """Whole or not at all: other processes may read it at any time."""
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, temporary = tempfile.mkstemp(dir=path.parent)
-    with os.fdopen(handle, "wb") as file:
-        file.write(data)
-    os.replace(temporary, path)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        os.replace(temporary, path)
+    except OSError:
+        Path(temporary).unlink(missing_ok=True)
+        raise
     files = sorted(path.parent.parent.glob("*/*"), key=lambda f: f.stat().st_mtime)
     for old in files[:-_MOST]:
         old.unlink(missing_ok=True)

@@ -8,24 +8,56 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .arguments import Real, is_concrete, require
+from .arguments import Real, is_concrete, is_known, require
 from .coefficients import Coefficients, coefficients_jit
 from .friction_law import dissipation_potential
+from .outcomes import Outcome, counted, flags, outcomes
 from .programs import Program
-from .scene import Scene, require_scene, require_times
+from .scene import Scene, known_scene, require_times
 from .strip import strip_of, strips_at
 from .supports import AbstractSupport
+from .surroundings import with_nan
+
+
+class LimitStatus(Outcome):
+    """Why a limit solution can or cannot be trusted; `message` says it for people."""
+
+    OK = 0, "every number can be trusted"
+    NOT_FINITE = 1, "not finite, or the load turns more often than there is room for"
 
 
 class LimitSolution(eqx.Module):
     """Limit trajectory: times `ts` (s), states `z` (m), `dissipation` (J), shapes (n,).
 
-    `dissipation` is cumulative, `int_0^ts R(z')`.
+    `dissipation` is cumulative, `int_0^ts R(z')`. `ok`, `status`: not finite only where
+    the scene was traced, so that nothing could be checked.
     """
 
     ts: Float[Array, " n"]
     z: Float[Array, " n"]
     dissipation: Float[Array, " n"]
+
+    @property
+    def _codes(self) -> Array:
+        good = jnp.all(jnp.isfinite(self.z) & jnp.isfinite(self.dissipation), axis=-1)
+        return jnp.where(good, int(LimitStatus.OK), int(LimitStatus.NOT_FINITE))
+
+    @property
+    def ok(self) -> Any:
+        """One bool; of a batch (`jax.vmap`), or where traced, an array of them."""
+        return flags(self._codes == LimitStatus.OK)
+
+    @property
+    def status(self) -> Any:
+        """A `LimitStatus`; an array of them of a batch, integers where traced."""
+        return outcomes(LimitStatus, self._codes)
+
+    def __repr__(self) -> str:
+        if not is_known(self):
+            return super().__repr__()
+        codes, count = self._codes, np.shape(self.z)[-1]
+        batch = f"batch {codes.shape}: " if codes.ndim else ""
+        return f"LimitSolution({batch}{counted(LimitStatus, codes)}, {count} times)"
 
 
 def strip(support: AbstractSupport, found: Coefficients, load: Real) -> tuple[Real, Real]:
@@ -68,9 +100,10 @@ def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSo
     order = jnp.argsort(jnp.concatenate([ts, turns]))
     z, dissipation = limit_on_grid(scene, found, jnp.concatenate([ts, turns])[order])
     back = jnp.argsort(order)[: ts.shape[0]]
-    # Too little room for the turning points of a traced load is NaN, never a wrong number.
-    poison = jnp.where(jnp.any(jnp.isnan(turns)), jnp.nan, 0.0)
-    return LimitSolution(ts, z[back] + poison, dissipation[back] + poison)
+    # Too little room for the turning points of a traced load is NaN, never a wrong number,
+    # and so are derivatives: added, NaN would leave them as they are.
+    poison = jnp.where(jnp.any(jnp.isnan(turns)), jnp.nan, 1.0)
+    return LimitSolution(ts, z[back] * poison, dissipation[back] * poison)
 
 
 def require_start_in_strip(scene: Scene) -> None:
@@ -86,6 +119,7 @@ def require_start_in_strip(scene: Scene) -> None:
     require(lower - slack <= z0 <= upper + slack, "scene.z0", z0, needs)
 
 
+@with_nan
 def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     """Solve `0 in dR(z') + Phi'(z) - l(t)` (eq. 2.3), exactly up to rounding.
 
@@ -97,7 +131,7 @@ def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     allowed interval). Source: the play operator, see A. Mielke and T. Roubicek,
     Rate-Independent Systems (2015).
     """
-    require_scene(scene)
+    scene = known_scene(scene)
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
     return _solve(scene, coefficients_jit(scene.potential), ts)

@@ -4,15 +4,17 @@ import abc
 import inspect
 from collections.abc import Callable
 from functools import partial
+from typing import ClassVar
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .arguments import Real, require, require_function, require_x64
+from .arguments import Real, as_plain, require, require_function, require_whole, require_x64
 from .bristles import AbstractBristle
 from .extrema import smallest
+from .parts import Part, checked
 from .profiles import AbstractProfile
 from .profiles.profile import require_smooth
 from .roots import bracketed_root
@@ -25,7 +27,7 @@ def _slope(fn: Callable[[Real], Real], x: Real) -> tuple[Real, Real]:
     return jax.jvp(fn, (x,), (jnp.ones_like(x),))
 
 
-class AbstractPotential(eqx.Module):
+class AbstractPotential(Part):
     """`V_eps(z) = eps W(Y) + eps^2 Q(eps; Y)` with `Y = z/eps`, lengths in m, V in J.
 
     An implementer gives the potential in the tip coordinate `y = p/eps`, in which nothing
@@ -215,22 +217,26 @@ class GivenPotential(AbstractPotential):
     Raises `ValueError` where `W` does not repeat as a C^2 function or is constant.
     """
 
+    _stored: ClassVar = {"W": "W_fn", "Q": "Q_fn"}
+
     W_fn: Callable[[Real], Real]
     Q_fn: Callable[[Real, Real], Real]
-    points: int = eqx.field(static=True, default=4096)
+    points: int = eqx.field(static=True, default=4096, converter=as_plain)
 
     def __init__(self, W: Callable, Q: Callable | None = None, points: int = 4096):
-        require_function("potential.W", W, "a function of Y")
-        if Q is not None:
-            what = "a function of (eps, Y)"
-            require(callable(Q) and _takes_two(Q), "potential.Q", Q, what)
-            require_function("potential.Q", partial(Q, jnp.asarray(1e-3)), what)
-        enough = isinstance(points, int) and points >= 16
-        require(enough, "potential.points", points, "points >= 16")
         self.W_fn = W
         self.Q_fn = _nothing if Q is None else Q
         self.points = points
-        require_smooth("potential.W", self._leading_inside, points)
+
+    def __check_init__(self):
+        require_function("potential.W", self.W_fn, "a function of Y")
+        if self.Q_fn is not _nothing:
+            what = "a function of (eps, Y)"
+            Q = self.Q_fn
+            require(callable(Q) and _takes_two(Q), "potential.Q", Q, what)
+            require_function("potential.Q", partial(Q, jnp.asarray(1e-3)), what)
+        require_whole("potential.points", self.points, 16)
+        require_smooth("potential.W", self._leading_inside, self.points)
 
     def _leading_inside(self, Y: Real) -> Real:
         return jnp.asarray(self.W_fn(Y))
@@ -265,7 +271,7 @@ def potential(profile: AbstractProfile, bristle: AbstractBristle) -> BristlePote
     require(known, "profile", type(profile).__name__, "a part of frictionjax.profiles")
     known = isinstance(bristle, AbstractBristle)
     require(known, "bristle", type(bristle).__name__, "a part of frictionjax.bristles")
-    return BristlePotential(profile, bristle)
+    return BristlePotential(checked(profile), checked(bristle))
 
 
 def smallest_stretch(

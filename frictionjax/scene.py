@@ -1,5 +1,6 @@
 """What is simulated, as data."""
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -23,6 +24,14 @@ from .arguments import (
 )
 from .bristles import AbstractBristle
 from .loads import AbstractLoad
+from .parts import (
+    asked_names,
+    checked,
+    eagerly,
+    exchanged,
+    is_checked,
+    mark_checked,
+)
 from .potentials import AbstractPotential, BristlePotential, potential
 from .profiles import AbstractProfile
 from .programs import Program
@@ -30,6 +39,8 @@ from .supports import AbstractSupport
 
 _TRACED_TURNS = 64  # turning points allowed for where the load's numbers are traced
 _TOLD_APART = 1e-13  # of the largest |z|: rounding of z itself is 1e-3 eps there
+_ANEW = "_anew"  # attribute, no field: the scene built of one with other leaves
+_ROUNDED = 8  # spacings of floats by which a time may exceed the duration
 _MOST_TURNS = 2**20  # in a scene: 8 MB a copy of their times
 
 
@@ -46,6 +57,11 @@ class Scene(eqx.Module):
     (`turns`, a power of two), so a scene of the same shape and other values compiles
     nothing new.
 
+    `scene.replace(duration=6.0)` is the scene with other arguments, built anew. Scenes
+    changed leaf by leaf (`equinox.tree_at`) are checked, and given their room, where they
+    are used; where their numbers are traced the room is what it was, and where it is too
+    small results have a status that says so.
+
     Raises `ValueError` for parts of another kind, a duration that is not positive, and
     every hypothesis of the paper that can be told without eps: see `friction`, and
     `Phi` uniformly convex on the range that the load reaches.
@@ -57,7 +73,7 @@ class Scene(eqx.Module):
     duration: Real
     z0: Real
     effects: tuple
-    turns: int = eqx.field(static=True)
+    turns: int = eqx.field(static=True, init=False)
 
     def __init__(
         self,
@@ -72,13 +88,8 @@ class Scene(eqx.Module):
         potential: AbstractPotential | None = None,
     ):
         self.potential = _potential_of(profile, bristle, potential)
-        for name, part, kind in (
-            ("support", support, AbstractSupport),
-            ("load", load, AbstractLoad),
-        ):
-            known = isinstance(part, kind)
-            needs = f"a part of frictionjax.{name}s"
-            require(known, f"scene.{name}", type(part).__name__, needs)
+        self.support = _part("support", support, AbstractSupport)
+        load = _part("load", load, AbstractLoad)
         require(duration is not None, "scene.duration", "None", "a time > 0 in s")
         require(
             isinstance(effects, tuple | list) and len(effects) == 0,
@@ -86,15 +97,33 @@ class Scene(eqx.Module):
             effects if effects is None else repr(effects),
             "(): this version has no optional effects",
         )
-        assert support is not None
-        assert load is not None
-        self.support, self.load = support, load
         self.duration, self.z0 = as_real(duration), as_real(z0)
         self.effects = tuple(effects)
         require_real("scene.duration", self.duration, "duration > 0", lambda t: t > 0)
         require_real("scene.z0", self.z0, "a position in m")
-        self.turns = _room_for_turns(self.load, self.duration)
+        self.load, self.turns = _with_turns(load, self.duration)
         _require_hypotheses(self)
+
+    def __check_init__(self):
+        mark_checked(self)
+
+    def replace(self, **changes: Any) -> "Scene":
+        """The scene with other constructor arguments, by name, built and checked anew.
+
+        `scene.replace(load=scene.load.replace(period=1.0))` changes a number of a part.
+        Raises `ValueError` for names that there are not, and as the constructor does.
+        """
+        known = asked_names(Scene, changes)
+        given = {name: getattr(self, name) for name in known}
+        # The wiggly potential is given, or follows from profile and bristle.
+        if "potential" in changes or not changes.keys() & {"profile", "bristle"}:
+            del given["profile"], given["bristle"]
+        else:
+            del given["potential"]
+        return Scene(**(given | changes))
+
+    def __replace__(self, **changes: Any) -> "Scene":
+        return self.replace(**changes)
 
     @property
     def profile(self) -> AbstractProfile | None:
@@ -118,15 +147,23 @@ class Scene(eqx.Module):
 def _potential_of(profile, bristle, given) -> AbstractPotential:
     if given is None:
         return potential(profile, bristle)
-    require(
-        profile is None, "scene.profile", type(profile).__name__, "none beside potential"
-    )
-    require(
-        bristle is None, "scene.bristle", type(bristle).__name__, "none beside potential"
-    )
+    for name, part in (("profile", profile), ("bristle", bristle)):
+        needs = f"none beside potential; `scene.replace({name}=...)` exchanges it"
+        require(part is None, f"scene.{name}", type(part).__name__, needs)
     known = isinstance(given, AbstractPotential)
     require(known, "scene.potential", type(given).__name__, "a GivenPotential")
-    return given
+    return checked(given)
+
+
+def _part(name: str, part: Any, kind: type) -> Any:
+    needs = f"a part of frictionjax.{name}s"
+    require(isinstance(part, kind), f"scene.{name}", type(part).__name__, needs)
+    return checked(part)
+
+
+def _with_turns(load: AbstractLoad, duration: Any) -> tuple[AbstractLoad, int]:
+    """All that follows from load and duration: the load, and room for its turns."""
+    return load, _room_for_turns(load, duration)
 
 
 def _room_for_turns(load: AbstractLoad, duration: Any) -> int:
@@ -171,11 +208,35 @@ def _farthest(scene: Scene) -> Real:
     return jnp.maximum(jnp.max(jnp.abs(states)), jnp.abs(scene.z0))
 
 
-def require_scene(scene: Any) -> None:
-    """Check that it is a scene, in 64 bits."""
+def known_scene(scene: Any) -> Scene:
+    """The scene that its numbers make, in 64 bits: what entry points work with.
+
+    Itself unless leaves were exchanged (`eqx.tree_at`): then what the constructor makes
+    of them. Raises `ValueError` for what is no scene, and as the constructor does.
+    """
     needs = "a Scene, as frictionjax.Scene or load_scene make it"
     require(isinstance(scene, Scene), "scene", type(scene).__name__, needs)
     require_x64(scene)
+    if is_checked(scene):
+        return scene
+    anew = vars(scene).get(_ANEW)
+    if anew is None:
+        anew = _built_anew(scene)
+        if is_checked(anew):  # else it was made in a trace, which it must not outlive
+            object.__setattr__(scene, _ANEW, anew)
+    return anew
+
+
+def _built_anew(scene: Scene) -> Scene:
+    if is_known(scene):
+        with eagerly(scene):
+            return dataclasses.replace(scene)
+    if not is_known(scene.load, scene.duration):
+        return scene
+    # Derivatives by other numbers of a scene that was made longer.
+    with eagerly(scene.load, scene.duration):
+        load, turns = _with_turns(checked(scene.load), scene.duration)
+    return exchanged(scene, {"load": load, "turns": turns})
 
 
 def require_told_apart(scene: Scene, eps: Any) -> None:
@@ -192,7 +253,10 @@ def require_told_apart(scene: Scene, eps: Any) -> None:
 
 
 def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " n"]:
-    """Check requested times: sorted, inside [0, duration]; evenly spaced where None."""
+    """Check requested times: sorted, inside [0, duration]; evenly spaced where None.
+
+    Times that exceed it by rounding are moved to its end.
+    """
     duration = jnp.asarray(scene.duration)
     if ts is None:
         return duration * jnp.linspace(0.0, 1.0, fallback)
@@ -208,6 +272,10 @@ def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " 
     require(np.all(np.isfinite(known)), "ts", known, "finite times")
     require(np.all(np.diff(known) >= 0), "ts", known, "times that do not decrease")
     end = float(duration)
-    inside = known[0] >= 0 and known[-1] <= end
+    # 3 * 0.1 > 0.3, and what is added up n times is n spacings off.
+    slack = (_ROUNDED + known.size) * np.spacing(end)
+    inside = known[0] >= -slack and known[-1] <= end + slack
     require(inside, "ts", known[[0, -1]], f"times in [0, duration] = [0, {as_text(end)}]")
-    return ts
+    if known[0] >= 0 and known[-1] <= end:
+        return ts
+    return jnp.asarray(np.clip(known, 0.0, end))

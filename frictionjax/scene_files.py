@@ -32,6 +32,7 @@ _WHOLE = ("harmonics", "row")
 _FIT = ("period", "smoothing", *_WHOLE)
 
 
+_SAVE = "save it as UTF-8, which TOML is"
 _SAVED = "a profile and a bristle: what Python functions give cannot be saved"
 
 
@@ -58,11 +59,25 @@ def load_scene(path: Any) -> Scene:
 def load_study(path: Any) -> SceneFile:
     """Read scene and study of a TOML file; see `load_scene`."""
     try:
-        text = Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as problem:
-        reason = getattr(problem, "strerror", None) or "not a text file"
-        raise ValueError(f"{path}: cannot be read ({reason})") from None
+        text = Path(path).read_text(encoding="utf-8-sig")  # Windows' editors mark a file
+    except OSError as problem:
+        raise ValueError(f"{path}: cannot be read ({problem.strerror})") from None
+    except UnicodeDecodeError as problem:
+        raise ValueError(f"{path}: cannot be read ({_encoding(problem)})") from None
+    if "\0" in text:
+        raise ValueError(f"{path}: cannot be read (UTF-16 or no text; {_SAVE})")
     return parse_scene(text, str(path), Path(path).parent)
+
+
+def _encoding(problem: UnicodeDecodeError) -> str:
+    """What is in a file that is not UTF-8, and where."""
+    data, at = problem.object, problem.start
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return f"UTF-16; {_SAVE}"
+    if b"\0" in data:
+        return f"no text; {_SAVE}"
+    line = data.count(b"\n", 0, at) + 1
+    return f"not UTF-8, byte 0x{data[at]:02x} in line {line}; {_SAVE}"
 
 
 def default_study() -> SceneFile:

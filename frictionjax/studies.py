@@ -8,8 +8,9 @@ import xarray as xr
 from .arguments import require
 from .law_orders import ENERGY, STATE, LawFit, Trust, fit_with_law
 from .orders import Fit, Verdict, local_orders
+from .selected_cells import whole_grid
 from .slide_laws import NO_LAW, Prediction, SlideData, predict_errors
-from .wiggly.status import Status, status_of
+from .wiggly.status import Status, status_of, warn_of_failed
 
 _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
 
@@ -55,15 +56,20 @@ def study(dataset: xr.Dataset) -> Study:
     used, order and interval are those of the ratio of errors to prediction, see
     `law_orders.fit_with_law`. (The paper proves no rate for the sup error.)
 
+    Cells that failed are left out, and a warning (`FailedCells`) names them.
+
     Raises `ValueError` where the data set lacks what `sweep` puts there.
     """
     needed = {"sup_error", "status", "strip_excess", "z"}
     given = getattr(dataset, "variables", None)
     allowed = "a data set that `sweep` has made"
     require(given is not None, "dataset", type(dataset).__name__, allowed)
+    dataset = whole_grid(dataset)
     missing = ", ".join(sorted(needed - set(given or ())))
     allowed = "one that `sweep` has made, with suprema=True"
     require(not missing, "dataset", f"one without {missing}", allowed)
+    codes = dataset.status.transpose("gamma", "eps").values
+    warn_of_failed(codes, dataset.gamma.values, dataset.eps.values)
     gammas = dataset.gamma.values
     laws = _predictions(dataset)
     columns: dict[str, np.ndarray] = {}

@@ -15,13 +15,14 @@ from .limit_system import (
 )
 from .progress import progress_bar
 from .provenance import describe
-from .scene import Scene, require_scene, require_times, require_told_apart
+from .scene import Scene, known_scene, require_times, require_told_apart
 from .slide_laws import slide_data
 from .strip import strips_at
+from .surroundings import with_nan
 from .viscosity import viscosity_of
 from .wiggly.engine import integrate_cells
 from .wiggly.own_methods import is_ours
-from .wiggly.status import Status
+from .wiggly.status import Status, warn_of_failed
 from .wiggly.tolerance import require_accuracy
 
 if TYPE_CHECKING:
@@ -59,6 +60,7 @@ _DIMS = ("gamma", "eps", "time")
 _SUPREMA = ("sup_error", "strip_excess", "survey_error")
 
 
+@with_nan
 def sweep(
     scene: Scene,
     eps: Any,
@@ -92,12 +94,13 @@ def sweep(
     `slide_speed` and `slide_stiffness`, and `moment_length`, `moment_pull` of the load.
     Units and provenance are in the attributes; it goes to NetCDF and back without loss.
 
-    A cell that fails has its status and NaNs and does not disturb the others.
+    A cell that fails has its status and NaNs and does not disturb the others; one warning
+    (`FailedCells`, a `UserWarning`) names such cells.
 
     Raises `ValueError` for arguments out of range, z0 outside the strip at t = 0 (Theorem
     1 does not apply), or an eps at which the bristle loses contact.
     """
-    require_scene(scene)
+    scene = known_scene(scene)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
     require_flags(progress=progress, dissipation=dissipation, suprema=suprema)
@@ -136,6 +139,7 @@ def sweep(
     import xarray as xr  # 0.4 s, which another thread may spend while cells run
 
     # All variables at once: one by one they are aligned anew, 1 ms each.
+    warn_of_failed(columns["status"][1], gamma, eps, frames=1)  # `with_nan`
     places = {"gamma": gamma, "eps": eps, "time": np.asarray(ts), **phase}
     data = xr.Dataset(columns, coords=places)
     return describe(data, scene, accuracy=wanted, solver=name)

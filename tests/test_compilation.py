@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+import frictionjax as fx
+
 PROGRAM = """
 import jax, sys
 import frictionjax as fx
@@ -29,3 +31,24 @@ def test_flags_are_set_before_anything_is_computed_or_left_alone(given, when, ex
     command = [sys.executable, "-c", PROGRAM, when]
     done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == expected
+
+
+KEEP = """
+import sys
+import frictionjax as fx
+print(fx.keep_compiled(sys.argv[1]))
+import jax
+print(jax.config.jax_compilation_cache_dir)
+"""
+
+
+def test_a_folder_for_programs_may_be_a_text(tmp_path):
+    command = [sys.executable, "-c", KEEP, str(tmp_path / "kept")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == 2 * [str(tmp_path / "kept")]
+
+
+@pytest.mark.parametrize("folder", ["", 3, True, b"kept"])
+def test_what_names_no_folder_is_refused(folder):
+    with pytest.raises(ValueError, match=r"folder = .*: needs the path of a folder"):
+        fx.keep_compiled(folder)

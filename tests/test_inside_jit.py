@@ -38,14 +38,15 @@ def test_traced_numbers_that_are_none_end_at_once():
     """Steps of NaN were made until there was room for no more, for minutes."""
 
     def run(eps, gamma):
-        found = fx.solve(_SCENE, eps, gamma, _TIMES)
-        return found.z, found.status_code
+        return fx.solve(_SCENE, eps, gamma, _TIMES)
 
     eps, gamma = jnp.array([0.05, -1.0, jnp.nan, 0.0, 0.05]), jnp.ones(5).at[4].set(jnp.nan)
-    z, codes = jax.jit(jax.vmap(run))(eps, gamma)
-    assert codes.tolist() == [fx.Status.OK] + 4 * [fx.Status.NOT_FINITE]
-    assert np.all(np.isnan(z[1:]))
-    assert abs(float(z[0, -1] - _end())) < 1e-3 * 0.05
+    found = jax.jit(jax.vmap(run))(eps, gamma)
+    assert found.status.tolist() == [fx.Status.OK] + 4 * [fx.Status.NOT_FINITE]
+    assert found.ok.tolist() == [True] + 4 * [False]
+    assert "batch (5,): 1 of 5 OK, 4 NOT_FINITE; 3 times each" in repr(found)
+    assert np.all(np.isnan(found.z[1:]))
+    assert abs(float(found.z[0, -1] - _end())) < 1e-3 * 0.05
 
 
 def test_friction_of_known_parts():

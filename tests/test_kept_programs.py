@@ -131,7 +131,8 @@ def test_files_that_do_not_load_are_made_again(tmp_path, traced):
 
 def test_a_folder_that_cannot_be_written_costs_time_only(tmp_path, traced):
     (tmp_path / "file").write_text("in the way")
-    kept_programs.keep_in(tmp_path / "file")
+    with pytest.warns(UserWarning, match=r"not kept in .*file.* \(Not a directory\)"):
+        kept_programs.keep_in(tmp_path / "file")
     found = Program(TIPS)(*tips())
     np.testing.assert_allclose(found[1], jax.jit(TIPS)(*tips())[1], rtol=1e-14)
 

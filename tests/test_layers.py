@@ -12,8 +12,9 @@ ROOT = Path(frictionjax.__file__).parent
 
 # Units on one floor know nothing of each other; a folder is one unit.
 FLOORS = [
+    {"surroundings"},
     {"arguments", "progress", "asymptotes"},
-    {"grids", "viscosity"},
+    {"grids", "viscosity", "parts"},
     {"kept_programs"},
     {"outcomes", "compilation", "programs"},
     {"roots", "taylor", "extrema", "trigonometry"},
@@ -28,7 +29,7 @@ FLOORS = [
     {"certificate_curve"},
     {"certificate_passages", "certificate_tube"},
     {"limit_system", "wiggly", "certificate"},
-    {"provenance"},
+    {"provenance", "selected_cells"},
     {"cells"},
     {"blocks"},
     {"sweeps"},

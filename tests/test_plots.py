@@ -41,6 +41,7 @@ def convergence(**kwargs):
     return found, fx.study(found).orders, fx.study(found).plot()
 
 
+@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.status.FailedCells")
 def test_convergence_shows_points_fits_and_failures():
     found, orders, figure = convergence()
     state, energy, strip = drawn(figure)
@@ -90,6 +91,7 @@ def test_convergence_without_dissipation_or_orders():
     assert "$\\gamma$ = 1: too few points for an order" in labels(axes[0])
 
 
+@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.status.FailedCells")
 def test_convergence_where_everything_failed():
     found = sweep_like()
     found["status"] = found.status.copy(data=np.full((2, 6), 1, dtype=np.int8))

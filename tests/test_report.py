@@ -73,6 +73,7 @@ def test_without_dissipation_its_columns_are_empty():
     assert text.splitlines()[1].split()[4:6] == ["-", "-"]
 
 
+@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.status.FailedCells")
 def test_order_table():
     orders = fx.study(sweep_like()).orders
     lines = order_table(orders).splitlines()
@@ -97,6 +98,7 @@ def test_an_order_from_too_few_points_is_a_dash():
     assert line.endswith("too few points")
 
 
+@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.status.FailedCells")
 def test_failed_cells_are_listed():
     text = failed_table(fx.study(sweep_like()).failed)
     assert text.splitlines()[1].split()[:3] == ["1", "0.01", "max_steps"]

@@ -1,5 +1,6 @@
 """Scene files: exact round trips, and mistakes named on one line."""
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -154,8 +155,34 @@ def test_unreadable_files(tmp_path):
     with pytest.raises(ValueError, match=r"none\.toml: cannot be read \(No such file"):
         fx.load_scene(tmp_path / "none.toml")
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(ValueError, match=r"binary\.toml: cannot be read \(not a text file"):
+    with pytest.raises(ValueError, match=r"binary\.toml: cannot be read \(UTF-16"):
         fx.load_scene(tmp_path / "binary.toml")
+
+
+BOM = "\ufeff"
+
+
+@pytest.mark.parametrize("start", [BOM, "", BOM + "\r\n"])
+def test_a_byte_order_mark_is_no_part_of_a_scene(start, tmp_path):
+    (tmp_path / "scene.toml").write_bytes((start + TEXT).encode("utf-8"))
+    assert eqx.tree_equal(fx.load_scene(tmp_path / "scene.toml"), default_study().scene)
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        ((BOM + TEXT).encode("utf-16-le"), "UTF-16; save it as UTF-8"),
+        ((BOM + TEXT).encode("utf-16-be"), "UTF-16; save it as UTF-8"),
+        (TEXT.encode("utf-16-le"), "UTF-16 or no text; save it as UTF-8"),
+        (b"# 1\n# in \xb5m\n" + TEXT.encode(), "not UTF-8, byte 0xb5 in line 2; save it"),
+        (b"\x89PNG\x00\x01", "no text; save it as UTF-8"),
+    ],
+)
+def test_other_encodings_are_named(data, said, tmp_path):
+    (tmp_path / "scene.toml").write_bytes(data)
+    with pytest.raises(ValueError, match=rf"scene\.toml: cannot be read \({said}") as found:
+        fx.load_scene(tmp_path / "scene.toml")
+    assert "\n" not in str(found.value)
 
 
 def measured_scene(folder, options):

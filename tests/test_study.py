@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 import frictionjax as fx
+from frictionjax.wiggly.status import FailedCells
 
 
 def synthetic(order=1.0, noise=0.0) -> xr.Dataset:
@@ -56,7 +57,8 @@ def test_failed_cells_are_listed_not_dropped():
     data = synthetic()
     data.status[1, 3] = int(fx.Status.MAX_STEPS)
     data.sup_error[1, 3] = np.nan
-    found = fx.study(data)
+    with pytest.warns(FailedCells, match=r"1 of \d+ cells failed \(gamma = 1, .*MAX_STEPS"):
+        found = fx.study(data)
     assert [(c["gamma"], c["status"]) for c in found.failed] == [(1.0, "max_steps")]
     assert "max_steps" in found.failed[0]["message"]
     assert int(found.orders.failed.sel(gamma=1.0)) == 1

@@ -9,6 +9,7 @@ import xarray as xr
 
 import frictionjax as fx
 from frictionjax.wiggly.rosenbrock_solvers import Rodas5P
+from frictionjax.wiggly.status import FailedCells
 
 EPS = [0.09, 0.05, 0.03]
 GAMMA = [0.5, 1.0, 2.0]
@@ -116,7 +117,9 @@ def test_netcdf_without_loss(data, tmp_path):
 def test_failed_cells_keep_their_place(data, monkeypatch):
     """One cell below the spacing of floats: a status and NaN, the others untouched."""
     ts = data.time.values
-    mixed = fx.sweep(scene_of(), [0.05, 1e-3], [1.0, 5.0], ts=ts, method=Rodas5P())
+    said = r"1 of 4 cells failed \(gamma = 5, eps = 0.001: STEP_TOO_SMALL\)"
+    with pytest.warns(FailedCells, match=said):
+        mixed = fx.sweep(scene_of(), [0.05, 1e-3], [1.0, 5.0], ts=ts, method=Rodas5P())
     bad = mixed.sel(gamma=5.0, eps=1e-3)
     assert int(bad.status) == fx.Status.STEP_TOO_SMALL
     assert np.isnan(bad.sup_error)
@@ -124,7 +127,8 @@ def test_failed_cells_keep_their_place(data, monkeypatch):
     same = data.sel(gamma=1.0, eps=0.05)
     assert int(good.status) == fx.Status.OK
     assert np.abs(good.z - same.z).max() < 1e-4 * 0.05  # another scheme
-    failed = fx.study(mixed).failed
+    with pytest.warns(FailedCells, match=said):
+        failed = fx.study(mixed).failed
     assert [cell["status"] for cell in failed] == ["step_too_small"]
     assert failed[0]["gamma"] == 5.0
     assert failed[0]["eps"] == 1e-3

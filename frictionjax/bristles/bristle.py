@@ -3,10 +3,10 @@
 import abc
 from typing import NamedTuple
 
-import equinox as eqx
 import jax.numpy as jnp
 
 from ..arguments import Real
+from ..parts import Part
 
 
 class SlopeBounds(NamedTuple):
@@ -28,7 +28,7 @@ class Rod(NamedTuple):
     reach: Real
 
 
-class AbstractBristle(eqx.Module):
+class AbstractBristle(Part):
     """A bristle: two scalar functions of the height `eta` of the surface under its tip.
 
     Everything else (a, alpha, mu, rho, V_eps, the dynamics) follows by autodiff.

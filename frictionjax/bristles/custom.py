@@ -1,6 +1,7 @@
 """Bristle given by its two functions."""
 
 from collections.abc import Callable
+from typing import ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -19,16 +20,18 @@ class Custom(AbstractBristle):
     Raises `ValueError` where `A(0) != 0`, `F'(0) = 0` or a value at 0 is not finite.
     """
 
+    _stored: ClassVar = {"offset": "offset_fn", "energy": "energy_fn"}
+
     offset_fn: Callable[[Real], Real]
     energy_fn: Callable[[Real], Real]
 
     def __init__(self, offset: Callable[[Real], Real], energy: Callable[[Real], Real]):
-        require_function("bristle.offset", offset, "a function A of eta")
-        require_function("bristle.energy", energy, "a function F of eta")
         self.offset_fn = offset
         self.energy_fn = energy
 
     def __check_init__(self):
+        require_function("bristle.offset", self.offset_fn, "a function A of eta")
+        require_function("bristle.energy", self.energy_fn, "a function F of eta")
         if not is_concrete(self):
             return
         zero = np.float64(0.0)

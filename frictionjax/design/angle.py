@@ -20,6 +20,7 @@ from ..coefficients import coefficients_jit
 from ..potentials import potential
 from ..profiles import AbstractProfile
 from ..programs import Program, room
+from ..surroundings import with_nan
 from .angle_fit import AngleFit
 from .fit_status import FitStatus
 from .free_parameter import FreeParameter, free_parameter, require_bounds, with_arrays
@@ -65,6 +66,7 @@ def _in_sizes(target: Real, fit: Any) -> Any:
     return jax.tree_util.tree_map(joined, *parts)
 
 
+@with_nan
 def fit_angle(
     profile: AbstractProfile,
     bristle: AbstractBristle,

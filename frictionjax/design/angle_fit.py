@@ -7,8 +7,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, as_text, is_concrete, is_known, require
+from ..arguments import Real, as_text, is_concrete, is_known, require_whole
 from ..bristles import AbstractBristle
+from ..outcomes import counted, flags, outcomes
 from ..profiles import AbstractProfile
 from ..programs import Program
 from .angle_json import dump, fields
@@ -54,15 +55,12 @@ class AngleFit(eqx.Module):
     @property
     def success(self) -> Any:
         """Whether the bristle gives what was asked for: one bool, or one a target."""
-        good = jnp.isin(self.code, np.array([int(s) for s in GOOD]))
-        return bool(good) if is_known(good) and good.ndim == 0 else good
+        return flags(jnp.isin(self.code, np.array([int(s) for s in GOOD])))
 
     @property
     def status(self) -> Any:
-        """`FitStatus`, or an array of them."""
-        if self.code.ndim == 0:
-            return status_of(int(self.code))
-        return np.vectorize(status_of, otypes=[object])(np.asarray(self.code))
+        """`FitStatus`, or an array of them; integers where traced."""
+        return outcomes(FitStatus, self.code)
 
     @property
     def message(self) -> Any:
@@ -90,8 +88,7 @@ class AngleFit(eqx.Module):
 
     def curve(self, points: int = 400) -> tuple[Real, Real]:
         """The number and the quantity over the admissible intervals, shapes (pieces, n)."""
-        whole = isinstance(points, int) and points >= 2
-        require(whole, "points", points, "a whole number >= 2")
+        require_whole("points", points, 2)
         low, high = self.admissible[:, :1], self.admissible[:, 1:]
         values = low + (high - low) * jnp.linspace(1e-6, 1 - 1e-6, points)
         part = self.bristle if self.code.ndim == 0 else self[0].bristle
@@ -118,8 +115,11 @@ class AngleFit(eqx.Module):
         return cls(**fields(source))
 
     def __repr__(self) -> str:
-        if not is_known(self) or self.code.ndim:
+        if not is_known(self):
             return super().__repr__()
+        if self.code.ndim:
+            ended = counted(FitStatus, self.code)
+            return f"AngleFit({self.free}, batch {self.code.shape}: {ended})"
         return f"AngleFit({self.free}={as_text(self.value)}: {self.message})"
 
 

@@ -11,6 +11,7 @@ from ..coefficients import Coefficients
 from ..friction_law import friction
 from ..profiles import AbstractProfile
 from ..supports import Spring
+from ..surroundings import with_nan
 from .aligned_text import aligned
 from .steady_slide import SteadySlide, steady_slide
 
@@ -75,6 +76,7 @@ class DesignCheck(eqx.Module):
         return f"Steady slide, {told}; gaps to the limit\n{self.table}"
 
 
+@with_nan
 def check_design(
     profile: AbstractProfile,
     bristle: AbstractBristle,

@@ -17,7 +17,7 @@ def document_of(source: Any, kind: str, needed: set[str]) -> dict[str, Any]:
     text = str(source)
     if not text.lstrip().startswith("{"):
         try:
-            text = Path(source).read_text(encoding="utf-8")
+            text = Path(source).read_text(encoding="utf-8-sig")
         except (OSError, UnicodeDecodeError):
             require(False, "source", str(source), "the text or the file of a fit's JSON")
     try:

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import require, require_real
+from ..arguments import require_real, require_whole
 from ..profiles import AbstractProfile
 
 
@@ -24,9 +24,7 @@ def surface_heights(
     the profile (`profile.points` in a period).
     """
     require_real("period", period, "period > 0 in m", lambda v: v > 0)
-    whole = isinstance(samples, int) and not isinstance(samples, bool)
-    least = max(16, profile.points // 4)
-    require(whole and samples >= least, "samples", samples, f"a whole number >= {least}")
+    require_whole("samples", samples, max(16, profile.points // 4))
     y = np.arange(samples + 1) / samples
     w = np.asarray(jax.vmap(profile)(jnp.asarray(y)))
     w = w - np.min(w)

@@ -11,9 +11,11 @@ import xarray as xr
 from ..arguments import known_numbers, require, require_real, require_x64
 from ..bristles import AbstractBristle
 from ..coefficients import coefficients_jit
+from ..parts import checked
 from ..potentials import potential
 from ..profiles import AbstractProfile, Fourier
 from ..programs import Program
+from ..surroundings import with_nan
 from .free_parameter import FreeParameter, free_parameter, with_arrays
 from .quantities import Slopes, on_slopes, quantity_of, side_of
 
@@ -58,6 +60,7 @@ def asymmetric_profile(steepness: float, asymmetry: float) -> Fourier:
     return Fourier(jnp.zeros(needed), jnp.asarray(slopes / (2 * np.pi * order)))
 
 
+@with_nan
 def design_map(
     bristle: AbstractBristle,
     x: tuple[str, Any] | str = "angle",
@@ -83,6 +86,7 @@ def design_map(
     profile that is missing, or too much.
     """
     require_x64(bristle)
+    bristle = checked(bristle)
     bristle = with_arrays(bristle)
     axes = [_axis(bristle, label, given) for label, given in (("x", x), ("y", y))]
     names = [axis[0] for axis in axes]

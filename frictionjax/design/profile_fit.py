@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arguments import require, require_real, require_whole
 from ..programs import room
+from ..surroundings import with_nan
 from .bending import free_energy
 from .constraints import Layout
 from .free_parameter import free_parameter, require_bounds, with_arrays
@@ -39,6 +40,7 @@ class Problem(NamedTuple):
     bounds: dict[str, float | None]
 
 
+@with_nan
 def fit_profile(
     targets: Any,
     harmonics: int = 16,

@@ -8,7 +8,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..arguments import as_text, require
+from ..arguments import as_text, require_real, require_whole
 from ..bristles import AbstractBristle
 from ..coefficients import Coefficients
 from ..profiles import Fourier
@@ -84,8 +84,9 @@ class ProfileFit:
 
         Raises `ValueError` for a count or a size that is not positive.
         """
-        require(isinstance(count, int) and count > 0, "count", count, "a whole number > 0")
-        require(np.isfinite(size) and size > 0, "size", size, "a number > 0")
+        require_whole("count", count)
+        require_whole("seed", seed, 0)
+        require_real("size", size, "a number > 0", lambda v: v > 0)
         sharp, high = (self.bounds[k] for k in ("smallest_radius", "largest_amplitude"))
         known: Any = (
             waves_of(self.profile.cos, self.profile.sin),

@@ -20,6 +20,7 @@ from ..potentials import BristlePotential, smallest_stretch
 from ..profiles import AbstractProfile
 from ..programs import Program, in_chunks
 from ..supports import Spring
+from ..surroundings import with_nan
 from .angle import fit_angle
 from .angle_fit import AngleFit, intervals_text
 from .fit_json import written
@@ -180,6 +181,7 @@ def _values(free, bristle, places):
     return jax.vmap(lambda x: free.value(bristle, x))(places)
 
 
+@with_nan
 def fit_slide(
     profile: AbstractProfile,
     bristle: AbstractBristle,

@@ -10,6 +10,7 @@ from ..arguments import as_text, require_real
 from ..bristles import AbstractBristle
 from ..profiles import Fourier
 from ..supports import Spring
+from ..surroundings import with_nan
 from .fit_json import written
 from .profile_fit import fit_profile
 from .profile_result import ProfileFit
@@ -135,6 +136,7 @@ class _Trial(NamedTuple):
         return float(np.max(np.abs(self.off)))
 
 
+@with_nan
 def fit_slide_profile(
     targets: Any,
     eps: Any,

@@ -5,7 +5,6 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 
 from ..admissibility import require_admissible, require_reach
 from ..arguments import (
@@ -19,11 +18,14 @@ from ..arguments import (
     require_x64,
 )
 from ..bristles import AbstractBristle
+from ..outcomes import counted, flags, outcomes
+from ..parts import checked
 from ..potentials import potential
 from ..profiles import AbstractProfile
 from ..programs import Program, room
 from ..supports import Spring
-from ..wiggly.status import Status, status_of
+from ..surroundings import with_nan
+from ..wiggly.status import Status
 from .slide_period import STEPS, Period, Slide, least_pull, slide_forces
 
 FORCES = ("mean", "peak")  # of a slide, that designs may ask for
@@ -56,21 +58,23 @@ class SteadySlide(eqx.Module):
     @property
     def ok(self) -> Any:
         """Whether the numbers can be trusted: one bool, or one an eps."""
-        good = (self.code_plus == 0) & (self.code_minus == 0)
-        return bool(good) if is_known(good) and good.ndim == 0 else good
+        return flags((self.code_plus == 0) & (self.code_minus == 0))
 
     @property
     def status(self) -> Any:
-        """The worse `Status` of the two slides, or an array of them."""
-        worse = np.maximum(np.asarray(self.code_plus), np.asarray(self.code_minus))
-        return np.vectorize(status_of, otypes=[object])(worse)[()]
+        """The worse `Status` of the two slides, an array of them; integers where traced."""
+        return outcomes(Status, self._worse)
+
+    @property
+    def _worse(self) -> Any:
+        return jnp.maximum(self.code_plus, self.code_minus)
 
     def __repr__(self) -> str:
         if not is_known(self):
             return super().__repr__()
         names = ("eps", "mean_plus", "mean_minus", "peak_plus", "peak_minus")
         known = ", ".join(f"{name}={as_text(getattr(self, name))}" for name in names)
-        return f"SteadySlide({known}, status={self.status})"
+        return f"SteadySlide({known}, status={counted(Status, self._worse)})"
 
 
 class _Sides(NamedTuple):
@@ -145,9 +149,10 @@ def spring_of(support: Spring | None) -> Spring:
         return Spring(as_real(1.0))
     known = isinstance(support, Spring)
     require(known, "support", type(support).__name__, "a frictionjax.supports.Spring")
-    return support
+    return checked(support)
 
 
+@with_nan
 def steady_slide(
     profile: AbstractProfile,
     bristle: AbstractBristle,

@@ -8,6 +8,7 @@ import numpy as np
 from ..admissibility import require_admissible, rounding_of_alpha
 from ..arguments import is_concrete, known_numbers, require, require_real, require_x64
 from ..bristles import AbstractBristle
+from ..parts import checked
 from ..potentials import BristlePotential
 from ..profiles import Sine
 from ..programs import Program
@@ -96,17 +97,18 @@ def require_targets(targets: Any) -> tuple[list[Target], list[Geometry]]:
     require(listed, "targets", type(targets).__name__, "a Target or a list of them")
     many = [targets] if single else list(targets)
     require(many, "targets", "[]", "at least one Target")
-    known = [
-        _require_target("target" if single else f"targets[{index}]", target)
-        for index, target in enumerate(many)
-    ]
+    known = []
+    for index, target in enumerate(many):
+        name = "target" if single else f"targets[{index}]"
+        many[index] = _require_target(name, target)
+        known.append(_require_pressing(name, many[index].bristle))
     given = [target.uncertainty is not None for target in many]
     allowed = "one for every target or for none"
     require(all(given) or not any(given), "uncertainty", None, allowed)
     return many, known
 
 
-def _require_target(name: str, target: Any) -> Geometry:
+def _require_target(name: str, target: Any) -> Target:
     known = isinstance(target, Target)
     require(known, name, type(target).__name__, "a frictionjax.Target")
     bristle = target.bristle
@@ -114,6 +116,7 @@ def _require_target(name: str, target: Any) -> Geometry:
     allowed = "a part of frictionjax.bristles"
     require(known, f"{name}.bristle", type(bristle).__name__, allowed)
     require_x64(bristle)
+    bristle = checked(bristle)
     known = is_concrete(bristle)
     require(known, f"{name}.bristle", "traced", "numbers: a fit is not traced")
     for label, test in (("rho_plus", _positive), ("rho_minus", _negative)):
@@ -123,7 +126,7 @@ def _require_target(name: str, target: Any) -> Geometry:
     require_real(f"{name}.weight", target.weight, "weight > 0", _positive)
     if target.uncertainty is not None:
         _require_uncertainty(f"{name}.uncertainty", target.uncertainty)
-    return _require_pressing(name, bristle)
+    return target._replace(bristle=bristle)
 
 
 def _require_pressing(name: str, bristle: AbstractBristle) -> Geometry:

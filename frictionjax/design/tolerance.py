@@ -8,12 +8,13 @@ import jax.numpy as jnp
 import numpy as np
 import xarray as xr
 
-from ..arguments import as_text, known_numbers, require, require_x64
+from ..arguments import as_text, known_numbers, require, require_whole, require_x64
 from ..bristles import AbstractBristle
 from ..friction_law import friction
 from ..potentials import potential
 from ..profiles import AbstractProfile
 from ..programs import Program
+from ..surroundings import with_nan
 from .aligned_text import aligned
 from .free_parameter import FreeParameter, entries_of, free_parameter, with_arrays
 from .quantities import QUANTITIES, on_slopes, quantity_of, side_of, slopes_of
@@ -115,6 +116,7 @@ class Tolerance:
         return f"{told}{flipped}\n{aligned(rows)}"
 
 
+@with_nan
 def tolerance(
     profile: AbstractProfile,
     bristle: AbstractBristle,
@@ -140,8 +142,8 @@ def tolerance(
     require_x64(potential(profile, bristle))
     bristle, profile = with_arrays(bristle), with_arrays(profile)
     spread = _spreads(bristle, profile, spreads)
-    whole = isinstance(samples, int) and samples >= 2
-    require(whole, "samples", samples, "a whole number, samples >= 2")
+    require_whole("samples", samples, 2)
+    require_whole("seed", seed, 0)
     levels = known_numbers(quantiles)
     good = levels.ndim == 1 and np.all((levels >= 0) & (levels <= 1))
     require(good, "quantiles", quantiles, "numbers in [0, 1], shape (n,)")

@@ -7,9 +7,17 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..arguments import as_text, known_numbers, require, require_real
+from ..arguments import (
+    as_text,
+    numbers_of,
+    require,
+    require_real,
+    require_whole,
+    without_masked,
+)
 from ..programs import Program
-from ..scene import Scene, require_times
+from ..scene import Scene, known_scene, require_times
+from ..surroundings import with_nan
 from ..wiggly.trajectory import solve
 
 QUANTITIES = ("force", "z")
@@ -20,7 +28,8 @@ class Trace:
 
     One of `force`: `l(t) - Phi'(z)` in N, the friction of a loop, and `z`: the state in
     m. `uncertainty`: standard deviation of one sample in the same unit, a number or (n,);
-    None where it is not known: then it is taken from what the fit leaves.
+    None where it is not known: then it is taken from what the fit leaves. Samples masked
+    (`numpy.ma`) in any of them are left out; `masked` is their number.
 
     Raises `ValueError` for shapes that differ, values that are not finite, times that do
     not increase from 0 on, uncertainties that are not positive, or both quantities.
@@ -31,14 +40,16 @@ class Trace:
         allowed = "one of force and z"
         require(len(given) == 1, "trace", " and ".join(given) or "nothing", allowed)
         self.quantity = given[0]
-        self.ts = known_numbers(ts).astype(float)
+        values = force if z is None else z
+        (ts, values, uncertainty), self.masked = without_masked(ts, values, uncertainty)
+        self.ts = numbers_of("trace.ts", ts)
         good = self.ts.ndim == 1 and self.ts.size >= 4
         require(good, "trace.ts", self.ts.shape, "4 or more times, shape (n,)")
         require(np.all(np.isfinite(self.ts)), "trace.ts", self.ts, "finite times")
         require(np.all(np.diff(self.ts) > 0), "trace.ts", self.ts, "increasing times")
         require(self.ts[0] >= 0, "trace.ts", self.ts[0], "times from 0 on")
         name = f"trace.{self.quantity}"
-        self.values = known_numbers(force if z is None else z).astype(float)
+        self.values = numbers_of(name, values)
         shape = f"the shape {self.ts.shape} of ts"
         require(self.values.shape == self.ts.shape, name, self.values.shape, shape)
         require(np.all(np.isfinite(self.values)), name, self.values, "finite values")
@@ -77,11 +88,13 @@ class Trace:
 
     def __repr__(self) -> str:
         times = f"{self.ts.size} times in [{as_text(self.ts[0])}, {as_text(self.ts[-1])}] s"
-        return f"Trace({self.quantity}: {times})"
+        left = f", {self.masked} masked samples left out" if self.masked else ""
+        return f"Trace({self.quantity}: {times}{left})"
 
 
 def _deviations(uncertainty: Any, shape: tuple) -> np.ndarray:
-    name, known = "trace.uncertainty", known_numbers(uncertainty).astype(float)
+    name = "trace.uncertainty"
+    known = numbers_of(name, uncertainty)
     allowed = f"one number or the shape {shape} of ts"
     require(known.ndim == 0 or known.shape == shape, name, known.shape, allowed)
     good = np.all(np.isfinite(known)) and np.all(known > 0)
@@ -115,6 +128,7 @@ def forces_at(scene: Scene, ts, z):
     )
 
 
+@with_nan
 def simulate_trace(
     scene: Scene,
     eps: Any,
@@ -133,7 +147,9 @@ def simulate_trace(
     Raises `ValueError` as `solve`, for an unknown quantity, and a trajectory that failed.
     """
     require(quantity in QUANTITIES, "quantity", quantity, "one of force, z")
+    require_whole("seed", seed, 0)
     require_real("noise", noise, "noise >= 0", lambda v: v >= 0)
+    scene = known_scene(scene)
     ts = np.asarray(require_times(scene, ts, 301))
     found = solve(scene, eps, gamma, ts, accuracy, dissipation=False)
     require(found.ok, "scene", found.status.message, "a trajectory that can be trusted")

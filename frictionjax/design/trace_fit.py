@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from ..arguments import require, require_real, require_whole
-from ..scene import Scene, require_scene
+from ..scene import Scene, known_scene
+from ..surroundings import with_nan
 from .trace import Trace
 from .trace_descent import Descent, Programs, Step, descend
 from .trace_passage import unbounded
@@ -23,6 +24,7 @@ _SPREAD = 0.3  # of coefficients, of starts drawn at random
 _TRIES = 10_000  # of which some are admissible
 
 
+@with_nan
 def fit_trace(
     trace: Trace,
     scene: Scene,
@@ -56,7 +58,7 @@ def fit_trace(
     Raises `ValueError` for a scene without profile and bristle, times outside
     [0, duration], forces that the support cannot have, and numbers out of range.
     """
-    require_scene(scene)
+    scene = known_scene(scene)
     known = isinstance(trace, Trace)
     require(known, "trace", type(trace).__name__, "a Trace")
     require_whole("harmonics", harmonics)

@@ -2,7 +2,9 @@
 
 import itertools
 from collections.abc import Callable
+from typing import ClassVar
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -34,12 +36,14 @@ class Custom(AbstractLoad):
     its duration that no turning point is missing and that nothing jumps.
     """
 
+    _stored: ClassVar = {"turning_points": "listed"}
+
     fn: Callable[[Real], Real]
-    listed: Float[Array, " n"]
+    listed: Float[Array, " n"] = eqx.field(converter=as_real)
 
     def __init__(self, fn: Callable[[Real], Real], turning_points=()):
         self.fn = fn
-        self.listed = as_real(turning_points)
+        self.listed = turning_points
 
     def __check_init__(self):
         require_function("load.fn", self.fn, "a function of t")

@@ -2,15 +2,15 @@
 
 import abc
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..arguments import Real
+from ..parts import Part
 
 
-class AbstractLoad(eqx.Module):
+class AbstractLoad(Part):
     """The load `l(t)` in N, continuous and piecewise C^1.
 
     An implementer keeps three rules:

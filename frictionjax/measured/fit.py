@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from ..arguments import as_real, require
+from ..arguments import as_real, require, require_whole
 from ..profiles import Fourier
 from ..profiles.heights import HeightsFit, SeriesFit
 from ..profiles.rows import fit_rows as fit_rows_of
@@ -27,8 +27,9 @@ def fit_profile(
     """
     heights = measured.heights
     if row is not None:
+        require_whole("row", row, 0)
         rows = heights.shape[0]
-        require(0 <= row < rows, "row", row, f"0 <= row <= {rows - 1}")
+        require(row < rows, "row", row, f"0 <= row <= {rows - 1}")
         heights = heights[row]
     return Fourier.from_heights(measured.x, heights, period, harmonics, smoothing)
 

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from ..orders import Verdict
+from ..selected_cells import whole_grid
 from .style import GUIDE, colour, marker, new_figure, styled
 
 _PANELS = (
@@ -45,6 +46,7 @@ def draw(
     guides have the slope `eps^beta` of the lemmas. A second panel shows the dissipation,
     where the data set has it.
     """
+    dataset = whole_grid(dataset)
     panels = [panel for panel in _PANELS if panel[1] in dataset]
     figure, grid = new_figure(1, len(panels), 5.4 * len(panels), 5.2)
     for axes, (prefix, name, label, title) in zip(grid[0], panels, strict=True):

@@ -6,6 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..arguments import require
+from ..selected_cells import whole_grid
 from .style import (
     LIMIT,
     choose_eps,
@@ -23,6 +24,7 @@ def draw(dataset: xr.Dataset, gamma: float | None = None, eps: Any = None) -> Fi
 
     Raises `ValueError` for a data set without dissipation.
     """
+    dataset = whole_grid(dataset)
     known = "dissipation" in dataset
     require(known, "dataset", "no dissipation", "the variable dissipation of a sweep")
     gamma = choose_gamma(dataset, gamma)

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from ..coefficients import Coefficients
 from ..programs import Program
+from ..selected_cells import whole_grid
 from ..supports import AbstractSupport
 from .style import (
     GUIDE,
@@ -35,6 +36,7 @@ def draw(
     `support` and `found` (of `friction`) belong to the scene of the data set. The limit's
     loop and `rho_plus`, `rho_minus` are drawn over it.
     """
+    dataset = whole_grid(dataset)
     gamma = choose_gamma(dataset, gamma)
     chosen = choose_eps(dataset, gamma, eps)
     figure, grid = new_figure(1, 1, 7.2, 4.6)

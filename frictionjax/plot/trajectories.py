@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from ..selected_cells import whole_grid
 from .style import (
     LIMIT,
     STRIP,
@@ -29,6 +30,7 @@ def draw(dataset: xr.Dataset, gamma: float | None = None, eps: Any = None) -> Fi
     `gamma`: the nearest to 1 where None; `eps`: largest, middle and smallest where None.
     A panel below follows a few slips of the largest eps whose slips the times resolve.
     """
+    dataset = whole_grid(dataset)
     gamma = choose_gamma(dataset, gamma)
     chosen = choose_eps(dataset, gamma, eps)
     lines = dict(zip(chosen, shades(chosen.size), strict=True))

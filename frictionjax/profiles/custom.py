@@ -5,7 +5,7 @@ from collections.abc import Callable
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..arguments import Real, require, require_function
+from ..arguments import Real, as_plain, require_function, require_whole
 from .profile import AbstractProfile, require_smooth
 
 
@@ -20,12 +20,11 @@ class Custom(AbstractProfile):
     """
 
     fn: Callable[[Real], Real]
-    points: int = eqx.field(static=True, default=4096)
+    points: int = eqx.field(static=True, default=4096, converter=as_plain)
 
     def __check_init__(self):
         require_function("profile.fn", self.fn, "a function of y")
-        enough = isinstance(self.points, int) and self.points >= 16
-        require(enough, "profile.points", self.points, "points >= 16")
+        require_whole("profile.points", self.points, 16)
         require_smooth("profile.fn", self.fn, self.points)
 
     def __call__(self, y: Real) -> Real:

@@ -89,10 +89,12 @@ class Fourier(AbstractSampled):
         harmonics overshoot, noise, too few samples), and `.smoothing`. `w` =
         height/period, so slopes are those measured.
 
+        Samples that are masked (`numpy.ma`) in either are left out.
+
         Warns (`SlopesUndetermined`) where a steepest slope, and so friction, is open by
         more than 10%. Raises `ValueError` for wrong shapes, values that are not finite,
-        less than 1.5 periods, more harmonics than the samples can tell apart, or a filter
-        that leaves nothing.
+        less than 1.5 periods, more harmonics than the samples can tell apart, parts of a
+        period that are masked in every one, or a filter that leaves nothing.
         """
         fit_all = fit_map if np.ndim(heights) == 2 else fit_heights
         fit = fit_all(x, heights, period, harmonics, smoothing)

@@ -4,7 +4,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from ..arguments import known_numbers, require
+from ..arguments import numbers_of, require, require_real, require_whole, without_masked
 from .slope_errors import SlopeErrors
 from .smoothing import gaussian_gain
 from .steepest import Waves
@@ -111,14 +111,14 @@ def fit_heights(
     smoothing: float | None = None,
 ) -> SeriesFit:
     """Fit trend and harmonics of `period` to a trace; see `Fourier.from_heights`."""
-    x = known_numbers(x).astype(float)
-    heights = known_numbers(heights).astype(float)
+    (x, heights), masked = without_masked(x, heights)
+    x, heights = (numbers_of(name, v) for name, v in (("x", x), ("heights", heights)))
     require(x.ndim == 1 and x.size >= 8, "x", x.shape, "8 or more positions, shape (n,)")
     require(heights.shape == x.shape, "heights", heights.shape, f"the shape {x.shape} of x")
     require(np.all(np.isfinite(x)), "x", x, "finite positions")
     require(np.all(np.isfinite(heights)), "heights", heights, "finite heights")
     require(np.all(np.diff(x) > 0), "x", x, "increasing positions")
-    require(isinstance(harmonics, int) and harmonics >= 1, "harmonics", harmonics, ">= 1")
+    require_whole("harmonics", harmonics)
     most = (x.size - 3) // 2
     require(
         harmonics <= most,
@@ -133,10 +133,12 @@ def fit_heights(
     if period is None:
         period = find_period(x, heights, harmonics)
     needs = f"0 < period <= {span / 1.5:.6g} (1.5 periods in the trace)"
-    require(np.isfinite(period) and 0 < period <= span / 1.5, "period", period, needs)
+    require_real("period", period, needs, lambda p: 0 < p <= span / 1.5)
     most = max(1, int(0.5 * period / spacing) - 1)
     needs = f"harmonics <= {most} at {period / spacing:.3g} samples a period"
     require(harmonics <= most, "harmonics", harmonics, needs)
+    if masked:
+        _require_covered(x / period, harmonics, masked)
     design = _design(x, period, harmonics)
     solution = np.linalg.lstsq(design, heights, rcond=None)[0]
     left = float(np.mean((heights - design @ solution) ** 2))
@@ -166,3 +168,13 @@ def _waves(x: np.ndarray, heights: np.ndarray, period: float, harmonics: int) ->
     rounding = _ROUNDING * float(np.ptp(heights))
     noise = max(np.sqrt(left / free), rounding) * np.sqrt(2 / x.size) / period
     return Waves(_complex(solution) / period, np.full(harmonics, noise), np.ones(harmonics))
+
+
+def _require_covered(phases: np.ndarray, harmonics: int, masked: int) -> None:
+    """Check that samples are left in every part of a period that the harmonics need."""
+    places = np.sort(phases % 1.0)
+    gap = float(np.max(np.diff(places, append=places[0] + 1.0)))
+    largest = 1.0 / (harmonics + 1)
+    needs = f"samples in every {largest:.3g} of a period, for {harmonics} harmonics"
+    said = f"{masked} of {masked + phases.size} masked, none in {gap:.3g} of a period"
+    require(gap <= largest, "heights", said, needs)

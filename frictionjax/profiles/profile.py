@@ -9,9 +9,11 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..arguments import Real, in_64_bits, is_concrete, require
+from ..parts import Part
+from ..surroundings import with_nan
 
 
-class AbstractProfile(eqx.Module):
+class AbstractProfile(Part):
     """The profile `w`: 1-periodic and C^2, a surface of height `eps w(x/eps)`.
 
     An implementer keeps three rules:
@@ -40,6 +42,7 @@ def _derivatives(fn: Callable, y):
     return jax.vmap(fn)(y), first(y), second(y), third(y)
 
 
+@with_nan
 def require_smooth(name: str, fn: Callable[[Real], Real], points: int) -> None:
     """Check that `fn` on [0, 1) repeats as a C^2 function (hypothesis of Section 3).
 

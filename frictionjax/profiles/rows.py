@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import known_numbers, require
+from ..arguments import is_masked, known_numbers, numbers_of, require, require_whole
 from .heights import SeriesFit, find_period, fit_heights
 from .steepest import Waves
 
@@ -39,19 +39,29 @@ def fit_rows(
 
     Raises `ValueError` as `Fourier.from_heights`.
     """
-    rows = known_numbers(heights)
-    good = rows.ndim == 2 and rows.size > 0
-    require(good, "heights", rows.shape, "heights of a map, shape (rows, n)")
+    rows = heights if is_masked(heights) else numbers_of("heights", heights)
+    good = np.ndim(rows) == 2 and np.size(rows) > 0
+    require(good, "heights", np.shape(rows), "heights of a map, shape (rows, n)")
     if period is None and len(rows) > 1:
-        period = _common_period(known_numbers(x), rows.astype(float), harmonics)
+        period = _common_period(known_numbers(x), _whole_rows(rows), harmonics)
     return [fit_heights(x, row, period, harmonics, smoothing) for row in rows]
+
+
+def _whole_rows(rows: Any) -> np.ndarray:
+    """The rows in which nothing is masked: they decide on the period of all."""
+    if not is_masked(rows):
+        return rows
+    whole = ~np.ma.getmaskarray(rows).any(axis=1)
+    require(whole.any(), "period", "None", "a period in m: every row is masked somewhere")
+    return np.ma.getdata(rows)[whole].astype(float)
 
 
 def _common_period(x: np.ndarray, rows: np.ndarray, harmonics: int) -> float | None:
     """The period of all rows; None where `fit_heights` will refuse a row, by name."""
-    good = x.shape == rows.shape[1:] and x.size >= 8 and isinstance(harmonics, int)
-    if not (good and np.all(np.isfinite(x)) and np.all(np.diff(x) > 0) and harmonics >= 1):
+    good = x.shape == rows.shape[1:] and x.size >= 8 and bool(np.all(np.isfinite(x)))
+    if not (good and np.all(np.diff(x) > 0)):
         return None
+    require_whole("harmonics", harmonics)
     require(np.all(np.isfinite(rows)), "heights", rows, "finite heights")
     return find_period(x.astype(float), rows, harmonics)
 

@@ -80,6 +80,10 @@ class Spline(AbstractSampled):
             return SlopeErrors(*slopes, *map(float, self.slope_error))
         return of_heights(np.asarray(self.heights), slopes)
 
+    def __check_init__(self):
+        if is_known(self.coefficients):
+            _require_heights(self.coefficients)
+
     @property
     def heights(self) -> Float[Array, " n"]:
         """The interpolated heights, shape (n,)."""

@@ -46,7 +46,8 @@ def write_record(
 ) -> None:
     """Write data sets by name, scene and tables into `folder`."""
     for name, one in data.items():
-        one.to_netcdf(folder / f"{name}.nc", engine="h5netcdf")
+        # In memory first: HDF5 ends the process where a disk is full.
+        (folder / f"{name}.nc").write_bytes(one.to_netcdf(None, engine="h5netcdf"))
     (folder / "tables.txt").write_text(text + "\n", encoding="utf-8")
     (folder / "scene.toml").write_text(toml, encoding="utf-8")
 

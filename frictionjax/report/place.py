@@ -1,5 +1,6 @@
 """A folder that is filled whole or not at all."""
 
+import errno
 import os
 import shutil
 import tempfile
@@ -9,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from ..arguments import require
+
+FULL = (errno.ENOSPC, errno.EDQUOT)  # a disk, or what a user may write
 
 
 def require_folder(path: Any) -> Path:
@@ -33,13 +36,21 @@ def _standing(folder: Path) -> Path:
 def filled(folder: Path) -> Iterator[Path]:
     """A place for files that move into `folder` once all of them are written.
 
-    Work that is interrupted or fails leaves nothing behind.
+    Work that is interrupted or fails leaves nothing behind. A full disk is an `OSError`
+    that names the folder: what is raised where bytes are written names no file.
     """
-    place = Path(tempfile.mkdtemp(prefix=".frictionjax-", dir=_standing(folder)))
+    place = None
     try:
+        place = Path(tempfile.mkdtemp(prefix=".frictionjax-", dir=_standing(folder)))
         yield place
         folder.mkdir(parents=True, exist_ok=True)
         for path in place.iterdir():
             shutil.move(path, folder / path.name)
+    except OSError as error:
+        if error.errno not in FULL:
+            raise
+        said = f"{os.strerror(error.errno)}, nothing was written"
+        raise OSError(error.errno, said, str(folder)) from None
     finally:
-        shutil.rmtree(place, ignore_errors=True)
+        if place is not None:
+            shutil.rmtree(place, ignore_errors=True)

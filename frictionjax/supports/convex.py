@@ -1,6 +1,7 @@
 """Support given as a function."""
 
 from collections.abc import Callable
+from typing import ClassVar
 
 import jax.numpy as jnp
 
@@ -16,11 +17,15 @@ class Convex(AbstractSupport):
     by the scene, on the range of z that its load reaches.
     """
 
+    _stored: ClassVar = {"energy": "energy_fn"}
+
     energy_fn: Callable[[Real], Real]
 
     def __init__(self, energy: Callable[[Real], Real]):
-        require_function("support.energy", energy, "a function Phi of z")
         self.energy_fn = energy
+
+    def __check_init__(self):
+        require_function("support.energy", self.energy_fn, "a function Phi of z")
 
     def energy(self, z: Real) -> Real:
         return jnp.asarray(self.energy_fn(z))

@@ -2,15 +2,15 @@
 
 import abc
 
-import equinox as eqx
 import jax
 
 from ..arguments import Real
+from ..parts import Part
 
 _NEWTON = 3
 
 
-class AbstractSupport(eqx.Module):
+class AbstractSupport(Part):
     """The energy `Phi(z)` of the horizontal spring, uniformly convex."""
 
     @abc.abstractmethod

@@ -1,5 +1,9 @@
 """How a computation ended."""
 
+import warnings
+
+import numpy as np
+
 from ..outcomes import Outcome
 
 
@@ -28,6 +32,37 @@ _BY_CODE = {int(status): status for status in Status}
 def status_of(code: int) -> Status:
     """The status with this integer, as data sets hold it."""
     return _BY_CODE[code]
+
+
+_NAMED = 4  # cells in the text of a warning
+
+
+class FailedCells(UserWarning):
+    """Some cells of a data set have numbers that cannot be trusted, or none."""
+
+
+def warn_of_failed(
+    codes: np.ndarray, gamma: np.ndarray, eps: np.ndarray, frames: int = 0
+) -> None:
+    """One warning that names the cells (gamma, eps) whose status is not OK.
+
+    `frames`: how many lie between the caller and the line that it is given for.
+    """
+    failed = np.argwhere(codes != int(Status.OK))
+    if not failed.size:
+        return
+    named = [
+        f"gamma = {gamma[i]:.6g}, eps = {eps[j]:.6g}: {status_of(int(codes[i, j])).name}"
+        for i, j in failed[:_NAMED].tolist()
+    ]
+    more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
+    message = status_of(int(codes[tuple(failed[0])])).message
+    warnings.warn(
+        f"{len(failed)} of {codes.size} cells failed ({'; '.join(named)}{more}), the first "
+        f"because {message}; see `status`",
+        FailedCells,
+        stacklevel=3 + frames,
+    )
 
 
 FLAGS = {

@@ -18,12 +18,14 @@ from ..arguments import (
     require_numbers,
     require_whole,
 )
-from ..scene import Scene, require_scene, require_times, require_told_apart
+from ..outcomes import counted, flags, outcomes
+from ..scene import Scene, known_scene, require_times, require_told_apart
+from ..surroundings import with_nan
 from .engine import integrate_cells
 from .integration import MAX_STEPS, integrate
 from .methods import solver_of
 from .own_methods import is_ours
-from .status import Status, status_of
+from .status import Status
 from .tolerance import plan_steps, require_accuracy
 
 
@@ -58,21 +60,24 @@ class Solution(eqx.Module):
     def __repr__(self) -> str:
         if not is_known(self):
             return super().__repr__()
+        ended, steps = counted(Status, self.status_code), np.asarray(self.stats["steps"])
+        if np.ndim(self.status_code):
+            parts = (
+                f"{np.shape(self.z)[-1]} times each, up to {np.max(steps, initial=0)} steps"
+            )
+            return f"Solution(batch {np.shape(self.status_code)}: {ended}; {parts})"
         end = f"z({float(self.ts[-1]):.6g} s) = {float(self.z[-1]):.9g} m"
-        steps = f"{int(self.stats['steps'])} steps"
-        return f"Solution({self.status.name}: {self.ts.size} times, {end}, {steps})"
+        return f"Solution({ended}: {self.ts.size} times, {end}, {int(steps)} steps)"
 
     @property
     def ok(self) -> Any:
-        """One bool (an array where traced)."""
-        good = self.status_code == Status.OK
-        return bool(good) if is_known(good) else good
+        """One bool; of a batch (`jax.vmap`), or where traced, an array of them."""
+        return flags(self.status_code == Status.OK)
 
     @property
     def status(self) -> Any:
-        """A `Status` with `.message` (an integer array where traced)."""
-        code = self.status_code
-        return status_of(int(code)) if is_known(code) else code
+        """A `Status` with `.message`; of a batch an array; integers where traced."""
+        return outcomes(Status, self.status_code)
 
 
 @eqx.filter_jit
@@ -145,6 +150,7 @@ def _in_words(how: np.ndarray, sampled: float) -> str:
     return f"resolved, every slip, in tiles; {share}"
 
 
+@with_nan
 def solve(
     scene: Scene,
     eps: Any,
@@ -178,7 +184,7 @@ def solve(
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact (`G > 0` fails), with the largest eps allowed.
     """
-    require_scene(scene)
+    scene = known_scene(scene)
     require_numbers("eps", eps, "one number eps > 0", lambda e: (e > 0) & (e.ndim == 0))
     allowed = "one number gamma > 0"
     require_numbers("gamma", gamma, allowed, lambda g: (g > 0) & (g.ndim == 0))

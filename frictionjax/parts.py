@@ -1,0 +1,129 @@
+"""What a part of a scene is: data that its constructor checks, and that can change."""
+
+import contextlib
+import dataclasses
+import inspect
+from collections.abc import Iterator
+from typing import Any, ClassVar, Self, TypeVar
+
+import equinox as eqx
+import jax
+
+from .arguments import in_64_bits, is_concrete, is_known, require
+
+_PartT = TypeVar("_PartT", bound="Part")
+# An attribute that is no field: what is made of leaves (`eqx.tree_at`, `jax.tree.map`)
+# does not have it. (A table of weak references by id: modules cannot be its keys.)
+_CHECKED = "_checked"
+
+
+class Part(eqx.Module):
+    """Base of profiles, bristles, supports, loads and potentials.
+
+    An implementer checks numbers in `__check_init__` and nowhere else, and converts them
+    with `eqx.field(converter=...)`: a part that was made of another one's leaves has seen
+    no constructor, and `checked` does these two where it is used.
+    """
+
+    _stored: ClassVar[dict[str, str]] = {}
+    """Fields of constructor arguments that have another name."""
+
+    def __check_init__(self):
+        mark_checked(self)  # equinox runs it last, after those of subclasses
+
+    def replace(self, **changes: Any) -> Self:
+        """The part with other constructor arguments, by name, built anew.
+
+        Raises `ValueError` for names that there are not, and as the constructor does.
+        """
+        known = asked_names(type(self), changes)
+        given = {name: getattr(self, self._stored.get(name, name)) for name in known}
+        return type(self)(**(given | changes))
+
+    def __replace__(self, **changes: Any) -> Self:
+        return self.replace(**changes)
+
+
+def asked_names(kind: type, changes: dict[str, Any]) -> list[str]:
+    """Names of a constructor's arguments; raises `ValueError` for a change of no such."""
+    parameters = inspect.signature(kind.__init__).parameters
+    known = [name for name in parameters if name != "self"]
+    for name, value in changes.items():
+        allowed = f"an argument of {kind.__name__}, one of {', '.join(known)}"
+        require(name in known, f"{kind.__name__}.replace: {name}", value, allowed)
+    return known
+
+
+def mark_checked(thing: eqx.Module) -> None:
+    """Remember that its constructor has looked at its numbers, if it could."""
+    if in_64_bits() and is_concrete(thing):
+        object.__setattr__(thing, _CHECKED, True)
+
+
+def is_checked(thing: eqx.Module) -> bool:
+    """Whether it is as a constructor has seen it."""
+    return _CHECKED in vars(thing)
+
+
+def checked(part: _PartT) -> _PartT:
+    """The part as its constructor would make it of its numbers, which may be changed ones.
+
+    Costs nothing where nothing was changed. Traced numbers cannot be looked at.
+    Raises `ValueError` as the constructor does.
+    """
+    if is_checked(part) or not is_known(part) or not in_64_bits():
+        return part
+    with eagerly(part):
+        part = _converted(part)
+        for module in _modules(part):
+            _check(module)
+    return part
+
+
+@contextlib.contextmanager
+def eagerly(*trees: Any) -> Iterator[None]:
+    """Compute with known numbers now, inside a caller's `jit` too."""
+    if is_concrete(*trees):
+        yield
+    else:
+        with jax.ensure_compile_time_eval():
+            yield
+
+
+def _converted(part: _PartT) -> _PartT:
+    """With the converters run that its constructor runs: `tree_at` puts in a plain 2."""
+    changes = {}
+    for field in dataclasses.fields(part):
+        old = getattr(part, field.name)
+        convert = field.metadata.get("converter")
+        new = _converted(old) if isinstance(old, Part) else convert(old) if convert else old
+        if new is not old:
+            changes[field.name] = new
+    return exchanged(part, changes) if changes else part
+
+
+def exchanged(thing: Any, changes: dict[str, Any]) -> Any:
+    """A copy with other fields, unchecked."""
+    copy = object.__new__(type(thing))
+    for field in dataclasses.fields(thing):
+        value = changes.get(field.name, getattr(thing, field.name))
+        object.__setattr__(copy, field.name, value)
+    return copy
+
+
+def _modules(module: eqx.Module) -> Iterator[eqx.Module]:
+    """It and those inside it that no constructor has looked at, inner ones first."""
+    if is_checked(module):
+        return
+    for field in dataclasses.fields(module):
+        inner = getattr(module, field.name, None)
+        if isinstance(inner, eqx.Module):
+            yield from _modules(inner)
+    yield module
+
+
+def _check(module: eqx.Module) -> None:
+    """As equinox does after a constructor."""
+    for kind in type(module).__mro__:
+        if "__check_init__" in vars(kind):
+            vars(kind)["__check_init__"](module)
