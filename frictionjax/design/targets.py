@@ -8,6 +8,7 @@ import numpy as np
 from ..admissibility import require_admissible, rounding_of_alpha
 from ..arguments import is_concrete, known_numbers, require, require_real, require_x64
 from ..bristles import AbstractBristle
+from ..bristles.pulling import pulling_text
 from ..potentials import BristlePotential
 from ..profiles import Sine
 from ..programs import Program
@@ -84,12 +85,15 @@ def coefficients_of(known: Geometry, plus: Any, minus: Any, xp: Any = jnp) -> An
     return xp.stack(both, axis=-1)
 
 
-def require_targets(targets: Any) -> tuple[list[Target], list[Geometry]]:
+def require_targets(
+    targets: Any, pulling: bool = False
+) -> tuple[list[Target], list[Geometry]]:
     """The targets as a list, checked one by one, and the geometry of their bristles.
 
     Raises `ValueError` naming the target and the argument: no targets, none of a target,
-    a bristle that presses on nothing, coefficients of the wrong sign, shape or not finite,
-    a weight or an uncertainty that is not positive, uncertainties for some targets only.
+    a bristle that presses on nothing, or pulls where `pulling` is False, coefficients of
+    the wrong sign, shape or not finite, a weight or an uncertainty that is not positive,
+    uncertainties for some targets only.
     """
     single = isinstance(targets, Target)
     listed = single or isinstance(targets, list | tuple)
@@ -97,7 +101,7 @@ def require_targets(targets: Any) -> tuple[list[Target], list[Geometry]]:
     many = [targets] if single else list(targets)
     require(many, "targets", "[]", "at least one Target")
     known = [
-        _require_target("target" if single else f"targets[{index}]", target)
+        _require_target("target" if single else f"targets[{index}]", target, pulling)
         for index, target in enumerate(many)
     ]
     given = [target.uncertainty is not None for target in many]
@@ -106,7 +110,7 @@ def require_targets(targets: Any) -> tuple[list[Target], list[Geometry]]:
     return many, known
 
 
-def _require_target(name: str, target: Any) -> Geometry:
+def _require_target(name: str, target: Any, pulling: bool) -> Geometry:
     known = isinstance(target, Target)
     require(known, name, type(target).__name__, "a frictionjax.Target")
     bristle = target.bristle
@@ -123,10 +127,10 @@ def _require_target(name: str, target: Any) -> Geometry:
     require_real(f"{name}.weight", target.weight, "weight > 0", _positive)
     if target.uncertainty is not None:
         _require_uncertainty(f"{name}.uncertainty", target.uncertainty)
-    return _require_pressing(name, bristle)
+    return _require_pressing(name, bristle, pulling)
 
 
-def _require_pressing(name: str, bristle: AbstractBristle) -> Geometry:
+def _require_pressing(name: str, bristle: AbstractBristle, pulling: bool) -> Geometry:
     """The bristle is admissible on a surface that is hardly wavy."""
     *found, noise = np.asarray(_alone(bristle))
     known = Geometry(*found)
@@ -136,6 +140,10 @@ def _require_pressing(name: str, bristle: AbstractBristle) -> Geometry:
             require_admissible(_on_nearly_flat(bristle))
         except ValueError as problem:
             raise ValueError(f"{name}.{problem}") from None
+    if not pulling and known.alpha < 0:
+        why = pulling_text(known.alpha, bristle)
+        mend = "pulling=True (--pulling in the shell) allows that"
+        raise ValueError(f"{name}.bristle: needs alpha > 0, but {why}; {mend}")
     return known
 
 

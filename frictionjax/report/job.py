@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arguments import require
 from ..bristles import AbstractBristle, AngularSpring, SlantedSpring
+from ..bristles.pulling import pulling_note
 from ..measured import (
     Measured,
     RowCoefficients,
@@ -70,17 +71,19 @@ def read_job(
     study = {**default_study().study, **file.study}
     chosen = file.scene.bristle if bristle is None else named_bristle(bristle)
     assert chosen is not None
+    pulls = pulling_note(chosen)
+    warned = [f"Note: {pulls}"] if pulls else []
     if heights is None:
         given = {"pixel": pixel, "height_scale": height_scale, **fit}
         for name, value in given.items():
             require(value is None, name, value, "--heights FILE beside it")
-        return Job(exchanged(file.scene, file.scene.profile, chosen), study, [], None)
+        return Job(exchanged(file.scene, file.scene.profile, chosen), study, warned, None)
     measured = read_heights(heights, pixel, height_scale)
     harmonics = 8 if fit["harmonics"] is None else fit["harmonics"]
     row, period = fit["row"], fit["period"]
     found = fit_profile(measured, period, harmonics, row)
     scene = exchanged(file.scene, found.profile, chosen)
-    notes = _notes(heights, measured, found, row)
+    notes = warned + _notes(heights, measured, found, row)
     rows = None
     if measured.heights.shape[0] > 1:
         rows = row_coefficients(measured, chosen, harmonics, found.period)
