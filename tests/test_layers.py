@@ -13,7 +13,8 @@ ROOT = Path(frictionjax.__file__).parent
 # Units on one floor know nothing of each other; a folder is one unit.
 FLOORS = [
     {"arguments", "progress", "asymptotes"},
-    {"grids", "viscosity"},
+    {"grids", "viscosity", "text_units"},
+    {"text_tables"},
     {"kept_programs"},
     {"outcomes", "compilation", "programs"},
     {"roots", "taylor", "extrema", "trigonometry"},

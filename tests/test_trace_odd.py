@@ -174,7 +174,7 @@ def test_a_support_that_has_no_such_force_is_no_trace_in_another_unit():
 
 
 def test_no_descent_is_begun_after_so_many_steps(monkeypatch):
-    """Descents made by hand: each takes all of the steps there are, and explains nothing."""
+    """Descents made by hand: each takes a third of the steps, and explains nothing."""
     begun = []
 
     class Step:
