@@ -9,6 +9,7 @@ import frictionjax as fx
 from frictionjax.bristles.pulling import pulling_note
 from frictionjax.design import slide_fit
 from frictionjax.design.fit_status import FitStatus
+from frictionjax.design.inverse import Brackets, _pressing_alike
 from frictionjax.design.slide_fit import SlideFit
 from frictionjax.design.steady_slide import SteadySlide
 from frictionjax.report.job import read_job
@@ -60,6 +61,16 @@ def test_every_solution_presses(rho_plus):
     for value in np.asarray(both.solutions):
         alpha = alpha_of(fx.bristles.SlantedSpring(1.0, 2.4, 1.0, value))
         assert (value in found.solutions) == (alpha > 0)
+
+
+def test_a_root_where_alpha_has_another_sign_than_around_it_is_none():
+    """Between two nodes of an interval alpha may dip below 0 unseen."""
+    there = jnp.array([[True, True, False]])
+    sides, none = jnp.array([[1.0, 1.0, 1.0]]), jnp.zeros((1, 3))
+    parts = none, none, there, there, there, sides, jnp.array([2]), none, none, none
+    found = _pressing_alike(Brackets(*parts), jnp.array([[0.3, -0.1, jnp.nan]]))
+    assert found.there.tolist() == [[True, False, False]]
+    assert found.number.tolist() == [1]
 
 
 def test_a_batch_and_a_compiled_call_say_the_same_as_single_ones():

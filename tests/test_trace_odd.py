@@ -9,9 +9,11 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.design import trace_fit
+from frictionjax.design.trace_descent import View
 from frictionjax.design.trace_energy import scatter_of, seen_as, share_gained, ways
 from frictionjax.design.trace_odd import oddity_of
 from frictionjax.design.trace_problem import problem_of
+from frictionjax.design.trace_report import _counted, _freedom
 from frictionjax.design.trace_status import TraceStatus
 
 EPS, LENGTH = 0.05, 6.0
@@ -171,6 +173,19 @@ def test_a_support_that_has_no_such_force_is_no_trace_in_another_unit():
     trace = traced(0.0 * FORCE, 1e-3)
     problem = problem_of(trace, scene, EPS, 1.0, 4, 1e-3)
     assert not np.isfinite(seen_as(problem, traced(FORCE), 1e3).z).any()
+
+
+@pytest.mark.parametrize(
+    ("used", "clear", "counted"), [(9, 15, 9), (8, 15, 15), (3, 8, 20), (0, 0, 20)]
+)
+def test_chi2_is_of_more_samples_than_coefficients(used, clear, counted):
+    """A fit with every sample in another well has a finite one, and a large one."""
+    place = np.arange(20)
+    rows = np.zeros(20), np.ones(20), np.ones(20), place < clear, place < used, place < 0
+    some = _counted(View(*rows, 1.0), 8)
+    assert np.sum(some) == counted
+    assert _freedom(some, 8) == counted - 8
+    assert _freedom(some[:4], 8) == 1
 
 
 def test_no_descent_is_begun_after_so_many_steps(monkeypatch):
