@@ -341,6 +341,7 @@ def cost(
     type=click.Choice(["slanted", "angular"]),
     help="Another bristle than the scene's.",
 )
+@click.option("--pulling", is_flag=True, help="Bristles that pull (alpha < 0) will do too.")
 @click.option("--harmonics", type=click.IntRange(1), default=16, show_default=True)
 @click.option(
     "--smallest-radius", type=float, help="Of the surface's curvature, in periods."
@@ -364,6 +365,7 @@ def design(
     free: str | None,
     bounds: tuple[float, float] | None,
     bristle: str | None,
+    pulling: bool,
     harmonics: int,
     smallest_radius: float | None,
     largest_amplitude: float | None,
@@ -384,8 +386,8 @@ def design(
 
     folder = require_folder(out)
     job = read_job(scene, bristle)
-    limits = smallest_radius, largest_amplitude
-    asked = Asked(wanted, free, bounds, period, samples, harmonics, *limits)
+    more = smallest_radius, largest_amplitude, pulling
+    asked = Asked(wanted, free, bounds, period, samples, harmonics, *more)
     _write(folder, lambda place: run_design(job, place, asked))
 
 

@@ -7,6 +7,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from .arguments import Real, as_text, is_known
+from .bristles.pulling import pulling_text
 from .extrema import periodic_extrema, slope_of
 from .potentials import AbstractPotential, BristlePotential
 from .programs import Program
@@ -54,7 +55,9 @@ class Coefficients(eqx.Module):
         if not is_known(self):
             return super().__repr__()
         known = [(k, v) for k, v in vars(self).items() if v is not None]
-        return f"Coefficients({', '.join(f'{k}={as_text(v)}' for k, v in known)})"
+        numbers = ", ".join(f"{k}={as_text(v)}" for k, v in known)
+        pulls = "" if self.alpha is None else pulling_text(self.alpha)
+        return f"Coefficients({numbers}{f': {pulls}' if pulls else ''})"
 
 
 def coefficients(potential: AbstractPotential) -> Coefficients:

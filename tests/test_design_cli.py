@@ -98,6 +98,9 @@ def test_what_cannot_be_designed_is_said_in_one_line(tmp_path):
     out = ("--out", tmp_path / "none")
     line = error_line(run("design", "--bristle", "angular", "--ratio", 7, *out))
     assert "ratio = 7 cannot be reached by angle: ratio is in (0.51" in line
+    line = error_line(run("design", "--ratio", 3, *out))
+    assert "reached only by a bristle that pulls, angle = -1.3" in line
+    assert "(--pulling in the shell) allows that" in line
     line = error_line(run("design", *out))
     assert "targets = 'none': needs one of --ratio" in line
     line = error_line(run("design", "--ratio", 1.2, "--rho-plus", 0.1, *out))

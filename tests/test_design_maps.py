@@ -33,7 +33,8 @@ def check(cell, profile, make):
 
 def test_cells_are_scalar_calls():
     rows, columns = [0.4, 1.0, 2.5], np.linspace(-1.5, 1.5, 9)
-    data = fx.design_map(SLANTED, ("angle", columns), ("asymmetry", rows), steepness=0.3)
+    axes = ("angle", columns), ("asymmetry", rows)
+    data = fx.design_map(SLANTED, *axes, steepness=0.3, pulling=True)
     known = []
     for row in rows:
         for angle in columns:
@@ -83,7 +84,7 @@ def test_the_family_of_surfaces_has_the_slopes_it_says(asymmetry):
 
 
 def test_pictures_show_the_numbers_and_what_is_not_admissible():
-    data = fx.design_map(SLANTED, ("angle", np.linspace(-1.5, 1.5, 31)))
+    data = fx.design_map(SLANTED, ("angle", np.linspace(-1.5, 1.5, 31)), pulling=True)
     figure = fx.plot.draw_design_map(data, ("ratio", "rho_plus"))
     figure.savefig(io.BytesIO(), format="png", dpi=40)
     ratio, rho = figure.axes[:2]

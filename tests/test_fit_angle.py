@@ -74,7 +74,7 @@ def test_random_reachable_targets_are_met(kind, free, factor):
         names = WANTED.get(kind, QUANTITIES)
         name = names[trial % len(names)]
         target = law_of(name, law)
-        found = fx.fit_angle(surface, start, free=free, **{name: target})
+        found = fx.fit_angle(surface, start, free=free, pulling=True, **{name: target})
         assert found.success, found.message
         got = law_of(name, fx.friction(surface, found.bristle))
         worst = max(worst, abs(got / target - 1))
@@ -108,7 +108,7 @@ def test_all_solutions_are_found():
     for target in (0.003, 0.05, 0.153, 0.16, 0.7, 3.8, 5.0):
         rest = np.sign(known - target)
         crosses = (rest[:-1] * rest[1:] < 0) & (side[:-1] == side[1:])
-        found = fx.fit_angle(SINE, SLANTED, rho_plus=target)
+        found = fx.fit_angle(SINE, SLANTED, rho_plus=target, pulling=True)
         assert found.status == FitStatus.OK
         np.testing.assert_allclose(found.solutions, values[:-1][crosses], atol=1e-5)
         nearest = np.argmin(np.abs(found.solutions - 1.0))
@@ -119,7 +119,7 @@ def test_reachable_intervals_and_their_ends():
     values = np.linspace(-1.4711276, 1.4711276, 400_001)
     for name in QUANTITIES:
         known, side = scanned(SLANTED, "angle", name, values)
-        found = fx.fit_angle(SINE, SLANTED, free="angle", **{name: _some(name)})
+        found = fx.fit_angle(SINE, SLANTED, pulling=True, **{name: _some(name)})
         pieces = (values < -1.1410209, np.abs(values) < 1.1410209, values > 1.1410209)
         for (low, high), piece in zip(found.reachable, pieces, strict=False):
             inside = known[piece]

@@ -148,12 +148,12 @@ BAD_ARGUMENTS = [
     ({"bounds": {"angle": (0, 1)}}, r"bounds = 'angle': needs names in free = \[\]"),
     ({"free": ["size"], "bounds": {"size": (0, 1)}}, "free = 'size': needs one of"),
     ({"free": "angle", "bounds": {"angle": (0.6, 0.9)}}, "bounds of 'angle' = "),
-    ({"free": "angle", "bounds": {"angle": (0.1, 1.8)}}, "from -1.5708 to 1.5708"),
-    ({"free": "height", "bounds": {"height": (-5, 1.1)}}, "from 0 to inf"),
+    ({"free": "angle", "bounds": {"angle": (0.1, 1.8)}}, r"a part of \(-1.5708, 1.5708\)"),
+    ({"free": "height", "bounds": {"height": (-5, 1.1)}}, r"a part of \(0, inf\)"),
     ({"free": 5}, "free = '5': needs a name or a list of names"),
     ({"free": ["angle", "angle"]}, "needs every name once"),
     ({"bounds": 3}, "bounds = 3: needs a mapping from names"),
-    ({"free": "angle", "bounds": {"angle": (0.9, 0.1)}}, "bounds = "),
+    ({"free": "angle", "bounds": {"angle": (0.9, 0.1)}}, "bounds of 'angle' = .*a pair"),
 ]
 
 

@@ -14,7 +14,8 @@ ROOT = Path(frictionjax.__file__).parent
 FLOORS = [
     {"surroundings"},
     {"arguments", "progress", "asymptotes"},
-    {"grids", "viscosity", "parts"},
+    {"grids", "viscosity", "parts", "text_units"},
+    {"text_tables"},
     {"kept_programs"},
     {"outcomes", "compilation", "programs"},
     {"roots", "taylor", "extrema", "trigonometry"},

@@ -61,7 +61,7 @@ def test_inadmissible_and_flipped_samples_are_counted():
     lost = np.isnan(found.data["samples"].sel(quantity="ratio"))
     np.testing.assert_array_equal(lost, jumps)
     assert f"{jumps.mean():.3%} inadmissible" in repr(found)
-    assert "press from the other side" in repr(found)
+    assert "pull on the surface, alpha < 0" in repr(found)
     # A length below 0 has formulas, but no bristle.
     short = fx.tolerance(SINE, SLANTED, {"height": 0.5}, samples=4000)
     heights = 1.0 + 0.5 * np.random.default_rng(0).standard_normal(4000)

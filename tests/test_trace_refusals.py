@@ -22,18 +22,71 @@ def test_files(tmp_path):
     again = fx.Trace.from_csv(path)
     np.testing.assert_array_equal(again.values, trace.values)
     np.testing.assert_array_equal(again.uncertainty, trace.uncertainty)
-    for text, message in (
-        ("t,force\n", "rows = 1"),
-        ("t,force\n0,1\n1\n", "row 3 = '1 fields'"),
-        ("t,force\n0,a\n", "rows: need numbers"),
-        ("s,force\n0,1\n", "needs t among them"),
-        ("t,height\n0,1\n", "needs force or z among them"),
-    ):
-        path.write_text(text)
-        with pytest.raises(ValueError, match=message):
-            fx.Trace.from_csv(path)
     with pytest.raises(ValueError, match="No such file"):
         fx.Trace.from_csv(tmp_path / "none.csv")
+
+
+LOOP = "t,force,uncertainty\n0,1,0.1\n0.1,2,0.1\n0.3,3,0.1\n0.4,4,0.1\n"
+IN_MS = "index;time (ms);force [mN];uncertainty (mN)\n1;0;1000;100\n2;100;2000;100\n"
+UNITS_BELOW = "index;t;force;uncertainty\n-;ms;mN;mN"
+IN_MS += "3;300;3000;100\n4;400;4000;100\n"
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        LOOP.encode("utf-8-sig"),
+        LOOP.encode("utf-16"),
+        LOOP.replace(",", ";").replace(".", ",").encode(),
+        LOOP.replace(",", "\t").replace(".", ",").encode("utf-16"),
+        ("# a loop\n" + LOOP.replace(",", "  ")).encode(),
+        IN_MS.encode(),
+        IN_MS.replace(";", "\t").encode("utf-16-be"),
+        IN_MS.replace(" [mN]", "/uN").replace("000;", "000000;").encode(),
+        IN_MS.replace("index;time (ms);force [mN];uncertainty (mN)", UNITS_BELOW).encode(),
+    ],
+)
+def test_files_of_other_programs(data, tmp_path):
+    path = tmp_path / "loop.txt"
+    path.write_bytes(data)
+    trace = fx.Trace.from_csv(path)
+    np.testing.assert_allclose(trace.ts, [0.0, 0.1, 0.3, 0.4], rtol=1e-15)
+    np.testing.assert_allclose(trace.values, [1.0, 2.0, 3.0, 4.0], rtol=1e-15)
+    np.testing.assert_allclose(trace.uncertainty, 0.1, rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("t,force\n", "lines = 1: needs a line of names and lines of numbers"),
+        ("t,force,force\n0,1,2\n", "line 1, column 3 = 'force': needs another name than"),
+        ("t,time,force\n0,1,2\n", "line 1, column 2 = 't': needs one column of times"),
+        ("t,force\n0,1\n1,\n", "line 3, column 2 = 'nothing': needs a number"),
+        ("t;force;uncertainty\n0;1;0,1\n1;;0,1\n", r"line 3, column 2 \(force\) = ''"),
+        ("t,force\n0,a\n", r"line 2, column 2 \(force\) = 'a': needs a finite number"),
+        ("t,force\n0,1\n0.2,nan\n", r"line 3, column 2 \(force\) = 'nan'"),
+        ("t,force\n0,1\n2,1\n1,1\n", r"line 4, column 1 \(t\) = 1: needs increasing"),
+        ("t,force\n0,1\n0,1\n", r"line 3, column 1 \(t\) = 0: needs increasing times"),
+        ("t,force\n-1,1\n0,1\n", r"line 2, column 1 \(t\) = -1: needs times from 0 on"),
+        ("t,force (lbf)\n0,1\n", "line 1, column 2 = 'lbf': needs a unit of force: N, kN"),
+        ("t (mm),force\n0,1\n", "line 1, column 1 = 'mm': needs a unit of time: s, ms"),
+        ("t,z/N\n0,1\n", "line 1, column 2 = 'N': needs a unit of length: m, km"),
+        ("t,force,uncertainty\n0,1,0\n", r"line 2, column 3 \(uncertainty\) = 0: needs"),
+        ("t,force/mN,uncertainty\n0,1,1\n", r"uncertainty \(-\)': needs a unit, or none"),
+        ("s,force\n0,1\n", "columns = 's, force': needs t among them"),
+        ("t,height\n0,1\n", "columns = 't, height': needs force or z among them"),
+        ("t,force,z\n0,1,1\n", "columns = 't, force, z': needs one of force and z"),
+        ("t,force,load\n0,1,1\n", "line 1, column 3 = 'load': needs t, force or z"),
+        (",t,force\n0,0,1\n", "line 1, column 1 = '': needs a name"),
+    ],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_bad_files_are_named_by_line_and_column(text, message, encoding, tmp_path):
+    path = tmp_path / "trace.csv"
+    path.write_text(text, encoding=encoding)
+    with pytest.raises(ValueError, match=f"trace.csv: .*{message}") as error:
+        fx.Trace.from_csv(path)
+    assert "\n" not in str(error.value)
 
 
 FOUR = [0.0, 1.0, 2.0, 3.0]

@@ -1,6 +1,6 @@
 """Inverse design of a bristle: the angle, or another number, for a wanted friction."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -13,33 +13,59 @@ from ..arguments import (
     is_known,
     known_numbers,
     require,
+    require_flags,
     require_x64,
 )
 from ..bristles import AbstractBristle
+from ..bristles.pulling import swapped_text
 from ..coefficients import coefficients_jit
 from ..potentials import potential
 from ..profiles import AbstractProfile
 from ..programs import Program, room
 from ..surroundings import with_nan
-from .angle_fit import AngleFit
-from .fit_status import FitStatus
+from .angle_fit import AngleFit, intervals_text
+from .fit_status import GOOD, FitStatus
 from .free_parameter import FreeParameter, free_parameter, require_bounds, with_arrays
-from .inverse import solve_targets
+from .inverse import Pulled, solve_targets
 from .quantities import MEANING, QUANTITIES, Slopes
-from .survey import survey
+from .survey import Survey, survey
 
+_NO_BOUNDS = np.full(2, np.nan)
 _ROOM = 8, 8  # smallest piece of a batch, and by how much the next size is larger
 _MOST = 512  # targets side by side: 7 KB each of comparisons at every node
 
 
+class _Range(NamedTuple):
+    """A survey, and its intervals of the number and of the quantity (pieces, 2)."""
+
+    seen: Survey
+    admissible: Real
+    reachable: Real
+
+
 @Program
-def _survey(free: FreeParameter, bristle, slopes, which, bounds):
-    """The survey, and the intervals of number and quantity that it found."""
+def _survey(free: FreeParameter, bristle, slopes, which, bounds, pulling):
+    """What is allowed, and bristles that pull and are not: two `_Range`."""
     low, high = free.interval(bristle, bounds)
-    found = survey(free, bristle, slopes, which, low, high)
     value = jax.vmap(jax.vmap(lambda x: free.value(bristle, x)))
-    admissible = jnp.sort(value(found.ends), axis=1)
-    return found, admissible, jnp.stack([found.low, found.high], axis=1)
+
+    def ranges(seen):
+        admissible = jnp.sort(value(seen.ends), axis=1)
+        return _Range(seen, admissible, jnp.stack([seen.low, seen.high], axis=1))
+
+    both = survey(free, bristle, slopes, which, low, high, pulling)
+    return ranges(both[0]), ranges(both[1])
+
+
+class _Solved(NamedTuple):
+    """Of each target, as `AngleFit` names them."""
+
+    bristle: Any
+    value: Real
+    achieved: Real
+    alpha: Real
+    roots: Real
+    code: Real
 
 
 @Program
@@ -48,7 +74,7 @@ def _solve(free: FreeParameter, bristle, slopes, which, targets, seen):
     bristles = jax.vmap(lambda x: free.at(bristle, x))(found.x)
     value = jax.vmap(lambda x: free.value(bristle, x))
     roots = jnp.sort(jax.vmap(value)(found.roots), axis=1)
-    return bristles, value(found.x), found.achieved, roots, found.code
+    return _Solved(bristles, value(found.x), found.achieved, found.alpha, roots, found.code)
 
 
 def _in_sizes(target: Real, fit: Any) -> Any:
@@ -76,6 +102,7 @@ def fit_angle(
     difference: Any = None,
     free: str = "angle",
     bounds: Any = None,
+    pulling: bool = False,
 ) -> AngleFit:
     """The bristle on a surface that has a wanted friction, one number of it free.
 
@@ -87,7 +114,12 @@ def fit_angle(
     other of the bristle by name, also a leaf of a `Custom` one or of a bristle of your own
     (`"energy_fn.alpha"`, `"numbers[0]"`). `bounds`: (low, high) of it. Without bounds:
     angles over all of their range, positive numbers from 1e-4 to 1e4 times what they are,
-    other numbers up to 1e4 times that.
+    other numbers up to 1e4 times that. Of bounds that reach further than a bristle can
+    follow the surface the admissible part is searched.
+
+    Bristles press on the surface, alpha = F'(0) > 0. The paper's formulas hold for alpha
+    < 0 too, where the bristle pulls: `pulling=True` returns such solutions as well. Without
+    it, a target that only they reach has the status `PULLS`.
 
     Only the two extreme slopes of the surface enter. The intervals where the bristle is
     admissible are found first, then all extrema of the quantity in each, then every root
@@ -95,46 +127,72 @@ def fit_angle(
     hundredth of an interval can be missed.
 
     Returns an `AngleFit`: `.bristle .value .solutions .reachable .admissible .success
-    .status .message .achieved .sensitivities`. Traceable: `jax.grad` of `.value` is the
-    implicit derivative.
+    .status .message .achieved .alpha .sensitivities`. Traceable: `jax.grad` of `.value` is
+    the implicit derivative.
 
     Raises `ValueError` for no target or two, targets that are not finite, have another
-    shape or the wrong sign, an unknown `free`, bounds out of range, and where no value in
-    the bounds is admissible.
+    shape or the wrong sign, an unknown `free`, bounds out of the number's range, and where
+    no value in the bounds is admissible, or all that are pull.
     """
-    known = potential(profile, bristle)  # checks the kinds of the parts
-    require_x64(known)
+    require_flags(pulling=pulling)
+    require_x64(potential(profile, bristle))  # which checks the kinds of the parts
     name, target = _asked((rho_plus, rho_minus, ratio, difference))
     bristle = with_arrays(bristle)
     chosen = free_parameter(bristle, free)
-    require_bounds(chosen, bounds)
+    require_bounds(chosen, bristle, bounds)
     law = coefficients_jit(potential(profile, bristle))
     slopes = Slopes(law.omega_plus, law.omega_minus)
     _require_slopes(slopes)
     which = np.asarray(QUANTITIES.index(name))
-    limits = jnp.asarray((np.nan, np.nan) if bounds is None else bounds, dtype=float)
+    limits = _NO_BOUNDS if bounds is None else jnp.asarray(bounds, dtype=float)
     # Stopped here, not in the program: differentiated programs are compiled once more.
     still = jax.lax.stop_gradient((bristle, slopes))
-    seen, admissible, reachable = _survey(chosen, *still, which, limits)
-    bristles, value, achieved, roots, code = _in_sizes(
-        target, lambda some: _solve(chosen, bristle, slopes, which, some, seen)
+    fixed = chosen, *still, which
+    flag = np.asarray(pulling)
+    allowed, others = _survey(*fixed, limits, flag)
+    found = _in_sizes(
+        target, lambda some: _solve(chosen, bristle, slopes, which, some, allowed.seen)
     )
+    aims = jax.lax.stop_gradient(target)
+    code, pulled = _with_pulled(found.code, fixed, aims, others.seen)
     fit = AngleFit(
-        bristles,
-        value,
-        achieved,
+        found.bristle,
+        found.value,
+        found.achieved,
+        found.alpha,
         target,
-        roots,
-        admissible,
-        reachable,
+        found.roots,
+        allowed.admissible,
+        allowed.reachable,
         code,
+        pulled,
         slopes,
         profile,
         free,
         name,
+        bool(pulling),
     )
-    _require_admissible(fit, bounds)
+    known = is_concrete(code, slopes, allowed)
+    if known and np.isnan(np.asarray(allowed.admissible)).all():
+        unbounded = None if bounds is None else _survey(*fixed, _NO_BOUNDS, flag)[0]
+        raise ValueError(_none_admissible(fit, bristle, bounds, others, unbounded))
     return fit
+
+
+def _with_pulled(code: Any, asked: tuple, targets: Any, seen: Survey) -> tuple[Any, Pulled]:
+    """Codes where bristles that pull, and may not, reach a target, and the nearest of them.
+
+    The same program as for those that press. Where all are found it is not run.
+    """
+    none = jnp.full(targets.shape, jnp.nan)
+    failed = (int(FitStatus.UNREACHABLE), int(FitStatus.INADMISSIBLE))
+    if is_concrete(code) and not np.isin(np.asarray(code), failed).any():
+        return code, Pulled(none, none)
+    found = _in_sizes(targets, lambda some: _solve(*asked, some, seen))
+    reached = jnp.isin(found.code, np.array([int(status) for status in GOOD]))
+    pulls = reached & jnp.isin(code, np.array(failed))
+    nearest = (jnp.where(pulls, one, none) for one in (found.value, found.alpha))
+    return jnp.where(pulls, int(FitStatus.PULLS), code), Pulled(*nearest)
 
 
 def _asked(given: tuple) -> tuple[str, Any]:
@@ -166,14 +224,35 @@ def _require_slopes(slopes: Slopes) -> None:
         require(low < 0 < high, "profile", said, "omega_plus > 0 > omega_minus")
 
 
-def _require_admissible(fit: AngleFit, bounds: Any) -> None:
-    if not is_concrete(fit.code, fit.slopes):
-        return
-    none = np.all(np.asarray(fit.code) == int(FitStatus.INADMISSIBLE))
+def _none_admissible(
+    fit: AngleFit,
+    bristle: AbstractBristle,
+    bounds: Any,
+    others: _Range,
+    unbounded: _Range | None,
+) -> str:
+    """Why no value is allowed: what bristles must, what pulls, and where others are."""
     low, high = float(fit.slopes.minus), float(fit.slopes.plus)
-    where = "of its range" if bounds is None else f"in bounds = {as_text(bounds)}"
-    needs = (
-        f"some {fit.free} {where} with alpha != 0 and 1 + a omega > 0 on slopes "
-        f"from {low:.6g} to {high:.6g}, but none is admissible"
-    )
-    require(not none, "bristle", type(fit.bristle).__name__, needs)
+    force = "alpha != 0" if fit.pulling else "alpha > 0"
+    hold = f"{force} and 1 + a omega > 0 on slopes from {low:.6g} to {high:.6g}"
+    known = "" if unbounded is None else intervals_text(unbounded.admissible)
+    why = _why_none(fit, bristle, others)
+    if known:
+        return (
+            f"bounds = {as_text(bounds)}: needs a part of {known}, where {fit.free} has "
+            f"{hold}, but in the bounds {why}"
+        )
+    kind = type(bristle).__name__
+    return f"bristle = {kind!r}: needs some {fit.free} with {hold}, but {why}"
+
+
+def _why_none(fit: AngleFit, bristle: AbstractBristle, others: _Range) -> str:
+    pull = intervals_text(others.admissible)
+    if not pull:
+        return "none is admissible"
+    parts = [
+        f"every admissible one pulls, alpha < 0, {fit.free} in {pull}: pulling=True "
+        "(--pulling in the shell) allows that",
+        swapped_text(bristle),
+    ]
+    return "; ".join(part for part in parts if part)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arguments import Real, as_text, is_concrete, is_known, require_whole
 from ..bristles import AbstractBristle
+from ..bristles.pulling import pulling_text
 from ..outcomes import counted, flags, outcomes
 from ..profiles import AbstractProfile
 from ..programs import Program
@@ -16,6 +17,7 @@ from .angle_json import dump, fields
 from .fit_json import written
 from .fit_status import GOOD, FitStatus, status_of
 from .free_parameter import FreeParameter, free_parameter
+from .inverse import Pulled
 from .quantities import QUANTITIES, Slopes, on_slopes, quantity_of
 from .sensitivities import Sensitivities, sensitivities_of
 
@@ -25,25 +27,30 @@ class AngleFit(eqx.Module):
 
     `bristle`: the one given, with the number called `free` set to `value`: of all
     `solutions` the nearest to what it was. `achieved`: the quantity it gives, on the same
-    surface. Without a solution, `bristle` comes as near to the target as admissible ones
-    do. `roots`: all solutions, increasing, NaN after the last. `admissible` (pieces, 2):
+    surface; `alpha`: its normal force F'(0) in N, > 0 unless `pulling` allowed others.
+    Without a solution, `bristle` comes as near to the target as admissible ones do.
+    `roots`: all solutions, increasing, NaN after the last. `admissible` (pieces, 2):
     intervals of the number in which every bristle is admissible; alpha = 0 and the angles
     at which a tip jumps are their ends, which are not among them. `reachable` (pieces, 2):
-    least and largest quantity over each. `code`: a `FitStatus` as an integer.
+    least and largest quantity over each. `code`: a `FitStatus` as an integer. `pulled`:
+    where that is `PULLS`, the bristle that was not allowed.
     """
 
     bristle: AbstractBristle
     value: Real
     achieved: Real
+    alpha: Real
     target: Real
     roots: Real
     admissible: Real
     reachable: Real
     code: Real
+    pulled: Pulled
     slopes: Slopes
     profile: AbstractProfile
     free: str = eqx.field(static=True)
     quantity: str = eqx.field(static=True)
+    pulling: bool = eqx.field(static=True, default=False)
 
     @property
     def solutions(self) -> Real:
@@ -75,15 +82,18 @@ class AngleFit(eqx.Module):
             jax.tree_util.tree_map(lambda leaf: leaf[index], self.bristle),
             self.value[index],
             self.achieved[index],
+            self.alpha[index],
             self.target[index],
             self.roots[index],
             self.admissible,
             self.reachable,
             self.code[index],
+            Pulled(*(part[index] for part in self.pulled)),
             self.slopes,
             self.profile,
             self.free,
             self.quantity,
+            self.pulling,
         )
 
     def curve(self, points: int = 400) -> tuple[Real, Real]:
@@ -126,17 +136,33 @@ class AngleFit(eqx.Module):
 def _message(fit: AngleFit) -> str:
     status = status_of(int(fit.code))
     asked = f"{fit.quantity} = {as_text(fit.target)}"
-    if status == FitStatus.UNREACHABLE:
-        return (
-            f"{asked} cannot be reached by {fit.free}: {fit.quantity} is in "
-            f"{intervals_text(fit.reachable)}; nearest: {as_text(fit.achieved)} at "
-            f"{fit.free} = {as_text(fit.value)}"
-        )
+    if status in (FitStatus.UNREACHABLE, FitStatus.PULLS):
+        return f"{asked} {_out_of_reach(fit, status)}"
     if status == FitStatus.INADMISSIBLE:
         return f"{asked}: {status.message}"
     count = int(jnp.sum(~jnp.isnan(fit.roots)))
     others = "" if count < 2 else f" ({count} solutions)"
-    return f"{asked}: {status.message}, {fit.free} = {as_text(fit.value)}{others}"
+    pulls = pulling_text(fit.alpha, fit.bristle)
+    told = f"; {pulls}" if pulls else ""
+    return f"{asked}: {status.message}, {fit.free} = {as_text(fit.value)}{others}{told}"
+
+
+def _out_of_reach(fit: AngleFit, status: FitStatus) -> str:
+    why, which = f"cannot be reached by {fit.free}:", ""
+    if status == FitStatus.PULLS:
+        pulled, alpha = map(as_text, fit.pulled)
+        why = (
+            f"is {status.message}, {fit.free} = {pulled} with alpha = {alpha} N: "
+            "pulling=True (--pulling in the shell) allows that;"
+        )
+        which = "with bristles that press "
+    known = intervals_text(fit.reachable)
+    if not known:
+        return f"{why} none that presses is admissible"
+    return (
+        f"{why} {which}{fit.quantity} is in {known}; nearest: {as_text(fit.achieved)} at "
+        f"{fit.free} = {as_text(fit.value)}"
+    )
 
 
 def intervals_text(pairs: Any) -> str:

@@ -4,8 +4,10 @@ import json
 from typing import Any
 
 import jax.numpy as jnp
+import numpy as np
 
 from .fit_json import document_of, numbers_of, plain
+from .inverse import Pulled
 from .part_json import part_entry, part_of
 from .quantities import Slopes
 
@@ -19,6 +21,8 @@ def entry_of(fit: Any) -> dict[str, Any]:
     """An `AngleFit` as a document; one made of functions loses them."""
     document: dict[str, Any] = {"kind": _KIND, "message": fit.message}
     document |= {name: getattr(fit, name) for name in (*_ARRAYS, *_NAMES, "code")}
+    document |= {"alpha": fit.alpha, "pulling": fit.pulling}
+    document["pulled"] = fit.pulled._asdict()
     document |= {"bristle": part_entry(fit.bristle), "profile": part_entry(fit.profile)}
     return plain(document | {"slopes": fit.slopes._asdict()})
 
@@ -26,14 +30,21 @@ def entry_of(fit: Any) -> dict[str, Any]:
 def fields_of(document: dict[str, Any]) -> dict[str, Any]:
     """The fields of an `AngleFit`, of such a document."""
     found = {name: jnp.asarray(numbers_of(document[name])) for name in _ARRAYS}
+    # Documents of earlier versions lack these.
+    unknown = np.full(np.shape(document["target"]), np.nan).tolist()
+    alpha = document.get("alpha", unknown)
+    pulled = document.get("pulled", {"value": unknown, "alpha": unknown})
     slopes = {k: jnp.asarray(numbers_of(v)) for k, v in document["slopes"].items()}
     return found | {
         "bristle": part_of(document["bristle"]),
         "profile": part_of(document["profile"]),
         "code": jnp.asarray(document["code"]),
+        "alpha": jnp.asarray(numbers_of(alpha)),
+        "pulled": Pulled(**{k: jnp.asarray(numbers_of(v)) for k, v in pulled.items()}),
         "slopes": Slopes(**slopes),
         "free": document["free"],
         "quantity": document["quantity"],
+        "pulling": document.get("pulling", True),
     }
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..arguments import Real, as_real
 from ..bristles import AbstractBristle
+from ..bristles.pulling import pulling_text
 from ..coefficients import Coefficients
 from ..friction_law import friction
 from ..profiles import AbstractProfile
@@ -73,7 +74,9 @@ class DesignCheck(eqx.Module):
 
     def __repr__(self) -> str:
         told = f"gamma = {float(self.gamma):.4g}, rate = {float(self.rate):.4g} N/s"
-        return f"Steady slide, {told}; gaps to the limit\n{self.table}"
+        pulls = "" if self.law.alpha is None else pulling_text(self.law.alpha)
+        pulls = f"\n({pulls})" if pulls else ""
+        return f"Steady slide, {told}; gaps to the limit\n{self.table}{pulls}"
 
 
 @with_nan

@@ -14,6 +14,7 @@ class FitStatus(Outcome):
     UNREACHABLE = 5, "no admissible value gives it"
     INADMISSIBLE = 6, "no value in the bounds is admissible on this surface"
     UNKNOWN = 7, "not found, but not every value could be evaluated"
+    PULLS = 8, "reached only by a bristle that pulls"
 
 
 GOOD = (FitStatus.OK, FitStatus.TANGENT, FitStatus.INDIFFERENT, FitStatus.MORE)

@@ -19,6 +19,7 @@ from ..bristles import (
 _DECADES = 1e4  # an unbounded number is looked for up to this many times its own size
 _TINY = 1e-12  # of its own size: where a positive number starts if bounds say 0
 _RIGHT = 0.5 * np.pi
+_WRITTEN = 1e-5  # relative: how exactly bounds are written
 
 _POSITIVE, _ANGLE = "positive", "angle"
 _MODELS: dict[type, dict[str, str]] = {
@@ -116,6 +117,15 @@ class FreeParameter(eqx.Module):
             return (-_RIGHT if self.kind == "angle" else 0.0), _RIGHT
         return 0.0, np.inf
 
+    def range_of(self, bristle: AbstractBristle) -> tuple[float, float]:
+        """`own_range`, with the length of a rod above its height."""
+        low, high = self.own_range
+        if isinstance(bristle, AngularSpring) and self.kind == "limit_by_height":
+            return low, float(bristle.length)
+        if isinstance(bristle, AngularSpring) and self.kind == "limit_by_length":
+            return float(bristle.height), high
+        return low, high
+
     def at(self, bristle: AbstractBristle, x: Real) -> AbstractBristle:
         """The bristle at the coordinate `x`."""
         return self.put(bristle, self.value(bristle, x))
@@ -182,16 +192,22 @@ def _numbers_of(bristle: Any) -> dict[str, tuple[int, int | None]]:
     return found
 
 
-def require_bounds(free: FreeParameter, bounds: Any) -> None:
-    """Check bounds of a free number: None, or (low, high) that its range meets."""
+def require_bounds(
+    free: FreeParameter, bristle: Any, bounds: Any, label: str = "bounds"
+) -> None:
+    """Check bounds of a free number: None, or (low, high) within its range."""
     if bounds is None or not is_known(bounds):
         return
     known = known_numbers(bounds)
     allowed = f"a pair (low, high) of finite numbers, low < high, of {free.name}"
-    require(known.dtype != object and known.shape == (2,), "bounds", bounds, allowed)
+    require(known.dtype != object and known.shape == (2,), label, bounds, allowed)
     good = bool(np.all(np.isfinite(known))) and known[0] < known[1]
-    require(good, "bounds", known, allowed)
+    require(good, label, known, allowed)
     low, high = free.own_range
-    meets = known[1] > low and known[0] < high
+    if is_known(bristle):
+        low, high = free.range_of(bristle)
+    # pi/2 as people write it, 1.5708, is within its range.
+    slack = _WRITTEN * np.abs([low, high])
+    inside = low - slack[0] <= known[0] and known[1] <= high + slack[1]
     needs = f"a part of ({as_text(low)}, {as_text(high)}), where {free.name} can be"
-    require(meets, "bounds", known, needs)
+    require(inside, label, known, needs)

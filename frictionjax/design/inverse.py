@@ -27,20 +27,33 @@ class Solutions(NamedTuple):
 
     `x`: coordinate of the solution nearest to the bristle as it was, of the number that
     comes nearest to the target where there is none. `roots` (ROOTS,): all, increasing,
-    NaN where there are fewer. `achieved`: the quantity at `x`. `code`: a `FitStatus`.
+    NaN where there are fewer. `achieved`: the quantity at `x`; `alpha`: F'(0) there, N.
+    `code`: a `FitStatus`.
     """
 
     x: Real
     roots: Float[Array, " roots"]
     achieved: Real
+    alpha: Real
     code: Int[Array, ""]
+
+
+class Pulled(NamedTuple):
+    """The nearest bristle that pulls and reaches the target; NaN where none was looked for.
+
+    `value` of the free number, and `alpha` < 0 in N.
+    """
+
+    value: Real
+    alpha: Real
 
 
 class Brackets(NamedTuple):
     """Where the solutions of one target are, (ROOTS,), in the order of their coordinates.
 
     `there`: whether there is one. `simple`: the quantity crosses the target, from below
-    where it `rises`; else it touches it, at `lower`. `number`: of all. `best`: the node
+    where it `rises`; else it touches it, at `lower`. `side`: sign of alpha in the interval
+    that holds it. `number`: of all. `best`: the node
     that comes nearest to the target. `level`: a place in an interval on which the target
     is met throughout, where `constant`.
     """
@@ -50,6 +63,7 @@ class Brackets(NamedTuple):
     rises: Bool[Array, " roots"]
     there: Bool[Array, " roots"]
     simple: Bool[Array, " roots"]
+    side: Float[Array, " roots"]
     number: Int[Array, ""]
     best: Real
     level: Real
@@ -74,16 +88,31 @@ def solve_targets(
     aims = jax.lax.stop_gradient(targets)
     known = jax.vmap(lambda aim: _brackets(found, aim, now))(aims)
 
+    def law(x):
+        return on_slopes(free.at(bristle, x), slopes)
+
     def quantity(x):
-        return quantity_of(on_slopes(free.at(bristle, x), slopes), which)
+        return quantity_of(law(x), which)
 
     roots = _polished(jax.vmap(jax.vmap(quantity)), targets, known)
+    known = _pressing_alike(known, jax.vmap(jax.vmap(lambda x: law(x).alpha))(roots))
     x, roots = jax.vmap(lambda r, k: _chosen(r, k, now))(roots, known)
-    achieved = jax.vmap(quantity)(x)
+    ended = jax.vmap(law)(x)
+    achieved = jax.vmap(lambda found: quantity_of(found, which))(ended)
     code = jax.vmap(lambda *lane: _code(found, *lane))(
         known, x, roots, jax.lax.stop_gradient(achieved), aims
     )
-    return Solutions(x, roots, achieved, code)
+    return Solutions(x, roots, achieved, ended.alpha, code)
+
+
+def _pressing_alike(known: Brackets, alpha: Float[Array, "n roots"]) -> Brackets:
+    """Without roots at which alpha has another sign than in the interval around them.
+
+    Between two nodes of an interval alpha may dip below 0 unseen.
+    """
+    lost = known.there & (jnp.sign(alpha) != known.side)
+    number = known.number - jnp.sum(lost, axis=-1)
+    return known._replace(there=known.there & ~lost, number=number)
 
 
 def _brackets(found: Survey, aim: Real, now: Real) -> Brackets:
@@ -100,6 +129,7 @@ def _brackets(found: Survey, aim: Real, now: Real) -> Brackets:
         rises=sides[cells] < 0,
         there=there,
         simple=there & ~touches.ravel()[cells],
+        side=found.side[cells // rest.shape[1]],
         number=count,
         best=nodes[jnp.argmin(jnp.where(jnp.isnan(rest), jnp.inf, jnp.abs(rest)))],
         level=level,

@@ -8,7 +8,13 @@ import jax.numpy as jnp
 import numpy as np
 import xarray as xr
 
-from ..arguments import known_numbers, require, require_real, require_x64
+from ..arguments import (
+    known_numbers,
+    require,
+    require_flags,
+    require_real,
+    require_x64,
+)
 from ..bristles import AbstractBristle
 from ..coefficients import coefficients_jit
 from ..parts import checked
@@ -35,8 +41,15 @@ _MEANING = {
     "difference": ("N", "rho_plus + rho_minus"),
     "contrast": ("1", "(rho_plus + rho_minus)/(rho_plus - rho_minus)"),
     "alpha": ("N", "normal force without friction, alpha"),
-    "admissible": (None, "whether the bristle can follow the surface"),
+    "admissible": (None, "whether the bristle can follow the surface, and may"),
+    "pulls": (None, "whether alpha < 0: the bristle pulls on the surface"),
 }
+
+
+_PULLING = (
+    "no: bristles that would pull (alpha < 0) are not admissible; design_map(pulling=True)",
+    "yes: bristles that pull (alpha < 0) are shown too",
+)
 
 
 def asymmetric_profile(steepness: float, asymmetry: float) -> Fourier:
@@ -67,6 +80,7 @@ def design_map(
     y: tuple[str, Any] | str = "asymmetry",
     profile: AbstractProfile | None = None,
     steepness: float = 0.2,
+    pulling: bool = False,
 ) -> xr.Dataset:
     """Friction over two numbers of a design, all in one compiled call.
 
@@ -80,12 +94,14 @@ def design_map(
     Returns an `xarray.Dataset` over y and x: `rho_plus, rho_minus` (N), `ratio` =
     -rho_plus/rho_minus, `difference`, `contrast` = (rho_plus + rho_minus)/(rho_plus -
     rho_minus), in (-1, 1), above 0 where the right is harder, `alpha` (N), and
-    `admissible`; NaN where that is false.
+    `admissible`; NaN where that is false. `pulls`: where alpha < 0. Such bristles count as
+    admissible with `pulling` only; else nothing but their alpha is given.
 
     Raises `ValueError` for unknown names, values that are not finite or positive, and a
     profile that is missing, or too much.
     """
     require_x64(bristle)
+    require_flags(pulling=pulling)
     bristle = checked(bristle)
     bristle = with_arrays(bristle)
     axes = [_axis(bristle, label, given) for label, given in (("x", x), ("y", y))]
@@ -96,7 +112,7 @@ def design_map(
     across, up = (axis[1] for axis in axes)
     flat = np.tile(across, up.size), np.repeat(up, across.size)
     surface = tuple(name if name in SURFACE else "" for name in names)
-    found = _mapped(frees, surface, bristle, slopes, *flat)
+    found = _mapped(frees, surface, bristle, slopes, np.asarray(pulling), *flat)
     shape = up.size, across.size
     dims = names[1], names[0]
     columns = {
@@ -105,7 +121,11 @@ def design_map(
     data = xr.Dataset(columns, {names[0]: across, names[1]: up})
     for name, (units, meaning) in _MEANING.items():
         data[name].attrs = {"long_name": meaning} | ({"units": units} if units else {})
-    data.attrs = {"bristle": type(bristle).__name__, "title": "Friction of designs"}
+    data.attrs = {
+        "bristle": type(bristle).__name__,
+        "title": "Friction of designs",
+        "pulling": _PULLING[bool(pulling)],
+    }
     return data
 
 
@@ -147,7 +167,7 @@ def _base(bristle, names, profile, steepness) -> np.ndarray:
 
 
 @Program
-def _mapped(frees, surface, bristle, base, across, up):
+def _mapped(frees, surface, bristle, base, pulling, across, up):
     def one(*values):
         part, ground = bristle, dict(zip(("steepness", "asymmetry"), base, strict=True))
         good = jnp.asarray(True)
@@ -160,16 +180,18 @@ def _mapped(frees, surface, bristle, base, across, up):
         lean = (ground["asymmetry"] - 1) / (ground["asymmetry"] + 1)
         slopes = Slopes(ground["steepness"] * (1 + lean), -ground["steepness"] * (1 - lean))
         law = on_slopes(part, slopes)
-        good = good & (side_of(part, law) != 0)
+        side = jnp.where(good, side_of(part, law), 0.0)
+        pulls = side < 0
+        good = (side > 0) | (pulls & pulling)
         numbers = {
             "rho_plus": law.rho_plus,
             "rho_minus": law.rho_minus,
             "ratio": quantity_of(law, 2),
             "difference": quantity_of(law, 3),
             "contrast": quantity_of(law, 3) / (law.rho_plus - law.rho_minus),
-            "alpha": law.alpha,
         }
         known = {name: jnp.where(good, value, jnp.nan) for name, value in numbers.items()}
-        return known | {"admissible": good}
+        known["alpha"] = jnp.where(good | pulls, law.alpha, jnp.nan)
+        return known | {"admissible": good, "pulls": pulls}
 
     return jax.vmap(one)(across, up)

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import require, require_real, require_whole
+from ..arguments import require, require_flags, require_real, require_whole
 from ..programs import room
 from ..surroundings import with_nan
 from .bending import free_energy
@@ -51,14 +51,17 @@ def fit_profile(
     largest_amplitude: float | None = None,
     seed: int = 0,
     max_steps: int = 1000,
+    pulling: bool = False,
 ) -> ProfileFit:
     """The least bent surface whose friction coefficients are the targets.
 
     `targets`: a `Target` or several, one surface for all. `harmonics`: of the profile.
     `starts`: optimisations from random surfaces, and free parameters, at once. `free`:
     numbers of the bristles that are fitted too, by name, each within its `bounds`
-    `{name: (low, high)}`; a bristle in several targets is one bristle. `smallest_radius`:
-    of curvature, `1/max |w''|`, and `largest_amplitude`: `max w - min w`, in periods.
+    `{name: (low, high)}`; a bristle in several targets is one bristle. Bristles press,
+    alpha > 0, before and after, unless `pulling`, which allows those with alpha < 0; a fit
+    does not change the sign. `smallest_radius`: of curvature, `1/max |w''|`, and
+    `largest_amplitude`: `max w - min w`, in periods.
 
     Coefficients see only the extreme slopes (Lemmas 2 and 3), so infinitely many surfaces
     fit: this is the one with the least `int_0^1 w''^2`; `.bending_bound` proves how near.
@@ -71,15 +74,16 @@ def fit_profile(
     `.status` and `.message` that say why.
 
     Raises `ValueError` for targets of the wrong sign, shape or kind, weights or
-    uncertainties that are not positive, bristles that press on nothing, and names and
-    bounds of free parameters that do not fit together.
+    uncertainties that are not positive, bristles that press on nothing, or pull, and names
+    and bounds of free parameters that do not fit together.
     """
+    require_flags(pulling=pulling)
     counts = ("harmonics", harmonics), ("starts", starts), ("max_steps", max_steps)
     for name, value in counts:
         require_whole(name, value)
     require_whole("seed", seed, 0)
     problem = problem_of(
-        targets, harmonics, free, bounds, smallest_radius, largest_amplitude
+        targets, harmonics, free, bounds, smallest_radius, largest_amplitude, pulling
     )
     apart: Any = np.array(places(problem.layout, starts))
     runs = least_bent(problem.layout, problem.task, starts)
@@ -106,9 +110,10 @@ def problem_of(
     bounds: Mapping[str, Any] | None = None,
     radius: float | None = None,
     amplitude: float | None = None,
+    pulling: bool = False,
 ) -> Problem:
     """The problem, checked, in the units of its targets; see `fit_profile`."""
-    asked, known = require_targets(targets)
+    asked, known = require_targets(targets, pulling)
     for name, value in (("smallest_radius", radius), ("largest_amplitude", amplitude)):
         if value is not None:
             require_real(name, value, f"{name} > 0 in periods", lambda v: v > 0)
@@ -229,15 +234,13 @@ def _numbers_called(name: str, bristles: tuple) -> list[tuple[int, Any]]:
 
 
 def _bounds_of(name: str, number: Any, bristle: Any, given: Any) -> tuple[float, float]:
-    require(given is not None, f"bounds of {name!r}", None, "a pair (low, high)")
-    require_bounds(number, given)
-    low, high = (float(end) for end in given)
-    least, most = number.own_range
-    legal = f"numbers from {least:.6g} to {most:.6g}, where {number.name} can be"
-    require(least <= low and high <= most, f"bounds of {name!r}", (low, high), legal)
+    label = f"bounds of {name!r}"
+    require(given is not None, label, None, "a pair (low, high)")
+    require_bounds(number, bristle, given, label)
+    low, high = np.clip(np.asarray(given, dtype=float), *number.range_of(bristle)).tolist()
     own = float(number.now(bristle))
     inside = low <= own <= high
-    require(inside, f"bounds of {name!r}", (low, high), f"low <= {own:.6g} <= high")
+    require(inside, label, (low, high), f"low <= {own:.6g} <= high")
     return low, high
 
 

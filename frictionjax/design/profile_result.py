@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arguments import as_text, require_real, require_whole
 from ..bristles import AbstractBristle
+from ..bristles.pulling import pulling_text
 from ..coefficients import Coefficients
 from ..profiles import Fourier
 from .constraints import heights_of, waves_of
@@ -130,4 +131,7 @@ class ProfileFit:
                 f"rho_minus = {as_text(found.rho_minus)} N (target {as_text(wanted[1])})"
             )
         rows += [f"  {name} = {as_text(value)}" for name, value in self.free.items()]
+        both = zip(self.coefficients, self.bristles, strict=True)
+        pulls = [pulling_text(found.alpha, part) for found, part in both]
+        rows += [f"  {text}" for text in dict.fromkeys(pulls) if text]
         return "\n".join(rows)

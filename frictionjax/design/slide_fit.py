@@ -16,6 +16,7 @@ from ..arguments import (
     require_real,
 )
 from ..bristles import AbstractBristle
+from ..bristles.pulling import normal_force, pulling_text
 from ..potentials import BristlePotential, smallest_stretch
 from ..profiles import AbstractProfile
 from ..programs import Program, in_chunks
@@ -83,7 +84,7 @@ class SlideFit(eqx.Module):
             return (
                 f"{asked} cannot be reached by {limit.free}: steady slides show "
                 f"{intervals_text(self.reachable)}; nearest: {as_text(self.achieved)} "
-                f"at {value}"
+                f"at {value}{self._in_the_limit}"
             )
         if self.status == FitStatus.UNKNOWN:
             count, first = self.failed.shape[0], as_text(self.failed[0])
@@ -93,7 +94,15 @@ class SlideFit(eqx.Module):
                 f"{asked}: {self.status.message}: {count} slides were not computed, the "
                 f"first at {limit.free} = {first}; {shown}"
             )
-        return f"{asked}: {self.status.message}, {value}"
+        pulls = pulling_text(normal_force(self.bristle), self.bristle)
+        told = f"; {pulls}" if pulls else ""
+        return f"{asked}: {self.status.message}, {value}{told}"
+
+    @property
+    def _in_the_limit(self) -> str:
+        """Where the limit's design would pull. Slides of those are not computed."""
+        pulls = self.limit.status == FitStatus.PULLS
+        return f"; in the limit: {self.limit.message}" if pulls else ""
 
     def to_json(self, path: Any = None) -> str:
         """Everything as JSON; written to `path` where given."""
@@ -196,11 +205,11 @@ def fit_slide(
 
     `gamma`, `rate` (N/s), `support`: as in `steady_slide`. `force`: "mean", over time, or
     "peak", the largest. `wanted`: one target (`rho_plus`, `rho_minus`, `ratio` or
-    `difference`, of these forces), `free` and `bounds`, as in `fit_angle`. The admissible
-    intervals of the limit are scanned as far as bristles slide at this eps, turns of the
-    quantity are found, and each change of sign is polished by `scipy.optimize.brentq`: 50
-    to 200 slides, so this takes seconds, not a millisecond. `.status` tells what no bristle
-    reaches from what could not be evaluated (`UNKNOWN`).
+    `difference`, of these forces), `free`, `bounds` and `pulling`, as in `fit_angle`. The
+    admissible intervals of the limit are scanned as far as bristles slide at this eps,
+    turns of the quantity are found, and each change of sign is polished by
+    `scipy.optimize.brentq`: 50 to 200 slides, so this takes seconds, not a millisecond.
+    `.status` tells what no bristle reaches from what could not be evaluated (`UNKNOWN`).
 
     Raises `ValueError` as `fit_angle` and `steady_slide` do, and for several targets.
     """

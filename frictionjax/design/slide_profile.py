@@ -161,7 +161,7 @@ def fit_slide_profile(
 
     Raises `ValueError` as `fit_profile` and `steady_slide` do.
     """
-    many, _ = require_targets(targets)
+    many, _ = require_targets(targets, options.get("pulling", False))
     require_force(force)
     for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
         require_real(name, value, f"{name} > 0", lambda v: v > 0)

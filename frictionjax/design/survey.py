@@ -16,6 +16,7 @@ from .free_parameter import FreeParameter
 from .quantities import Slopes, on_slopes, quantity_of, side_of
 
 PIECES = 4  # intervals of admissible numbers: slanted springs have three
+_HALVES = slice(PIECES), slice(PIECES, 2 * PIECES)
 TURNS = 6  # extrema of the quantity in one interval
 _GRID = 257
 _BISECTIONS = 64  # a bracket of the grid's width to neighbouring floats
@@ -32,8 +33,9 @@ class Survey(NamedTuple):
 
     `nodes`, `values`: (PIECES, N), sorted in each interval, NaN in empty ones; `turns`
     where a node is an extremum inside. `low`, `high` (PIECES,): least and largest value,
-    infinite at poles. `flat`: the quantity is the same in the whole interval. `missed`:
-    more intervals, or turns, than there is room for.
+    infinite at poles. `flat`: the quantity is the same in the whole interval. `side`
+    (PIECES,): sign of alpha there. `missed`: more intervals, or turns, than there is room
+    for.
     """
 
     nodes: Float[Array, "pieces n"]
@@ -42,6 +44,7 @@ class Survey(NamedTuple):
     low: Float[Array, " pieces"]
     high: Float[Array, " pieces"]
     flat: Bool[Array, " pieces"]
+    side: Float[Array, " pieces"]
     missed: Bool[Array, ""]
 
     @property
@@ -57,8 +60,13 @@ def survey(
     which: Real,
     low: Real,
     high: Real,
-) -> Survey:
-    """Look over the coordinates between `low` and `high`; traceable, not differentiable."""
+    pulling: Bool[Array, ""],
+) -> tuple[Survey, Survey]:
+    """Look over the coordinates between `low` and `high`; traceable, not differentiable.
+
+    Where the bristle presses, or pulls and `pulling` allows it, and where it pulls and may
+    not. One grid for both, so the second costs its nodes only.
+    """
 
     @jax.jit  # traced once
     def law(x):
@@ -67,12 +75,23 @@ def survey(
         return quantity_of(found, which), side_of(part, found), found
 
     now = free.coordinate(bristle, free.now(bristle))
-    ends, missed = _pieces(law, low, high, now)
-    return scan(lambda x: law(x)[0], ends, missed)
+    ends, sides, missed = _pieces(law, low, high, now, pulling)
+    found = scan(lambda x: law(x)[0], ends, sides)
+    half = [jax.tree_util.tree_map(lambda row, i=i: row[i], found) for i in _HALVES]
+    allowed, others = (
+        part._replace(missed=jnp.any(part.missed) | more)
+        for part, more in zip(half, missed, strict=True)
+    )
+    return allowed, others
 
 
-def _pieces(law: Callable, low: Real, high: Real, now: Real) -> tuple[Array, Real]:
-    """Ends (PIECES, 2) of the intervals where `side` is one sign, and whether some miss."""
+def _pieces(
+    law: Callable, low: Real, high: Real, now: Real, pulling: Bool[Array, ""]
+) -> tuple[Array, Array, list]:
+    """Ends (2 PIECES, 2) of the intervals where `side` is one sign, and those signs.
+
+    First those that are allowed, then those that pull and are not; whether some miss.
+    """
     grid = low + (high - low) * jnp.arange(_GRID) / (_GRID - 1)
     grid = grid.at[-1].set(high)
     now = jnp.where(jnp.isfinite(now), jnp.clip(now, low, high), low)
@@ -85,12 +104,20 @@ def _pieces(law: Callable, low: Real, high: Real, now: Real) -> tuple[Array, Rea
     before = jnp.concatenate([jnp.zeros(1), sides[:-1]])
     after = jnp.concatenate([sides[1:], jnp.zeros(1)])
     opens, closes = (sides != 0) & (sides != before), (sides != 0) & (sides != after)
-    first, last = first_places(opens, PIECES), first_places(closes, PIECES)
+    wanted = (sides > 0) | pulling, (sides < 0) & ~pulling
+    first = jnp.concatenate([first_places(opens & some, PIECES) for some in wanted])
+    last = jnp.concatenate([first_places(closes & some, PIECES) for some in wanted])
     neighbours = jnp.concatenate([first - 1, last + 1])
     beyond = nodes[jnp.clip(neighbours, 0, nodes.shape[0] - 1)]
     inside = nodes[jnp.concatenate([first, last])]
-    edges = _edges(side, inside, beyond).reshape(2, PIECES).T
-    return jnp.where(first[:, None] >= 0, edges, jnp.nan), jnp.sum(opens) > PIECES
+    edges = _edges(side, inside, beyond).reshape(2, 2 * PIECES).T
+    there = first >= 0
+    missed = [jnp.sum(opens & some) > PIECES for some in wanted]
+    return (
+        jnp.where(there[:, None], edges, jnp.nan),
+        jnp.where(there, sides[first], 0.0),
+        missed,
+    )
 
 
 def _narrow(law: Callable, grid: Float[Array, " n"]) -> Float[Array, " few"]:
@@ -160,9 +187,14 @@ def first_places(flags: Bool[Array, "... n"], count: int) -> Int[Array, "... cou
 
 
 def scan(
-    fn: Callable[[Real], Real], ends: Float[Array, "pieces 2"], missed: Real
+    fn: Callable[[Real], Real],
+    ends: Float[Array, "pieces 2"],
+    sides: Float[Array, " pieces"],
 ) -> Survey:
-    """Look over `fn` on intervals: nodes towards their ends, extrema polished."""
+    """Look over `fn` on intervals: nodes towards their ends, extrema polished.
+
+    `missed` of the result is of each interval.
+    """
     width = ends[:, 1:] - ends[:, :1]
     near = jnp.concatenate([jnp.zeros(1), _ENDS[::-1], _EVEN[_EVEN < 0.5]])
     left, right = ends[:, :1] + width * near, ends[:, 1:] - width * near[::-1]
@@ -189,8 +221,7 @@ def scan(
     )
     order = jnp.argsort(columns[0], axis=1)
     places, values, turned = (jnp.take_along_axis(c, order, axis=1) for c in columns)
-    missed = missed | jnp.any(more & ~flat)
-    return Survey(places, values, turned, low, high, flat, missed)
+    return Survey(places, values, turned, low, high, flat, sides, more & ~flat)
 
 
 def _turns(every: Callable, nodes: Array, slopes: Array) -> tuple[Array, Array]:

@@ -8,6 +8,7 @@ import numpy as np
 from ..admissibility import require_admissible, rounding_of_alpha
 from ..arguments import is_concrete, known_numbers, require, require_real, require_x64
 from ..bristles import AbstractBristle
+from ..bristles.pulling import pulling_text
 from ..parts import checked
 from ..potentials import BristlePotential
 from ..profiles import Sine
@@ -85,12 +86,15 @@ def coefficients_of(known: Geometry, plus: Any, minus: Any, xp: Any = jnp) -> An
     return xp.stack(both, axis=-1)
 
 
-def require_targets(targets: Any) -> tuple[list[Target], list[Geometry]]:
+def require_targets(
+    targets: Any, pulling: bool = False
+) -> tuple[list[Target], list[Geometry]]:
     """The targets as a list, checked one by one, and the geometry of their bristles.
 
     Raises `ValueError` naming the target and the argument: no targets, none of a target,
-    a bristle that presses on nothing, coefficients of the wrong sign, shape or not finite,
-    a weight or an uncertainty that is not positive, uncertainties for some targets only.
+    a bristle that presses on nothing, or pulls where `pulling` is False, coefficients of
+    the wrong sign, shape or not finite, a weight or an uncertainty that is not positive,
+    uncertainties for some targets only.
     """
     single = isinstance(targets, Target)
     listed = single or isinstance(targets, list | tuple)
@@ -101,7 +105,7 @@ def require_targets(targets: Any) -> tuple[list[Target], list[Geometry]]:
     for index, target in enumerate(many):
         name = "target" if single else f"targets[{index}]"
         many[index] = _require_target(name, target)
-        known.append(_require_pressing(name, many[index].bristle))
+        known.append(_require_pressing(name, many[index].bristle, pulling))
     given = [target.uncertainty is not None for target in many]
     allowed = "one for every target or for none"
     require(all(given) or not any(given), "uncertainty", None, allowed)
@@ -129,7 +133,7 @@ def _require_target(name: str, target: Any) -> Target:
     return target._replace(bristle=bristle)
 
 
-def _require_pressing(name: str, bristle: AbstractBristle) -> Geometry:
+def _require_pressing(name: str, bristle: AbstractBristle, pulling: bool) -> Geometry:
     """The bristle is admissible on a surface that is hardly wavy."""
     *found, noise = np.asarray(_alone(bristle))
     known = Geometry(*found)
@@ -139,6 +143,10 @@ def _require_pressing(name: str, bristle: AbstractBristle) -> Geometry:
             require_admissible(_on_nearly_flat(bristle))
         except ValueError as problem:
             raise ValueError(f"{name}.{problem}") from None
+    if not pulling and known.alpha < 0:
+        why = pulling_text(known.alpha, bristle)
+        mend = "pulling=True (--pulling in the shell) allows that"
+        raise ValueError(f"{name}.bristle: needs alpha > 0, but {why}; {mend}")
     return known
 
 

@@ -10,6 +10,7 @@ import xarray as xr
 
 from ..arguments import as_text, known_numbers, require, require_whole, require_x64
 from ..bristles import AbstractBristle
+from ..bristles.pulling import pulling_text
 from ..friction_law import friction
 from ..potentials import potential
 from ..profiles import AbstractProfile
@@ -98,7 +99,7 @@ class Tolerance:
 
     @property
     def flipped(self) -> float:
-        """Share of samples that press from the other side than the nominal part."""
+        """Share of samples that pull where the nominal part presses, or the other way."""
         return float(self.data.flipped)
 
     def __repr__(self) -> str:
@@ -112,8 +113,11 @@ class Tolerance:
             rows.append([str(name), *(f"{v:.6g}" for v in numbers)])
         count = data.sizes["sample"]
         told = f"{count} samples, {self.inadmissible:.3%} inadmissible and left out"
-        flipped = f", {self.flipped:.3%} press from the other side" if self.flipped else ""
-        return f"{told}{flipped}\n{aligned(rows)}"
+        pulls = pulling_text(data.attrs["alpha"])
+        other = "press on the surface" if pulls else "pull on the surface, alpha < 0"
+        flipped = f", {self.flipped:.3%} {other}" if self.flipped else ""
+        nominal = f"\nnominal {pulls}" if pulls else ""
+        return f"{told}{flipped}{nominal}\n{aligned(rows)}"
 
 
 @with_nan
@@ -147,8 +151,9 @@ def tolerance(
     levels = known_numbers(quantiles)
     good = levels.ndim == 1 and np.all((levels >= 0) & (levels <= 1))
     require(good, "quantiles", quantiles, "numbers in [0, 1], shape (n,)")
-    friction(profile, bristle)  # raises where the nominal parts are inadmissible
-    return Tolerance(_dataset(profile, bristle, spread, samples, seed, levels))
+    law = friction(profile, bristle)  # raises where the nominal parts are inadmissible
+    found = _dataset(profile, bristle, spread, samples, seed, levels)
+    return Tolerance(found.assign_attrs(alpha=float(law.alpha)))
 
 
 def _dataset(profile, bristle, spread, samples, seed, levels) -> xr.Dataset:

@@ -19,8 +19,7 @@ from ..programs import Program
 from ..scene import Scene, known_scene, require_times
 from ..surroundings import with_nan
 from ..wiggly.trajectory import solve
-
-QUANTITIES = ("force", "z")
+from .trace_file import QUANTITIES, trace_columns
 
 
 class Trace:
@@ -60,17 +59,20 @@ class Trace:
     @classmethod
     def from_csv(cls, path: Any) -> "Trace":
         """Read a file with a line of names, `t`, one of `force` and `z`, and, where it is
-        known, `uncertainty`, separated by commas, in s, N or m.
+        known, `uncertainty`, in s, N and m or in the units that the names carry: `t (ms)`,
+        `force [mN]`, `z/um`. A column called `index` is skipped.
 
-        Raises `ValueError`, one line, for a file that is no such table.
+        UTF-8 or UTF-16; separated by commas, semicolons, tabs or blanks; decimal commas
+        where columns are not separated by them; lines that begin with # are comments.
+
+        Raises `ValueError`, one line that names file, line and column, for what is no such
+        table.
         """
         try:
-            columns = _columns(Path(path))
-            names = [name for name in QUANTITIES if name in columns]
-            require("t" in columns, "columns", ", ".join(columns), "t among them")
-            require(bool(names), "columns", ", ".join(columns), "force or z among them")
-            values = {name: columns[name] for name in names}
-            return cls(columns["t"], **values, uncertainty=columns.get("uncertainty"))
+            columns = trace_columns(Path(path))
+            times, uncertainty = columns.pop("t"), columns.pop("uncertainty", None)
+            measured: Any = columns
+            return cls(times, **measured, uncertainty=uncertainty)
         except OSError as error:
             raise ValueError(f"{path}: {error.strerror or error}") from None
         except ValueError as error:
@@ -100,21 +102,6 @@ def _deviations(uncertainty: Any, shape: tuple) -> np.ndarray:
     good = np.all(np.isfinite(known)) and np.all(known > 0)
     require(good, name, known, "uncertainties > 0")
     return np.broadcast_to(known, shape).copy()
-
-
-def _columns(path: Path) -> dict[str, np.ndarray]:
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        rows = [row for row in csv.reader(file) if any(map(str.strip, row))]
-    require(len(rows) > 1, "rows", len(rows), "a line of names and lines of numbers")
-    names = [name.strip() for name in rows[0]]
-    for number, row in enumerate(rows, start=1):
-        same = len(row) == len(names)
-        require(same, f"row {number}", f"{len(row)} fields", f"{len(names)}")
-    try:
-        block = np.array(rows[1:], dtype=float)
-    except ValueError:
-        raise ValueError("rows: need numbers below the line of names") from None
-    return dict(zip(names, block.T, strict=True))
 
 
 @Program

@@ -21,7 +21,7 @@ _PARTS = ("profile", "trace", "status", "used", "slipping", "history", "identifi
 def dump(fit: Any) -> str:
     """The JSON text of a fit; numbers keep all digits, those not finite become null."""
     trace = fit.trace
-    document: dict[str, Any] = {"kind": _KIND, "status": fit.status.name}
+    document: dict[str, Any] = {"kind": _KIND, "status": fit.status.name, "odd": fit.odd}
     document |= {name: getattr(fit, name) for name in _PLAIN}
     document |= {name: getattr(fit, name) for name in (*_ROWS, "used", "slipping")}
     document["profile"] = {"cos": fit.profile.cos, "sin": fit.profile.sin}
@@ -47,6 +47,7 @@ def fields(source: Any) -> dict[str, Any]:
         "status": TraceStatus[document["status"]],
         "history": {k: _array(k, v, counts=True) for k, v in document["history"].items()},
         "identifiability": Identifiability(**seen),
+        "odd": document.get("odd", ""),  # not in documents of earlier versions
     }
 
 

@@ -48,6 +48,7 @@ def passages_of(scene: Any, ts: np.ndarray, z: np.ndarray, sd: np.ndarray, eps: 
         count = int(np.floor(side * (end - begin) / (_APART * eps)))
         if count < 1:
             continue
+        count = min(count, _MOST)  # of a trace in nm, 1e9
         states.append(np.linspace(begin, end, count + 1))
         bounds.append(np.full(count + 1, highest[i] if side > 0 else lowest[i]))
         sides.append(np.full(count + 1, side))

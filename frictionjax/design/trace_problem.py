@@ -70,6 +70,11 @@ class Problem(NamedTuple):
         found = np.asarray(_tips(numbers, self.scene, self.eps, z))
         return found - np.floor(found)
 
+    def unheld(self) -> np.ndarray:
+        """States under the load alone, without friction."""
+        load = np.asarray(forces_at(self.scene, self.ts, np.zeros_like(self.ts))[0])
+        return np.asarray(states_of(self.scene, load))
+
     def quantity_of(self, quantity: str, z: np.ndarray) -> np.ndarray:
         """What the trace measures, at states z."""
         if quantity == "z":
@@ -113,7 +118,8 @@ def _tips(numbers, scene, eps, z):
 
 
 @Program
-def _states_of(scene, forces):
+def states_of(scene, forces):
+    """States at which the support has these forces."""
     return jax.vmap(scene.support.state_of)(forces)
 
 
@@ -138,7 +144,7 @@ def problem_of(
     if trace.quantity == "force":
         load = np.asarray(forces_at(scene, ts, np.zeros_like(ts))[0])
         wanted = load - trace.values
-        z = np.asarray(_states_of(scene, wanted))
+        z = np.asarray(states_of(scene, wanted))
     load, force, stiffness = (np.asarray(v) for v in forces_at(scene, ts, z))
     if wanted is not None:
         known = np.allclose(force, wanted, rtol=1e-9, atol=1e-9 * np.max(np.abs(wanted)))

@@ -25,12 +25,15 @@ _LITTLE = 0.05  # of the period
 _UNTRUSTED = (TraceStatus.MISFIT, TraceStatus.OTHER_SLIPS, TraceStatus.MAX_STEPS)
 
 
-def report(trace: Trace, problem: Problem, found: Descent, within: float) -> TraceFit:
+def report(
+    trace: Trace, problem: Problem, found: Descent, within: float, odd: str = ""
+) -> TraceFit:
     """Judge where the descent ended."""
     now = view(problem.observed(), found.flow)
     sd = problem.observed().sd
-    excess = float(np.sum((now.away / sd)[now.used] ** 2))
-    freedom = max(1, int(np.sum(now.used)) - found.numbers.size)
+    counted = _counted(now, found.numbers.size)
+    excess = float(np.sum((now.away / sd)[counted] ** 2))
+    freedom = _freedom(counted, found.numbers.size)
     # Where uncertainties are not known, what is left over is taken for them.
     scale = 1.0
     if trace.uncertainty is None:
@@ -55,7 +58,20 @@ def report(trace: Trace, problem: Problem, found: Descent, within: float) -> Tra
         status = TraceStatus.MISFIT
     if status in _UNTRUSTED:  # derivatives at a surface that is not the trace's
         judged = judged._replace(determined=np.zeros_like(judged.determined))
-    return _fit(trace, problem, found, now, judged, status, sd, tips, excess / scale**2)
+    known = judged, status, sd, tips, excess / scale**2
+    return _fit(trace, problem, found, now, counted, *known, odd)
+
+
+def _counted(now: View, unknowns: int) -> np.ndarray:
+    """Samples that chi2 is of: those used, or all where these are too few to judge by."""
+    for some in (now.used, now.clear):
+        if np.sum(some) > unknowns:
+            return some
+    return np.ones(now.used.size, dtype=bool)
+
+
+def _freedom(counted: np.ndarray, unknowns: int) -> int:
+    return max(1, int(np.sum(counted)) - unknowns)
 
 
 def explains(trace: Trace, problem: Problem, found: Descent) -> bool:
@@ -110,7 +126,9 @@ def _status(
     return next((status for bad, status in known if bad), TraceStatus.FITTED)
 
 
-def _fit(trace, problem, found, now, judged, status, sd, tips, chi2) -> TraceFit:
+def _fit(
+    trace, problem, found, now, counted, judged, status, sd, tips, chi2, odd
+) -> TraceFit:
     stiffness = problem.reading.support if trace.quantity == "force" else 1.0
     achieved = problem.quantity_of(trace.quantity, found.flow.z)
     waves: Any = np.split(found.numbers, 2)
@@ -127,30 +145,38 @@ def _fit(trace, problem, found, now, judged, status, sd, tips, chi2) -> TraceFit
         disputed=int(np.sum(now.disputed)),
         tips=tips,
         chi2=chi2,
-        degrees_of_freedom=int(np.sum(now.used)) - found.numbers.size,
+        degrees_of_freedom=_freedom(counted, found.numbers.size if found.steps else 0),
         status=status,
         history=_history(found.steps),
         identifiability=judged,
+        odd=odd,
     )
 
 
 def _history(steps: list[Step]) -> TraceHistory:
-    return TraceHistory(*(np.array(column) for column in zip(*steps, strict=True)))
+    columns = zip(*steps, strict=True) if steps else [()] * len(Step._fields)
+    return TraceHistory(*(np.array(column) for column in columns))
 
 
-def without_trajectory(trace: Trace, problem: Problem, harmonics: int) -> TraceFit:
-    """The result where no start has a trajectory: nothing is determined."""
+def without_fit(
+    trace: Trace, problem: Problem, harmonics: int, status: TraceStatus, odd: str = ""
+) -> TraceFit:
+    """The result where no surface was looked for, or no start has a trajectory.
+
+    A flat surface: nothing is determined, and no number is NaN.
+    """
     count, unknowns = trace.ts.size, 2 * harmonics
     numbers = np.full(unknowns, 1e-300)  # no surface, which a profile cannot be
-    nothing = np.full(count, np.nan)
-    empty: Any = nothing, nothing, np.zeros((unknowns, count)), 0
-    off = np.zeros(count, dtype=bool)
+    z = problem.unheld()[:count]
+    none = np.zeros(count, dtype=bool)
     sd = problem.reading.sd
-    now = View(nothing, sd, sd, off, off, off, 1.0)
     judged = identify(
         numbers, np.zeros((unknowns, 1)), np.zeros((2 * unknowns, 1)), np.zeros(0), 0.0
     )
-    step = Step(np.nan, np.nan, 0, 0, 0, np.nan, 0.0)
-    found = Descent(numbers, Flow(*empty), [step], False)
-    known = judged, TraceStatus.NOT_FINITE, now.sd, nothing, float("nan")
-    return _fit(trace, problem, found, now, *known)
+    away = z - problem.reading.z
+    now = View(away, sd, sd, ~none, none, none, 1.0)
+    still: Any = z, np.zeros(count), np.zeros((unknowns, count)), 0
+    found = Descent(numbers, Flow(*still), [], False)
+    tips = z / float(problem.eps)
+    known = judged, status, sd, tips - np.floor(tips), float(np.sum((away / sd) ** 2))
+    return _fit(trace, problem, found, now, ~none, *known, odd)

@@ -17,9 +17,9 @@ class TraceHistory(NamedTuple):
     """Every iterate of a fit, arrays (steps,).
 
     `objective`: robust, with the prior, per sample. `chi2`: mean square of the residuals
-    used, in standard deviations. `used`, `slipping`, `disputed`: samples that count, are
-    inside slips of the model, and are more than a quarter of a well off outside of them.
-    `damping`: Marquardt's. `blur`: of the samples, in eps.
+    used, in standard deviations, infinite where none is. `used`, `slipping`, `disputed`:
+    samples that count, are inside slips of the model, and are more than a quarter of a well
+    off outside of them. `damping`: Marquardt's. `blur`: of the samples, in eps.
     """
 
     objective: np.ndarray
@@ -41,8 +41,10 @@ class TraceFit:
     trajectories, or taken from the residuals where it was not known; N or m, (n,).
     `used`: samples that count; `slipping`: inside a slip of the model, left out;
     `disputed`: how many others are in another well. `tips`: phases of the tip, (n,).
-    `chi2`: of samples used, in units of `deviation`; `degrees_of_freedom` of them, samples
-    less coefficients. `identifiability`: what the trace determines of the surface.
+    `chi2`: of samples used, in units of `deviation`, where they outnumber the coefficients,
+    else of all outside slips, else of all; `degrees_of_freedom` of them, samples less
+    coefficients, at least 1. `identifiability`: what the trace determines of the surface.
+    `odd`: what is odd about the trace, or was left undone, in words; empty where nothing.
     """
 
     profile: Fourier
@@ -61,6 +63,7 @@ class TraceFit:
     status: TraceStatus
     history: TraceHistory
     identifiability: Identifiability
+    odd: str = ""
 
     @property
     def success(self) -> bool:
@@ -71,18 +74,16 @@ class TraceFit:
     def message(self) -> str:
         """Why, for people, and what is determined."""
         seen = self.identifiability
+        why = f"{self.status.message}: {self.odd}" if self.odd else self.status.message
         if not seen.determined.any():
-            return f"{self.status.message}; no slope is determined"
+            return f"{why}; no slope is determined"
         parts = ", ".join(f"[{a:.3f}, {b:.3f}]" for a, b in seen.intervals)
-        return (
-            f"{self.status.message}; slopes determined at y in {parts} ({seen.share:.0%})"
-        )
+        return f"{why}; slopes determined at y in {parts} ({seen.share:.0%})"
 
     @property
     def reduced_chi2(self) -> float:
-        """`chi2` per degree of freedom; NaN where there is none."""
-        free = self.degrees_of_freedom
-        return self.chi2 / free if free > 0 else float("nan")
+        """`chi2` per degree of freedom."""
+        return self.chi2 / self.degrees_of_freedom
 
     @property
     def covariance(self) -> np.ndarray:

@@ -13,3 +13,7 @@ class TraceStatus(Outcome):
     OTHER_SLIPS = 4, "slips come at other times than in the trace"
     MAX_STEPS = 5, "the step budget ran out before the optimum; raise max_steps"
     NOT_FINITE = 6, "the start has no trajectory: slips too short, or too many"
+    WRONG_SCALE = 7, "the trace looks to be in another unit"
+    WRONG_SIGN = 8, "the trace looks to have the other sign"
+    NOISE = 9, "noise hides what the surface does"
+    IMPOSSIBLE = 10, "no surface gives this trace in this scene"

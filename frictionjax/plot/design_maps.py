@@ -30,7 +30,8 @@ _TITLES = {
 }
 _SIGNED = ("ratio", "contrast", "difference", "alpha")
 _RATIOS = (1 / 10, 1 / 5, 1 / 3, 1 / 2, 2 / 3, 1, 1.5, 2, 3, 5, 10)
-_HATCH = "////"
+# What is left out of a map, and how it is hatched.
+_LEFT = ("////", "not admissible"), ("....", "$\\alpha$ < 0: the bristle pulls")
 
 
 @styled
@@ -39,7 +40,7 @@ def draw(data: xr.Dataset, quantities: Any = ("ratio", "contrast")) -> Figure:
 
     Ratios are coloured by their logarithm, so that left and right look alike; colours end
     at the 2nd and 98th of a hundred values, and arrows on the bar say so. Hatched: no
-    bristle there can follow the surface.
+    bristle there can follow the surface; dotted: it would pull, and may not.
 
     Raises `ValueError` for a quantity that the data set does not hold.
     """
@@ -134,12 +135,15 @@ def _key(axes: Any, x, y, admissible: np.ndarray, alpha: np.ndarray) -> None:
     """Hatching where nothing is admissible, a dotted line where alpha changes sign."""
     handles: list[Any] = []
     flat = min(admissible.shape) < 2
-    if not admissible.all() and not flat:
-        outside = (~admissible).astype(float)
+    pulls = ~admissible & (alpha < 0)  # known, but not asked for
+    for outside, (hatch, label) in zip((~admissible & ~pulls, pulls), _LEFT, strict=True):
+        if not outside.any() or flat:
+            continue
+        shown = outside.astype(float)
         with matplotlib.rc_context({"hatch.color": GUIDE, "hatch.linewidth": 0.5}):
-            axes.contourf(x, y, outside, levels=[0.5, 1.5], colors="none", hatches=[_HATCH])
-        look: Any = {"facecolor": "#f4f4f4", "edgecolor": GUIDE, "hatch": _HATCH}
-        handles.append(Patch(**look, label="not admissible"))
+            axes.contourf(x, y, shown, levels=[0.5, 1.5], colors="none", hatches=[hatch])
+        look: Any = {"facecolor": "#f4f4f4", "edgecolor": GUIDE, "hatch": hatch}
+        handles.append(Patch(**look, label=label))
     if np.nanmin(alpha) < 0 < np.nanmax(alpha) and not flat:
         axes.contour(x, y, alpha, levels=[0.0], colors="#222222", linestyles="dotted")
         label = "$\\alpha$ = 0: the bristle presses on one side, pulls on the other"

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from .style import GUIDE, LIMIT, STRIP, colour, new_figure, styled
 
 _BAND = 2.0  # standard errors
+_FLATTEST = 1e-12  # range of slopes that an axis shows
 _NAMES = {"force": "force $\\ell - \\Phi'(z)$ (N)", "z": "state z (m)"}
 
 
@@ -42,7 +43,8 @@ def _data(axes: Any, fit: Any) -> None:
         trace.ts[used], trace.values[used], marker=".", color=LIMIT, label="trace", **look
     )
     if left.any():
-        known = {"marker": "x", "color": colour(1), "label": "in slips, left out"}
+        label = "in slips, left out" if fit.slipping.any() else "left out"
+        known = {"marker": "x", "color": colour(1), "label": label}
         axes.plot(trace.ts[left], trace.values[left], **known, **look | {"markersize": 5})
     axes.set(xlabel="t (s)", ylabel=_NAMES[trace.quantity])
     axes.set_title("Trace")
@@ -78,7 +80,7 @@ def _slopes(axes: Any, fit: Any, truth: Any) -> None:
         slopes = np.asarray(jax.vmap(jax.grad(truth))(seen.phases))
         axes.plot(seen.phases, slopes, "--", color=LIMIT, linewidth=1.2, label="truth")
         low, high = min(low, slopes.min()), max(high, slopes.max())
-    room = 0.25 * (high - low)
+    room = 0.25 * max(high - low, _FLATTEST)
     axes.set(xlim=(0, 1), ylim=(low - room, high + 1.6 * room))
     axes.set(xlabel="phase y (periods)", ylabel="slope w' (1)")
     axes.set_title("Surface; grey: not determined")

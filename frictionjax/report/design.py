@@ -40,6 +40,7 @@ class Asked(NamedTuple):
     harmonics: int
     smallest_radius: float | None = None
     largest_amplitude: float | None = None
+    pulling: bool = False
 
 
 class _Design(NamedTuple):
@@ -96,7 +97,7 @@ def _bristle(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
         allowed = "--rho-plus and --rho-minus together: the surface is given otherwise"
         require(value is None, name, value, allowed)
     options: Any = wanted | {"free": asked.free or "angle", "bounds": asked.bounds}
-    fit = fit_angle(profile, bristle, **options)
+    fit = fit_angle(profile, bristle, **options, pulling=asked.pulling)
     if not fit.success:
         raise ValueError(fit.message)
     found = exchanged(job.scene, profile, fit.bristle)
@@ -112,6 +113,7 @@ def angle_table(fit: AngleFit) -> str:
     rows = [
         ("wanted", f"{fit.quantity} = {as_text(fit.target)}"),
         ("achieved", f"{float(fit.achieved):.10g}"),
+        ("alpha", f"{float(fit.alpha):.10g} N"),
         (fit.free, f"{float(fit.value):.10g}"),
         ("other solutions", ", ".join(others) or "none"),
         ("reachable", intervals_text(fit.reachable)),
@@ -129,7 +131,8 @@ def _bristle_pictures(fit: AngleFit) -> Iterator[tuple[str, Figure]]:
     numbers = numbers[~np.isnan(numbers[:, 0])]
     across = np.linspace(numbers.min(), numbers.max(), _MAP)
     steepness = 0.5 * float(fit.slopes.plus - fit.slopes.minus)
-    data = design_map(fit.bristle, (fit.free, across), steepness=steepness)
+    axes: Any = (fit.free, across), "asymmetry"
+    data = design_map(fit.bristle, *axes, steepness=steepness, pulling=fit.pulling)
     yield "map", plot.draw_design_map(data)
 
 
@@ -145,6 +148,7 @@ def _surface(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
         bounds=dict.fromkeys(free, asked.bounds),
         smallest_radius=asked.smallest_radius,
         largest_amplitude=asked.largest_amplitude,
+        pulling=asked.pulling,
     )
     if not fit.success:
         raise ValueError(fit.message)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arguments import require
 from ..bristles import AbstractBristle, AngularSpring, SlantedSpring
+from ..bristles.pulling import pulling_note
 from ..measured import (
     Measured,
     RowCoefficients,
@@ -101,16 +102,18 @@ def _read_job(
     study = {**default_study().study, **known.study}
     chosen = known.scene.bristle if bristle is None else named_bristle(bristle)
     assert chosen is not None
+    pulls = pulling_note(chosen)
+    warned = [f"Note: {pulls}"] if pulls else []
     if heights is None:
         fit = {"period": period, "harmonics": harmonics, "row": row, "smoothing": smoothing}
         for name, value in {**file, **fit}.items():
             require(value is None, name, value, "--heights FILE beside it")
-        return Job(exchanged(known.scene, known.scene.profile, chosen), study, [], None)
+        return Job(exchanged(known.scene, known.scene.profile, chosen), study, warned, None)
     measured = heights_of(heights, **file)
     harmonics = 8 if harmonics is None else harmonics
     found = fit_profile(measured, period, harmonics, row, smoothing)
     scene = exchanged(known.scene, found.profile, chosen)
-    notes = _notes(heights, measured, found, row)
+    notes = warned + _notes(heights, measured, found, row)
     rows = None
     if measured.heights.shape[0] > 1:
         rows = row_coefficients(measured, chosen, harmonics, found.period, smoothing)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..bristles.pulling import pulling_text
 from ..coefficients import Coefficients
 from ..measured import RowCoefficients
 
@@ -104,7 +105,9 @@ def coefficient_table(found: Coefficients, error: dict[str, float] | None = None
         if name in numbers
     ]
     added = ("+-",) if error else ()
-    return _with_meanings(("coefficient", "value", *added, "unit", "meaning"), rows)
+    text = _with_meanings(("coefficient", "value", *added, "unit", "meaning"), rows)
+    pulls = pulling_text(numbers.get("alpha", 0.0))
+    return f"{text}\n({pulls})" if pulls else text
 
 
 def _plus_minus(name: str, error: dict[str, float] | None) -> tuple[str, ...]:
