@@ -150,6 +150,18 @@ def atan(a: Jet) -> Jet:
     return jets.composed(a, iv.rising(np.arctan, a.value), rate, bend)
 
 
+def atan2(a: Jet, b: Jet) -> Jet:
+    """Of `a` over `b`; with a seam on the half line where it jumps, and at 0."""
+    quarter = jets.number(np.asarray(np.pi / 2))
+    by_b, by_a = atan(divide(a, b)), atan(divide(b, a))
+    above, below = jets.sub(quarter, by_a), jets.negated(jets.add(quarter, by_a))
+    around = jets.either(jets.either(by_b, above), below)
+    lo = np.full_like(around.value.lo, -np.pi)
+    around = around._replace(value=Interval(lo, -lo), seam=np.ones_like(around.seam))
+    sides = jets.chosen(a.value.lo > 0, above, jets.chosen(a.value.hi < 0, below, around))
+    return jets.chosen(b.value.lo > 0, by_b, sides)
+
+
 def asinh(a: Jet) -> Jet:
     size = iv.rising(np.sqrt, iv.add(_ONE, iv.square(a.value)))
     rate = iv.reciprocal(size)
@@ -248,7 +260,15 @@ def remainder(a: Jet, b: Jet) -> Jet:
     size = b.value.size
     lo = np.where(a.value.lo >= 0, 0.0, -size)
     hi = np.where(a.value.hi <= 0, 0.0, size)
-    return found._replace(value=iv.meet(found.value, Interval(lo, hi)))
+    found = found._replace(value=iv.meet(found.value, Interval(lo, hi)))
+    if not b.is_point:
+        return found
+    # Remainders of floats are exact, also of whole numbers by whole ones.
+    ends = [np.fmod(end, b.value.lo) for end in a.value]
+    same = (a.value.width < size) & (ends[1] >= ends[0])
+    same &= (a.value.lo >= 0) | (a.value.hi < 0)
+    held = a._replace(value=Interval(*ends))
+    return jets.chosen(same & np.isfinite(size), held, found)
 
 
 ELEMENTARY: dict[str, Rule] = {
@@ -257,6 +277,7 @@ ELEMENTARY: dict[str, Rule] = {
     "add_any": jets.add,
     "asinh": asinh,
     "atan": atan,
+    "atan2": atan2,
     "cbrt": cbrt,
     "ceil": ceil,
     "cos": cos,

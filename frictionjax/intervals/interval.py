@@ -77,11 +77,18 @@ def negated(a: Interval) -> Interval:
 
 
 def add(a: Interval, b: Interval) -> Interval:
-    return wider(a.lo + b.lo, a.hi + b.hi)
+    lo, hi = a.lo + b.lo, a.hi + b.hi
+    return Interval(lo - _rounded_off(lo, a.lo, b.lo), hi + _rounded_off(hi, a.hi, b.hi))
+
+
+def _rounded_off(total: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """0 where a sum is exact: whole numbers stay whole, so that places are decided."""
+    exact = (total - a == b) & (total - b == a)
+    return np.where(exact, 0.0, _WIDER * np.abs(total))
 
 
 def sub(a: Interval, b: Interval) -> Interval:
-    return wider(a.lo - b.hi, a.hi - b.lo)
+    return add(a, negated(b))
 
 
 def mul(a: Interval, b: Interval) -> Interval:
@@ -92,7 +99,20 @@ def mul(a: Interval, b: Interval) -> Interval:
         ends = [np.where(np.isnan(end) & ~none, 0.0, end) for end in ends]
     lo = np.minimum(np.minimum(ends[0], ends[1]), np.minimum(ends[2], ends[3]))
     hi = np.maximum(np.maximum(ends[0], ends[1]), np.maximum(ends[2], ends[3]))
+    if _keeps_digits(a) or _keeps_digits(b) or (_is_whole(a) and _is_whole(b)):
+        return Interval(lo, hi)
     return wider(lo, hi)
+
+
+def _keeps_digits(a: Interval) -> bool:
+    """Whether it is one power of two, or 0."""
+    if a.lo.size != 1 or a.lo.item() != a.hi.item():
+        return False
+    return abs(np.frexp(a.lo.item())[0]) in (0.0, 0.5)
+
+
+def _is_whole(a: Interval) -> bool:
+    return bool(np.all(a.lo == np.rint(a.lo)) and np.all(a.hi == np.rint(a.hi)))
 
 
 def scaled(a: Interval, factor: float) -> Interval:

@@ -73,9 +73,40 @@ def _concatenate(params: Any, *rows: Jet) -> Jet:
     return _joined(list(rows), params["dimension"] + 1)
 
 
-def stack(rows: list[Jet]) -> Jet:
-    """Along a new first axis."""
-    return _joined([jet.mapped(lambda x: x[:, None]) for jet in rows], 1)
+def stack(rows: list[Jet], axis: int = 0) -> Jet:
+    """Along a new axis."""
+    place = axis + 1
+    return _joined([jet.mapped(lambda x: np.expand_dims(x, place)) for jet in rows], place)
+
+
+def _stack(params: Any, *rows: Jet) -> Jet:
+    return stack(list(rows), params["axis"])
+
+
+def _cumulated(params: Any, a: Jet) -> Jet:
+    """Sums so far, of whole numbers as of others."""
+    axis, count = params["axis"], a.seam.shape[params["axis"] + 1]
+    rows = [a.mapped(lambda x, k=k: np.take(x, k, axis + 1)) for k in range(count)]
+    if params["reverse"]:
+        rows.reverse()
+    sums = [rows[0]]
+    for row in rows[1:]:
+        sums.append(jets.add(sums[-1], row))
+    if params["reverse"]:
+        sums.reverse()
+    return stack(sums, axis)
+
+
+def _largest_at(params: Any, a: Jet) -> Jet:
+    """The first of the largest."""
+    axis = params["axes"][0] + 1
+    lo, hi = a.value
+    may = hi >= np.max(lo, axis=axis, keepdims=True)
+    sure = lo >= np.max(hi, axis=axis, keepdims=True)
+    last = may.shape[axis] - 1 - np.argmax(np.flip(may, axis), axis=axis)
+    first_sure = np.where(sure.any(axis=axis), np.argmax(sure, axis=axis), last)
+    found = np.argmax(may, axis=axis), np.minimum(last, first_sure)
+    return jets.constant(Interval(*(place.astype(float) for place in found)))
 
 
 def _iota(params: Any) -> Jet:
@@ -153,11 +184,13 @@ def _same(params: Any, a: Jet) -> Jet:
 
 
 SHAPES: dict[str, Callable[..., Jet]] = {
+    "argmax": _largest_at,
     "broadcast_in_dim": _broadcast,
     "concatenate": _concatenate,
     "convert_element_type": _convert,
     "copy": _same,
     "copy_p": _same,
+    "cumsum": _cumulated,
     "dot_general": _dot,
     "dynamic_slice": _dynamic_slice,
     "iota": _iota,
@@ -169,6 +202,7 @@ SHAPES: dict[str, Callable[..., Jet]] = {
     "rev": _reverse,
     "slice": _slice,
     "squeeze": _squeeze,
+    "stack": _stack,
     "transpose": _transpose,
 }
 """By the names that JAX has for them."""
