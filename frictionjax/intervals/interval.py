@@ -8,6 +8,7 @@ import numpy as np
 # Four roundings: NumPy's elementary functions err by less, its arithmetic by a half.
 _WIDER = 4 * float(np.finfo(float).eps)
 _LEAST = float(np.finfo(float).smallest_subnormal)
+LARGEST = float(np.finfo(float).max)
 
 
 class Interval(NamedTuple):
@@ -46,9 +47,13 @@ def everything(like: Interval) -> Interval:
     return Interval(np.full_like(like.lo, -np.inf), np.full_like(like.hi, np.inf))
 
 
-def wider(lo: np.ndarray, hi: np.ndarray) -> Interval:
-    """Ends that hold true after roundings; zeros stay zeros."""
-    return Interval(lo - _WIDER * np.abs(lo), hi + _WIDER * np.abs(hi))
+def wider(lo: np.ndarray, hi: np.ndarray, slack: float = _WIDER) -> Interval:
+    """Ends that hold true after roundings; zeros stay zeros.
+
+    What is too large for a float is a number all the same, above the largest.
+    """
+    lo, hi = np.minimum(lo, LARGEST), np.maximum(hi, -LARGEST)
+    return Interval(lo - slack * np.abs(lo), hi + slack * np.abs(hi))
 
 
 def holds_zero(a: Interval) -> np.ndarray:
@@ -77,7 +82,7 @@ def negated(a: Interval) -> Interval:
 
 
 def add(a: Interval, b: Interval) -> Interval:
-    lo, hi = a.lo + b.lo, a.hi + b.hi
+    lo, hi = np.minimum(a.lo + b.lo, LARGEST), np.maximum(a.hi + b.hi, -LARGEST)
     return Interval(lo - _rounded_off(lo, a.lo, b.lo), hi + _rounded_off(hi, a.hi, b.hi))
 
 
@@ -142,15 +147,11 @@ def power(a: Interval, n: int) -> Interval:
     if n == 0:
         return point(np.ones_like(a.lo))
     low, high = a.lo**n, a.hi**n
-    if n % 2:
-        return _outward(low, high, n)
-    least = np.where(holds_zero(a), 0.0, np.minimum(low, high))
-    return _outward(least, np.maximum(low, high), n)
-
-
-def _outward(lo: np.ndarray, hi: np.ndarray, n: int) -> Interval:
     slack = _WIDER * (1 + 0.25 * n)
-    return Interval(lo - slack * np.abs(lo), hi + slack * np.abs(hi))
+    if n % 2:
+        return wider(low, high, slack)
+    least = np.where(holds_zero(a), 0.0, np.minimum(low, high))
+    return wider(least, np.maximum(low, high), slack)
 
 
 def rising(fn: Callable[[np.ndarray], np.ndarray], a: Interval) -> Interval:
