@@ -88,11 +88,12 @@ class Scene(eqx.Module):
         )
         assert support is not None
         assert load is not None
-        self.support, self.load = support, load
+        self.support = support
         self.duration, self.z0 = as_real(duration), as_real(z0)
         self.effects = tuple(effects)
         require_real("scene.duration", self.duration, "duration > 0", lambda t: t > 0)
         require_real("scene.z0", self.z0, "a position in m")
+        self.load = load.prepared(self.duration)
         self.turns = _room_for_turns(self.load, self.duration)
         _require_hypotheses(self)
 

@@ -17,6 +17,7 @@ FLOORS = [
     {"kept_programs"},
     {"outcomes", "compilation", "programs"},
     {"roots", "taylor", "extrema", "trigonometry"},
+    {"intervals"},
     {"profiles", "bristles", "supports", "loads"},
     {"potentials"},
     {"coefficients"},

@@ -144,6 +144,7 @@ def by_bounds(bounds: Enclosure) -> Point:
 
     def at(times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         found = bounds(times, times)
-        return found.value.middle, found.slope.middle
+        with np.errstate(invalid="ignore"):
+            return found.value.middle, found.slope.middle
 
     return at

@@ -25,7 +25,8 @@ class Course(NamedTuple):
     `turns`: times in s at which l' changes sign; `kinks`: others at which it jumps.
     `steepest`: where |l'| is largest, within 2% where that is proved. `unproved`: what
     stood in the way of a proof, "" for none. `hidden`: how long in s a pulse may last that
-    is in neither list, 0 where none may.
+    is in neither list, 0 where none may. `size`: largest |l| met, N; `at`: l and l' at
+    times (n,).
     """
 
     turns: np.ndarray
@@ -33,6 +34,12 @@ class Course(NamedTuple):
     steepest: float
     unproved: str
     hidden: float
+    size: float
+    at: Point
+
+    def values(self, times: np.ndarray) -> np.ndarray:
+        """l in N at times (n,)."""
+        return self.at(times)[0]
 
 
 def course_of(fn: Callable[[Real], Real], duration: float) -> Course:
@@ -50,7 +57,8 @@ def course_of(fn: Callable[[Real], Real], duration: float) -> Course:
     if np.any(cells.kind == Kind.OPEN):
         return _sampled_course(fn, duration, "bounds over short stretches are wide")
     turns, kinks = _events(cells, at, duration)
-    return Course(turns, kinks, _steepest(bounds, at, duration), "", 0.0)
+    steepest = _steepest(bounds, at, duration)
+    return Course(turns, kinks, steepest, "", 0.0, cells.size, at)
 
 
 def _sampled_course(fn: Callable, duration: float, why: str) -> Course:
@@ -59,7 +67,7 @@ def _sampled_course(fn: Callable, duration: float, why: str) -> Course:
     turns, kinks = _events(cells, at, duration)
     middles = 0.5 * (cells.lo + cells.hi)
     steepest = float(middles[np.argmax(np.abs(at(middles)[1]))])
-    return Course(turns, kinks, steepest, why, duration / CELLS)
+    return Course(turns, kinks, steepest, why, duration / CELLS, cells.size, at)
 
 
 def _events(cells: Cells, at: Point, duration: float) -> tuple[np.ndarray, np.ndarray]:

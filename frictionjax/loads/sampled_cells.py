@@ -53,6 +53,8 @@ def sampled_cells(at: Point, lo: np.ndarray, hi: np.ndarray, duration: float) ->
     size, seen, done = 0.0, 0, []
     while lo.size:
         values, slopes = _seen(at, lo, hi)
+        if not seen:
+            _require_slopes(lo, slopes)
         size = max(size, float(np.max(np.abs(values), initial=0.0)))
         kinds = _kinds(values, slopes, hi - lo, size, duration)
         again, seen = kinds == Kind.OPEN, seen + lo.size
@@ -63,6 +65,14 @@ def sampled_cells(at: Point, lo: np.ndarray, hi: np.ndarray, duration: float) ->
     lo, hi, kind = (np.concatenate(column) for column in zip(*done, strict=True))
     order = np.argsort(lo, kind="stable")
     return Cells(lo[order], hi[order], kind[order], size)
+
+
+def _require_slopes(times: np.ndarray, slopes: np.ndarray) -> None:
+    """As 1/cosh far out, where JAX multiplies 0 by infinity."""
+    none = np.all(np.isnan(slopes), axis=0)
+    if none.any():
+        at = f"no finite slope at t = {times[none][0]:.9g}"
+        require(False, "load.fn", at, "a derivative that JAX can take on [0, duration]")
 
 
 def _seen(at: Point, lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
