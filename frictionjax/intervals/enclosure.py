@@ -12,7 +12,7 @@ from .functions import ELEMENTARY, cos, integer_power, sin
 from .interval import Interval
 from .jet import Jet
 from .logic import LOGIC, select
-from .shapes import SHAPES, NoRule, stack
+from .shapes import SHAPES, NoRuleError, stack
 
 _LARGEST = 2**20  # numbers in one array: 8 MB
 _LONGEST = 1000  # steps of a loop that are followed
@@ -66,7 +66,7 @@ def _joined(parts: list[Jet]) -> Jet:
 
 
 def enclosure_of(fn: Callable) -> Enclosure:
-    """That of a function of one number; raises `NoRule`."""
+    """That of a function of one number; raises `NoRuleError`."""
     with jax.ensure_compile_time_eval():
         closed = jax.make_jaxpr(lambda t: jax.numpy.asarray(fn(t), float))(0.5)
     found = Enclosure(closed)
@@ -109,7 +109,7 @@ def _results(eqn: Any, operands: list[Jet]) -> list[Jet]:
     if name == "cond":
         return _branches(params["branches"], *operands)
     if any(_is_short(atom.aval) for atom in eqn.outvars):
-        raise NoRule(f"{name} in 32 bits")
+        raise NoRuleError(f"{name} in 32 bits")
     if name in ("eq", "ne") and eqn.invars[0] is eqn.invars[1]:
         return [_told(name, operands[0])]
     if name in SHAPES:
@@ -125,7 +125,7 @@ def _elementary(eqn: Any, operands: list[Jet]) -> Jet:
         return integer_power(operands[0], eqn.params["y"])
     rule = ELEMENTARY.get(name)
     if rule is None or (whole and name in ("div", "rem")):
-        raise NoRule(name)
+        raise NoRuleError(name)
     found = rule(*_of_one_rank(operands))
     if not whole:
         return found
@@ -145,7 +145,7 @@ def _of_one_rank(operands: list[Jet]) -> list[Jet]:
 
 def _is_short(aval: Any) -> bool:
     kind = getattr(aval.dtype, "kind", "O")
-    return kind not in "biuf" and kind != "V" or (kind == "f" and aval.dtype.itemsize < 8)
+    return kind not in "biuf" or (kind == "f" and aval.dtype.itemsize < 8)
 
 
 def _known_call(called: Any, operands: list[Jet]) -> list[Jet] | None:
@@ -175,7 +175,7 @@ def _scan(params: Any, operands: list[Jet]) -> list[Jet]:
     """A loop of known length, step by step."""
     fixed, carried, length = params["num_consts"], params["num_carry"], params["length"]
     if length > _LONGEST:
-        raise NoRule(f"scan of {length} steps")
+        raise NoRuleError(f"scan of {length} steps")
     held, carry = operands[:fixed], operands[fixed : fixed + carried]
     rows, found = operands[fixed + carried :], []
     order = range(length - 1, -1, -1) if params["reverse"] else range(length)
@@ -199,7 +199,7 @@ def _branches(branches: Any, which: Jet, *operands: Jet) -> list[Jet]:
 def _place(table: Jet, wanted: Jet) -> Jet:
     """Where numbers belong in a sorted table, the ends of each stretch on either side."""
     if not table.is_point or table.seam.ndim != 2:
-        raise NoRule("searchsorted in a table that changes")
+        raise NoRuleError("searchsorted in a table that changes")
     known = table.value.lo[0]
     lo = np.searchsorted(known, wanted.value.lo, side="left")
     hi = np.searchsorted(known, wanted.value.hi, side="right")

@@ -250,7 +250,9 @@ def ceil(a: Jet) -> Jet:
 
 
 def rounded(a: Jet) -> Jet:
-    return _step(a, np.round)
+    """To the nearest whole number, halves to either."""
+    value = Interval(np.ceil(a.value.lo - 0.5), np.floor(a.value.hi + 0.5))
+    return jets.constant(value, a.seam | (value.lo != value.hi))
 
 
 def remainder(a: Jet, b: Jet) -> Jet:

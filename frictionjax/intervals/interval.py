@@ -104,7 +104,7 @@ def mul(a: Interval, b: Interval) -> Interval:
         ends = [np.where(np.isnan(end) & ~none, 0.0, end) for end in ends]
     lo = np.minimum(np.minimum(ends[0], ends[1]), np.minimum(ends[2], ends[3]))
     hi = np.maximum(np.maximum(ends[0], ends[1]), np.maximum(ends[2], ends[3]))
-    if _keeps_digits(a) or _keeps_digits(b) or (_is_whole(a) and _is_whole(b)):
+    if _keeps_digits(a) or _keeps_digits(b) or (is_whole(a) and is_whole(b)):
         return Interval(lo, hi)
     return wider(lo, hi)
 
@@ -116,7 +116,8 @@ def _keeps_digits(a: Interval) -> bool:
     return abs(np.frexp(a.lo.item())[0]) in (0.0, 0.5)
 
 
-def _is_whole(a: Interval) -> bool:
+def is_whole(a: Interval) -> bool:
+    """Whether all ends are whole numbers, of which sums and products are exact."""
     return bool(np.all(a.lo == np.rint(a.lo)) and np.all(a.hi == np.rint(a.hi)))
 
 

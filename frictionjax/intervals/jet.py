@@ -23,8 +23,8 @@ class Jet(NamedTuple):
 
     def mapped(self, change: Callable[[np.ndarray], np.ndarray]) -> "Jet":
         """All arrays changed alike: reshaped, picked, broadcast."""
-        parts = (part.mapped(change) for part in self[:3])
-        return Jet(*parts, change(self.seam))
+        value, slope, bend = (part.mapped(change) for part in self[:3])
+        return Jet(value, slope, bend, change(self.seam))
 
     @property
     def is_point(self) -> bool:
@@ -51,12 +51,13 @@ def variable(lo: np.ndarray, hi: np.ndarray) -> Jet:
 
 
 def add(a: Jet, b: Jet) -> Jet:
-    parts = (iv.add(x, y) for x, y in zip(a[:3], b[:3], strict=True))
-    return Jet(*parts, a.seam | b.seam)
+    value, slope, bend = (iv.add(x, y) for x, y in zip(a[:3], b[:3], strict=True))
+    return Jet(value, slope, bend, a.seam | b.seam)
 
 
 def negated(a: Jet) -> Jet:
-    return Jet(*(iv.negated(part) for part in a[:3]), a.seam)
+    value, slope, bend = (iv.negated(part) for part in a[:3])
+    return Jet(value, slope, bend, a.seam)
 
 
 def sub(a: Jet, b: Jet) -> Jet:
@@ -80,28 +81,30 @@ def composed(a: Jet, value: Interval, first: Interval, second: Interval, seam=No
 
 def chosen(which: np.ndarray, a: Jet, b: Jet) -> Jet:
     """`a` where the condition holds, else `b`."""
-    parts = (iv.where(which, x, y) for x, y in zip(a[:3], b[:3], strict=True))
-    return Jet(*parts, np.where(which, a.seam, b.seam))
+    pairs = zip(a[:3], b[:3], strict=True)
+    value, slope, bend = (iv.where(which, x, y) for x, y in pairs)
+    return Jet(value, slope, bend, np.where(which, a.seam, b.seam))
 
 
 def either(a: Jet, b: Jet) -> Jet:
     """One or the other, with a seam unless both are the same number."""
-    parts = [iv.hull(x, y) for x, y in zip(a[:3], b[:3], strict=True)]
-    same = np.ones(parts[0].lo.shape, dtype=bool)
+    value, slope, bend = (iv.hull(x, y) for x, y in zip(a[:3], b[:3], strict=True))
+    same = np.ones(value.lo.shape, dtype=bool)
     for x, y in zip(a[:3], b[:3], strict=True):
         same &= (x.lo == x.hi) & (y.lo == y.hi) & (x.lo == y.lo)
-    return Jet(*parts, a.seam | b.seam | ~same)
+    return Jet(value, slope, bend, a.seam | b.seam | ~same)
 
 
 def summed(a: Jet, axes: tuple[int, ...]) -> Jet:
     """The sum over axes of the values (not that of the intervals)."""
     along = tuple(axis + 1 for axis in axes)
     count = int(np.prod([a.seam.shape[axis] for axis in along]))
-    slack = 1e-16 * (4 + count)
-    parts = []
-    for part in a[:3]:
+    slack = 1.2e-16 * (4 + count)
+
+    def total(part: Interval) -> Interval:
         lo, hi = part.lo.sum(axis=along), part.hi.sum(axis=along)
-        with np.errstate(invalid="ignore"):
-            off = slack * (np.abs(part.lo) + np.abs(part.hi)).sum(axis=along)
-        parts.append(Interval(lo - off, hi + off))
-    return Jet(*parts, a.seam.any(axis=along))
+        off = 0.0 if iv.is_whole(part) else slack * part.size.sum(axis=along)
+        return Interval(lo - off, hi + off)
+
+    value, slope, bend = (total(part) for part in a[:3])
+    return Jet(value, slope, bend, np.any(a.seam, axis=along, keepdims=False))

@@ -1,4 +1,4 @@
-"""Comparisons and choices of jets: true, false, or either where an interval does not say."""
+"""Comparisons and choices of jets: true, false, or either where intervals overlap."""
 
 from collections.abc import Callable
 
@@ -35,11 +35,13 @@ def negation(a: Jet) -> Jet:
 
 
 def both(a: Jet, b: Jet) -> Jet:
-    return jets.constant(Interval(*(np.minimum(x, y) for x, y in zip(a.value, b.value))))
+    lo, hi = (np.minimum(x, y) for x, y in zip(a.value, b.value, strict=True))
+    return jets.constant(Interval(lo, hi))
 
 
 def any_of(a: Jet, b: Jet) -> Jet:
-    return jets.constant(Interval(*(np.maximum(x, y) for x, y in zip(a.value, b.value))))
+    lo, hi = (np.maximum(x, y) for x, y in zip(a.value, b.value, strict=True))
+    return jets.constant(Interval(lo, hi))
 
 
 def select(which: Jet, *cases: Jet) -> Jet:

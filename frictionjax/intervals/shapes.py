@@ -12,7 +12,7 @@ from .interval import Interval, hull, where
 from .jet import Jet
 
 
-class NoRule(Exception):
+class NoRuleError(Exception):
     """A function uses what nothing here can bound; the message names it."""
 
 
@@ -62,15 +62,21 @@ def _joined(rows: list[Jet], axis: int) -> Jet:
     def join(part: Callable[[Jet], np.ndarray]) -> np.ndarray:
         return np.concatenate([part(jet) for jet in whole], axis=axis)
 
-    bounds = (
+    value, slope, bend = (
         Interval(join(lambda j, i=i: j[i].lo), join(lambda j, i=i: j[i].hi))
         for i in range(3)
     )
-    return Jet(*bounds, join(lambda j: j.seam))
+    return Jet(value, slope, bend, join(lambda j: j.seam))
 
 
 def _concatenate(params: Any, *rows: Jet) -> Jet:
     return _joined(list(rows), params["dimension"] + 1)
+
+
+def _rows(a: Jet, axis: int) -> list[Jet]:
+    """Its entries along an axis."""
+    count, place = a.seam.shape[axis + 1], axis + 1
+    return [a.mapped(lambda x, k=k: np.take(x, k, place)) for k in range(count)]
 
 
 def stack(rows: list[Jet], axis: int = 0) -> Jet:
@@ -85,8 +91,8 @@ def _stack(params: Any, *rows: Jet) -> Jet:
 
 def _cumulated(params: Any, a: Jet) -> Jet:
     """Sums so far, of whole numbers as of others."""
-    axis, count = params["axis"], a.seam.shape[params["axis"] + 1]
-    rows = [a.mapped(lambda x, k=k: np.take(x, k, axis + 1)) for k in range(count)]
+    axis = params["axis"]
+    rows = _rows(a, axis)
     if params["reverse"]:
         rows.reverse()
     sums = [rows[0]]
@@ -131,7 +137,7 @@ def _convert(params: Any, a: Jet) -> Jet:
 def _dynamic_slice(params: Any, a: Jet, *starts: Jet) -> Jet:
     """Entries of a table at a place that may not be known to one."""
     if len(starts) != 1 or not a.is_point:
-        raise NoRule("dynamic_slice of what changes")
+        raise NoRuleError("dynamic_slice of what changes")
     (size,), table = params["slice_sizes"], a.value.lo[0]
     last = table.shape[0] - size
     lo, hi = (np.clip(end, 0, last).astype(int) for end in starts[0].value)
@@ -154,9 +160,7 @@ def _summed(params: Any, a: Jet) -> Jet:
 def _folded(rule: Callable[[Jet, Jet], Jet]) -> Callable:
     def fold(params: Any, a: Jet) -> Jet:
         for axis in sorted(params["axes"], reverse=True):
-            count = a.seam.shape[axis + 1]
-            rows = [a.mapped(lambda x, k=k: np.take(x, k, axis + 1)) for k in range(count)]
-            a = reduce(rule, rows)
+            a = reduce(rule, _rows(a, axis))
         return a
 
     return fold
@@ -166,7 +170,7 @@ def _dot(params: Any, a: Jet, b: Jet) -> Jet:
     """Sums of products over one axis of each."""
     (left, right), batch = params["dimension_numbers"]
     if any(batch) or len(left) != 1:
-        raise NoRule("dot_general over several axes")
+        raise NoRuleError("dot_general over several axes")
     rows = a.mapped(lambda x: np.moveaxis(x, left[0] + 1, -1))
     columns = b.mapped(lambda x: np.moveaxis(x, right[0] + 1, -1))
     more = columns.seam.ndim - 2
@@ -179,8 +183,6 @@ def _dot(params: Any, a: Jet, b: Jet) -> Jet:
 
 def _same(params: Any, a: Jet) -> Jet:
     return a
-
-
 
 
 SHAPES: dict[str, Callable[..., Jet]] = {

@@ -6,14 +6,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arguments import Real, require
-from ..intervals import Enclosure, NoRule, enclosure_of
+from ..intervals import Enclosure, NoRuleError, enclosure_of
 from .cells import KINK, Cells, Kind, Point, by_bounds, halves, needle, proved_cells
 from .sampled_cells import CELLS, by_samples, sampled_cells
 
 _JUMP = 1e-6  # of max |l|: what a load may change by within a few spacings of floats
 # A change of slope that is a kink: of the slopes beside it. What l'' may do there is less.
 _KINK = 1e-6
-_ASIDE = 8  # shortest cells: how far from a place that is not smooth its sides are looked at
+_ASIDE = 8  # shortest cells: from a place that is not smooth to what is beside it
 _TOGETHER = 1e-12  # of the duration: turning points that are one
 _HALVINGS = 60
 _STEEPEST, _MOST_STEEP = 1.02, 2**16
@@ -51,7 +51,7 @@ def course_of(fn: Callable[[Real], Real], duration: float) -> Course:
     """
     try:
         bounds = enclosure_of(fn)
-    except NoRule as missing:
+    except NoRuleError as missing:
         return _sampled_course(fn, duration, f"{missing} has no bounds")
     cells, at = proved_cells(bounds, duration), by_bounds(bounds)
     if np.any(cells.kind == Kind.OPEN):
