@@ -16,6 +16,7 @@ from .needs import Needs
 from .path import Path, states_at
 from .rosenbrock import Tableau
 from .starts import Ground, Starts, slow_share, starts_of
+from .status import Status
 from .stops import Found
 from .windows import Plan, Windows, plan_windows
 
@@ -28,6 +29,10 @@ LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast
 _FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
 _LONGEST = 1.5  # times what its longest job takes: the shortest batch
 _BATCH = 1e5  # wells: a few seconds, between two reports
+# Wells of the longest lane of each march, added up, that a cell may wait for in an attempt:
+# a minute. (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: no map that begins where tips do
+# not follow, and looks of 4e5 wells each for it, 10 minutes without an answer.)
+PATIENCE = 5e5
 
 Report = Callable[[float], None]
 
@@ -68,7 +73,8 @@ class Rounds(NamedTuple):
 
     `brief` (cells,): tolerances of lanes on rides through a few wells; None: those of the
     others. `workers`: queues at once. `spent` (2, cells): steps and rejected steps so far,
-    added in place. `lanes_run` is called as lanes set off.
+    `waited` (cells,): wells as in `PATIENCE`, added in place. `lanes_run` is called as
+    lanes set off.
     """
 
     scene: Scene
@@ -81,6 +87,7 @@ class Rounds(NamedTuple):
     accuracy: float
     report: Report
     spent: np.ndarray
+    waited: np.ndarray
     brief: np.ndarray | None
     workers: int = WORKERS
     lanes_run: Callable[[], None] = lambda: None
@@ -113,12 +120,16 @@ class Rounds(NamedTuple):
         eps = self.ground.eps[jobs.cell]
         way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])
         wells = (way[jobs.past_leg] - way[jobs.first_leg]) / eps
+        able = self._able(jobs.cell, wells)
         work = wells + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
         work = np.where(plan.brief, _FAST, 1.0) * work
         jobs, cells = self._steered(jobs, plan.brief | plan.calm)
         order = np.argsort(-work, kind="stable")
-        batches = _batches(work, self.workers)
+        order = order[able[order]]
+        batches = _batches(work[able], self.workers)
         found = np.full((len(Arrivals._fields), legs.start.size), np.nan)
+        # What lanes that run leave here is overwritten.
+        found[Arrivals._fields.index("code")] = int(Status.MAX_STEPS)
         seat = _seats(order.size, batches * self.workers)
         for batch in range(batches):
             queues = [order[seat == batch + i * batches] for i in range(self.workers)]
@@ -126,6 +137,14 @@ class Rounds(NamedTuple):
                 found[:, rows] = part
             self.report(1 / batches)
         return Arrivals(*found)
+
+    def _able(self, cell: np.ndarray, wells: np.ndarray) -> np.ndarray:
+        """Which jobs their cells can wait for; others end as lanes do that give up."""
+        able = self.waited[cell] + wells <= PATIENCE
+        longest = np.zeros(self.waited.size)
+        np.maximum.at(longest, cell[able], wells[able])
+        self.waited[:] += longest
+        return able
 
     def _steered(self, jobs: Jobs, brief: np.ndarray) -> tuple[Jobs, Cells]:
         """Jobs that are `brief` in cells of their own, with their tolerance."""
