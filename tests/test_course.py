@@ -205,6 +205,26 @@ def test_what_is_found_follows_the_duration():
     load = prepared(jnp.sin, duration=2.0)
     assert load.found.shape == (1,)
     assert load.prepared(jnp.asarray(9.0)).found.shape == (3,)
+    assert np.asarray(load.turning_points(jnp.asarray(1.9), 1)) == pytest.approx(np.pi / 2)
+    assert np.isnan(load.turning_points(jnp.asarray(2.1), 1)).all()
+
+
+class Wave(eqx.Module):
+    """A sine with a number that can be changed."""
+
+    rate: jax.Array
+
+    def __call__(self, t):
+        return jnp.sin(self.rate * t)
+
+
+def test_a_number_that_was_changed_since_does_not_pass_for_the_old_one():
+    load = prepared(Wave(jnp.asarray(1.0)), duration=2.0)
+    faster = eqx.tree_at(lambda load: load.fn.rate, load, jnp.asarray(1.3))
+    assert load.turning_points(jnp.asarray(2.0), 2).tolist() == [np.pi / 2, 2.0]
+    assert np.isnan(faster.turning_points(jnp.asarray(2.0), 2)).all()
+    again = faster.prepared(jnp.asarray(2.0))
+    assert float(again.turning_points(jnp.asarray(2.0), 1)[0]) == np.pi / 2.6
 
 
 def test_traced_numbers_cannot_be_looked_at():

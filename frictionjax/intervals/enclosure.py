@@ -14,7 +14,7 @@ from .jet import Jet
 from .logic import LOGIC, select
 from .shapes import SHAPES, NoRuleError, stack
 
-_LARGEST = 2**20  # numbers in one array: 8 MB
+_LARGEST = 2**15  # numbers in one array, which stay in the cache
 _LONGEST = 1000  # steps of a loop that are followed
 _CALLS = {
     "jit": "jaxpr",
@@ -33,17 +33,18 @@ class Enclosure:
     """`f`, `f'` and `f''` over intervals of t, by the rules of interval arithmetic.
 
     Values are those of the real function that the program stands for, with 64-bit
-    constants, up to underflow; roundings are inside the bounds.
+    constants, up to underflow; roundings are inside the bounds. `numbers`: in all steps
+    of the program, for one interval.
     """
 
     def __init__(self, closed: Any):
         self._closed = closed
         sizes = [v.aval.size for v in _outputs(closed.jaxpr)]
-        self.largest = max([1, *sizes])
+        self._largest, self.numbers = max([1, *sizes]), max(1, sum(sizes))
 
     def __call__(self, lo: np.ndarray, hi: np.ndarray) -> Jet:
         """Bounds over each [lo, hi], shapes (N,)."""
-        room = max(_LARGEST // self.largest, 1)
+        room = max(_LARGEST // self._largest, 1)
         with np.errstate(all="ignore"):
             parts = [
                 self._of(lo[at : at + room], hi[at : at + room])
@@ -70,7 +71,11 @@ def enclosure_of(fn: Callable) -> Enclosure:
     with jax.ensure_compile_time_eval():
         closed = jax.make_jaxpr(lambda t: jax.numpy.asarray(fn(t), float))(0.5)
     found = Enclosure(closed)
-    found(np.zeros(1), np.zeros(1))  # what has no rule says so now
+    try:
+        found(np.zeros(2), np.ones(2))  # what has no rule says so now
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        # Programs of another version of JAX may be written otherwise.
+        raise NoRuleError("this program") from error
     return found
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arguments import require
-from ..intervals import Enclosure, Interval
+from ..intervals import Enclosure, Interval, Jet
 from ..intervals import interval as iv
 
 # Cells at first, and into how many one is cut: a pulse of a millionth of [0, T] is reached
@@ -15,8 +15,8 @@ from ..intervals import interval as iv
 # are decided by the next cut.
 _FIRST, _CUTS, _MANY = 256, 8, 2000
 _NEEDLE = 8  # spacings of floats at T: cells are not cut below this
-MOST_CELLS = 2**20  # looked at: one to three seconds
-_MOST_NUMBERS = 2**24  # the same where a load sums up an array at each time
+# Looked at; and numbers in all steps of the function there: a few seconds.
+_MOST_CELLS, _MOST_NUMBERS = 2**20, 2**26
 # Of the load's mean slope `max |l| / T`: slopes that move nothing over all of [0, T], and
 # kinks that are none. Of max |l|: changes below its rounding, and what no jump is below.
 _FLAT, KINK = 1e-12, 1e-9
@@ -59,8 +59,7 @@ def proved_cells(bounds: Enclosure, duration: float) -> Cells:
     cells are needed than are affordable. Raises `ValueError` where the load is no number.
     """
     edges = np.linspace(0.0, duration, _FIRST + 1)
-    lo, hi, size, left = edges[:-1], edges[1:], 0.0, MOST_CELLS
-    left = min(left, _MOST_NUMBERS // bounds.largest)
+    lo, hi, size, left = edges[:-1], edges[1:], 0.0, affordable(bounds)
     done: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     while lo.size:
         kinds, size = _kinds(bounds, lo, hi, duration, size)
@@ -78,6 +77,11 @@ def proved_cells(bounds: Enclosure, duration: float) -> Cells:
     return Cells(lo[order], hi[order], kind[order], size)
 
 
+def affordable(bounds: Enclosure) -> int:
+    """Cells that can be looked at."""
+    return min(_MOST_CELLS, _MOST_NUMBERS // bounds.numbers)
+
+
 def halves(lo: np.ndarray, hi: np.ndarray, cuts: int = 2) -> tuple[np.ndarray, np.ndarray]:
     """Ends of equal parts of cells."""
     edges = lo[:, None] + (hi - lo)[:, None] * np.arange(cuts + 1) / cuts
@@ -93,19 +97,37 @@ def needle(duration: float) -> float:
 def _kinds(
     bounds: Enclosure, lo: np.ndarray, hi: np.ndarray, duration: float, size: float
 ) -> tuple[np.ndarray, float]:
-    """The kind of each cell, OPEN where it must be cut, and the largest |l| so far."""
-    whole, middles = bounds(lo, hi), 0.5 * (lo + hi)
-    middle = bounds(middles, middles)
-    _require_numbers(middles, middle.value)
-    known = middle.value.size[np.isfinite(middle.value.size)]
-    size = max(size, float(np.max(known, initial=0.0)))
-    length, smooth = hi - lo, ~whole.seam
+    """The kind of each cell, OPEN where it must be cut, and the largest |l| so far.
+
+    Middles are looked at where l' is not decided without them.
+    """
+    whole = bounds(lo, hi)
+    _require_numbers(0.5 * (lo + hi), whole.value)
+    limits = size, duration
+    kinds = _decided(whole, whole.slope, hi - lo, *limits)
+    # At first all of them, for the size of the load.
+    left = np.flatnonzero(~whole.seam & (kinds == Kind.OPEN) | (size == 0))
+    if left.size:
+        some = whole.mapped(lambda a: a[left])
+        middles, half = 0.5 * (lo[left] + hi[left]), 0.5 * (hi[left] - lo[left])
+        middle = bounds(middles, middles)
+        _require_numbers(middles, middle.value)
+        known = middle.value.size[np.isfinite(middle.value.size)]
+        size = max(size, float(np.max(known, initial=0.0)))
+        slope = _slopes(some, middle.slope, half)
+        kinds[left] = _decided(some, slope, 2 * half, size, duration)
+    short = (kinds == Kind.OPEN) & (hi - lo <= needle(duration))
+    return np.where(short, Kind.NEEDLE, kinds), size
+
+
+def _decided(whole: Jet, slope: Interval, length, size: float, duration: float):
+    """The kind of each cell by bounds of its slope; OPEN where they do not decide."""
+    smooth, mean = ~whole.seam, size / duration
     with np.errstate(all="ignore"):
-        slope = _slopes(whole, middle.slope, 0.5 * length, smooth)
         small = length * slope.size <= _ROUNDED * size
-    calm = (slope.width <= KINK * size / duration) & (whole.value.width <= _STEADY * size)
+        calm = (slope.width <= KINK * mean) & (whole.value.width <= _STEADY * size)
     bent = (whole.bend.lo >= 0) | (whole.bend.hi <= 0)
-    flat = slope.size <= np.where(smooth, _FLAT, KINK) * size / duration
+    flat = slope.size <= np.where(smooth, _FLAT, KINK) * mean
     rules = (
         (flat, Kind.FLAT),
         (slope.lo >= 0, Kind.RISING),
@@ -114,16 +136,16 @@ def _kinds(
         (smooth & small, Kind.SMALL),
     )
     kinds = np.select([rule for rule, _ in rules], [k for _, k in rules], Kind.OPEN)
-    kinds = np.where(smooth | calm, kinds, Kind.OPEN)
-    short = (kinds == Kind.OPEN) & (length <= needle(duration))
-    return np.where(short, Kind.NEEDLE, kinds), size
+    return np.where(smooth | calm, kinds, Kind.OPEN)
 
 
-def _slopes(whole, at_middle: Interval, half: np.ndarray, smooth: np.ndarray) -> Interval:
+def _slopes(whole: Jet, at_middle: Interval, half: np.ndarray) -> Interval:
     """Bounds of l' over cells: directly, and from its middle by the bounds of l''."""
-    away = iv.mul(whole.bend, Interval(-half, half))
-    from_middle = iv.add(at_middle, away)
-    both = iv.where(smooth, iv.meet(whole.slope, from_middle), whole.slope)
+    with np.errstate(all="ignore"):
+        away = iv.mul(whole.bend, Interval(-half, half))
+        from_middle = iv.add(at_middle, away)
+    near = iv.meet(whole.slope, from_middle)
+    both = iv.where(whole.seam, whole.slope, near)
     unknown = np.isnan(both.lo) | np.isnan(both.hi)
     return iv.where(unknown, iv.everything(both), both)
 
@@ -140,11 +162,15 @@ Point = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def by_bounds(bounds: Enclosure) -> Point:
-    """Values and slopes as the bounds have them: no compiled program is needed."""
+    """Values and slopes as the bounds have them: no compiled program is needed.
+
+    A slope is 0 where bounds do not tell its sign: its rounding would be a turn.
+    """
 
     def at(times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         found = bounds(times, times)
         with np.errstate(invalid="ignore"):
-            return found.value.middle, found.slope.middle
+            unsure = iv.holds_zero(found.slope) & np.isfinite(found.slope.width)
+            return found.value.middle, np.where(unsure, 0.0, found.slope.middle)
 
     return at

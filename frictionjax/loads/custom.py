@@ -21,8 +21,9 @@ from ..arguments import (
 from .course import Course, course_of
 from .load import AbstractLoad, listed_turning_points
 
-_TRACED_SAMPLES = 4096  # of a load whose numbers are traced: finds turns that last
-_ROUNDED = 1e-12  # of the largest |l|: what a traced load may go the other way
+_SAMPLES = 4096  # of a load whose numbers are traced or may have changed: finds slow turns
+_OTHER_WAY = 1e-9  # of the largest |l|: what it may go there where it should not
+_LATER = 1e-12  # of the duration: rounding of durations
 _SAME = 1e-9  # of the largest |l|, of the duration: turning points that are one
 
 
@@ -45,7 +46,8 @@ class Custom(AbstractLoad):
     an `UnprovedLoad` warning says how short a pulse may have gone unseen.
 
     Where numbers of `fn` are traced, nothing can be found: list the turning points. A load
-    that turns elsewhere, as 4096 samples see it, has the status TOO_MANY_TURNS then.
+    that turns elsewhere, as 4096 samples see it, has the status TOO_MANY_TURNS then; and
+    so has one of which numbers, or the duration, were changed after the scene was built.
     Derivatives by numbers of `fn` hold its turning points where they are, which is right
     where l' = 0 there.
 
@@ -58,11 +60,12 @@ class Custom(AbstractLoad):
     listed: Float[Array, " n"]
     found: Float[Array, " m"] | None
     steepest: Real | None
+    until: Real | None
 
     def __init__(self, fn: Callable[[Real], Real], turning_points=()):
         self.fn = fn
         self.listed = as_real(turning_points)
-        self.found = self.steepest = None
+        self.found = self.steepest = self.until = None
 
     def __check_init__(self):
         require_function("load.fn", self.fn, "a function of t")
@@ -85,18 +88,22 @@ class Custom(AbstractLoad):
             warnings.warn(_doubt(course), UnprovedLoad, stacklevel=3)
         times = self._times(course, float(duration))
         with jax.ensure_compile_time_eval():
-            known = jnp.asarray(times), jnp.asarray(course.steepest)
+            known = tuple(map(jnp.asarray, (times, course.steepest, float(duration))))
         return eqx.tree_at(_unknown, self, known, is_leaf=lambda leaf: leaf is None)
 
     def turning_count(self, duration: float) -> int:
-        load = self if self.found is not None else self.prepared(jnp.asarray(duration))
+        ready = self.until is not None and duration <= self.until
+        load = self if ready else self.prepared(jnp.asarray(duration))
         return int((load.listed if load.found is None else load.found).shape[0])
 
     def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
-        if self.found is not None:
-            return listed_turning_points(self.found, duration, count)
-        times = listed_turning_points(self.listed, duration, count)
-        return jnp.where(_turns_elsewhere(self, duration), jnp.nan, times)
+        if self.found is None or self.until is None:
+            wrong, times = _turns_elsewhere(self, self.listed, duration), self.listed
+        else:
+            wrong, times = duration > (1 + _LATER) * self.until, self.found
+            if jax.tree_util.tree_leaves(eqx.filter(self.fn, eqx.is_array)):
+                wrong |= _turns_elsewhere(self, self.found, duration)
+        return jnp.where(wrong, jnp.nan, listed_turning_points(times, duration, count))
 
     def _times(self, course: Course, duration: float) -> np.ndarray:
         """Where pieces end: listed times, or turning points that were found; and kinks."""
@@ -110,7 +117,7 @@ class Custom(AbstractLoad):
 
 
 def _unknown(load: Custom) -> tuple:
-    return load.found, load.steepest
+    return load.found, load.steepest, load.until
 
 
 def _doubt(course: Course) -> str:
@@ -136,14 +143,16 @@ def _require_complete(course: Course, listed: np.ndarray) -> None:
     require(not missing, "load.turning_points", f"without {some}{more}", allowed)
 
 
-def _turns_elsewhere(load: Custom, duration: Real) -> Bool[Array, ""]:
-    """Whether samples of a load go both ways between two listed times, traceable."""
-    times = duration * jnp.linspace(0.0, 1.0, _TRACED_SAMPLES)
+def _turns_elsewhere(
+    load: Custom, turns: Float[Array, " n"], duration: Real
+) -> Bool[Array, ""]:
+    """Whether samples of a load go both ways between two of these times, traceable."""
+    times = duration * jnp.linspace(0.0, 1.0, _SAMPLES)
     values = jax.lax.stop_gradient(jax.vmap(load)(times))
-    steps, noise = jnp.diff(values), _ROUNDED * jnp.max(jnp.abs(values))
-    piece = jnp.searchsorted(load.listed, times, side="right")
+    steps, noise = jnp.diff(values), _OTHER_WAY * jnp.max(jnp.abs(values))
+    piece = jnp.searchsorted(turns, times, side="right")
     inside = piece[1:] == piece[:-1]
-    rooms = load.listed.shape[0] + 1
+    rooms = turns.shape[0] + 1
 
     def some(which: Bool[Array, " n"]) -> Bool[Array, " pieces"]:
         return jnp.zeros(rooms, dtype=bool).at[piece[1:]].max(which & inside)

@@ -29,10 +29,11 @@ LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast
 _FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
 _LONGEST = 1.5  # times what its longest job takes: the shortest batch
 _BATCH = 1e5  # wells: a few seconds, between two reports
-# Wells of the longest lane of each march, added up, that a cell may wait for in an attempt:
-# a minute. (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: no map that begins where tips do
-# not follow, and looks of 4e5 wells each for it, 10 minutes without an answer.)
-PATIENCE = 5e5
+# Wells of the longest lane of each march, added up, that a cell may wait for in an attempt.
+# (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: looks of 4e5 wells each for a map that never
+# begins, as tips do not follow, and no answer in 10 minutes. Sweeps at gamma from 1/4 to
+# 3/4, eps to 1e-8, wait for 3000 at most, one lane alone for `AFFORDABLE`.)
+PATIENCE = 2.5e5
 
 Report = Callable[[float], None]
 
