@@ -6,6 +6,7 @@ import pytest
 import frictionjax as fx
 from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.planning import lane_scene, planned
+from frictionjax.wiggly.rounds import PATIENCE, Rounds
 
 
 def scene_under(times, values):
@@ -39,3 +40,13 @@ def test_one_lane_goes_through_where_slides_are_brief(rise, alone):
     plan = planned(scene, lanes, path_of(scene), *cells, 2, 1e-3, "auto")
     assert plan.ridden.tolist() == [not alone]
     assert np.isinf(plan.needs.tile).tolist() == [alone]
+
+
+def test_cells_wait_for_long_lanes_so_often_only():
+    """Looks of 4e5 wells each, and no answer in 10 minutes."""
+    rounds = Rounds(*[None] * 12)._replace(waited=np.zeros(2))
+    cell, wells = np.array([0, 0, 1]), PATIENCE * np.array([0.6, 0.3, 0.9])
+    assert rounds._able(cell, wells).tolist() == [True, True, True]
+    assert (rounds.waited / PATIENCE).tolist() == [0.6, 0.9]
+    assert rounds._able(cell, wells).tolist() == [False, True, False]
+    assert rounds.waited / PATIENCE == pytest.approx([0.9, 0.9])

@@ -87,8 +87,9 @@ def _events(cells: Cells, at: Point, duration: float) -> tuple[np.ndarray, np.nd
     turns = _turns(cells, kinks, at)
     near = np.abs(kinks[:, None] - turns) <= _TOGETHER * duration
     others = kinks[~near.any(axis=1)]
-    inside = (others > 0) & (others < duration)
-    return turns[(turns > 0) & (turns < duration)], others[inside]
+    first, last = _TOGETHER * duration, (1 - _TOGETHER) * duration
+    inside = (others > first) & (others < last)
+    return turns[(turns > first) & (turns < last)], others[inside]
 
 
 def _kinks(cells: Cells, at: Point, duration: float) -> np.ndarray:
