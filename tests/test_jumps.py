@@ -5,8 +5,10 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.wiggly.find_path import path_of
+from frictionjax.wiggly.job_queue import Arrivals, Jobs, Legs
 from frictionjax.wiggly.planning import lane_scene, planned
 from frictionjax.wiggly.rounds import PATIENCE, Rounds
+from frictionjax.wiggly.windows import Plan
 
 
 def scene_under(times, values):
@@ -42,11 +44,20 @@ def test_one_lane_goes_through_where_slides_are_brief(rise, alone):
     assert np.isinf(plan.needs.tile).tolist() == [alone]
 
 
-def test_cells_wait_for_long_lanes_so_often_only():
-    """Looks of 4e5 wells each, and no answer in 10 minutes."""
+def test_cells_wait_for_lanes_of_brackets_so_long_only():
+    """There was no answer in 10 minutes; lanes from a known start have their own budget."""
+    none, cell = np.zeros(4), np.array([0, 1, 0, 1])
+    first = np.array([0, 1, 2, 4])
+    jobs = Jobs(cell, none, none, none, first, np.array([1, 2, 4, 5]))
+    legs = Legs(*np.full((len(Legs._fields), 5), 1e9))
+    known = np.array([False, True])  # of the window in each cell
+    plan = Plan(jobs, legs, none, none, none, none, known, known, none, none)
     rounds = Rounds(*[None] * 12)._replace(waited=np.zeros(2))
-    cell, wells = np.array([0, 0, 1]), PATIENCE * np.array([0.6, 0.3, 0.9])
-    assert rounds._able(cell, wells).tolist() == [True, True, True]
-    assert (rounds.waited / PATIENCE).tolist() == [0.6, 0.9]
-    assert rounds._able(cell, wells).tolist() == [False, True, False]
-    assert rounds.waited / PATIENCE == pytest.approx([0.9, 0.9])
+    able, some = rounds._within_patience(plan)
+    assert able.all()
+    assert some.legs.budget.tolist() == [PATIENCE, 1e9, PATIENCE, PATIENCE, PATIENCE]
+    steps = PATIENCE * np.array([0.3, 5.0, 0.3, 0.4, np.nan])
+    rounds._wait(plan, Arrivals(*np.tile(steps, (len(Arrivals._fields), 1))))
+    assert (rounds.waited / PATIENCE).tolist() == pytest.approx([0.7, 0.0])
+    rounds._wait(plan, Arrivals(*np.tile(steps, (len(Arrivals._fields), 1))))
+    assert rounds._within_patience(plan)[0].tolist() == [False, True, False, True]

@@ -29,11 +29,11 @@ LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast
 _FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
 _LONGEST = 1.5  # times what its longest job takes: the shortest batch
 _BATCH = 1e5  # wells: a few seconds, between two reports
-# Wells of the longest lane of each march, added up, that a cell may wait for in an attempt.
-# (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: looks of 4e5 wells each for a map that never
-# begins, as tips do not follow, and no answer in 10 minutes. Sweeps at gamma from 1/4 to
-# 3/4, eps to 1e-8, wait for 3000 at most, one lane alone for `AFFORDABLE`.)
-PATIENCE = 2.5e5
+# Steps of the longest lane of a bracket in each march, added up, that a cell may wait for
+# in an attempt: 5 to 20 seconds. One lane from a known start has a budget for its wells.
+# (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: where tips do not follow, lanes go through
+# 40 times the wells of the path, for maps that never begin: no answer in 10 minutes.)
+PATIENCE = 5e6
 
 Report = Callable[[float], None]
 
@@ -62,6 +62,13 @@ def _batches(work: np.ndarray, workers: int) -> int:
     return max(min(int(np.ceil(work.sum() / _BATCH)), most), 1)
 
 
+def _sure(plan: Plan) -> np.ndarray:
+    """Jobs from a known start: of windows without a bracket, (jobs,)."""
+    sure = np.zeros(plan.jobs.cell.size, dtype=bool)
+    sure[: plan.known.size] = plan.known
+    return sure
+
+
 class Round(NamedTuple):
     """What one round of windows has found."""
 
@@ -74,7 +81,7 @@ class Rounds(NamedTuple):
 
     `brief` (cells,): tolerances of lanes on rides through a few wells; None: those of the
     others. `workers`: queues at once. `spent` (2, cells): steps and rejected steps so far,
-    `waited` (cells,): wells as in `PATIENCE`, added in place. `lanes_run` is called as
+    `waited` (cells,): those of `PATIENCE`, added in place. `lanes_run` is called as
     lanes set off.
     """
 
@@ -109,19 +116,40 @@ class Rounds(NamedTuple):
 
     def through(self, plan: Plan) -> Round:
         """March all windows of a plan."""
-        found = self._march(plan)
+        able, plan = self._within_patience(plan)
+        found = self._march(plan, able)
+        self._wait(plan, found)
         owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
         for total, steps in zip(self.spent, (found.steps, found.rejected), strict=True):
             total += np.bincount(owner, np.nan_to_num(steps), total.size)
         return Round(plan, found)
 
-    def _march(self, plan: Plan) -> Arrivals:
-        """Deal the jobs to the cores, the longest first."""
+    def _within_patience(self, plan: Plan) -> tuple[np.ndarray, Plan]:
+        """Which jobs their cells can still wait for, and the plan with what is left."""
+        jobs, legs = plan.jobs, plan.legs
+        left = np.where(_sure(plan), np.inf, PATIENCE - self.waited[jobs.cell])
+        allowed = np.repeat(left, jobs.past_leg - jobs.first_leg)
+        legs = legs._replace(budget=np.minimum(legs.budget, allowed))
+        return left > 0, plan._replace(legs=legs)
+
+    def _wait(self, plan: Plan, found: Arrivals) -> None:
+        """Add up what the longest lane of a bracket has taken, for each cell."""
+        jobs = plan.jobs
+        so_far = np.concatenate([[0.0], np.cumsum(np.nan_to_num(found.steps))])
+        steps = so_far[jobs.past_leg] - so_far[jobs.first_leg]
+        longest = np.zeros(self.waited.size)
+        np.maximum.at(longest, jobs.cell, np.where(_sure(plan), 0.0, steps))
+        self.waited[:] += longest
+
+    def _march(self, plan: Plan, able: np.ndarray) -> Arrivals:
+        """Deal the jobs that are `able` to the cores, the longest first.
+
+        Others end as lanes do that give up.
+        """
         jobs, legs = plan.jobs, plan.legs
         eps = self.ground.eps[jobs.cell]
         way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])
         wells = (way[jobs.past_leg] - way[jobs.first_leg]) / eps
-        able = self._able(jobs.cell, wells)
         work = wells + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
         work = np.where(plan.brief, _FAST, 1.0) * work
         jobs, cells = self._steered(jobs, plan.brief | plan.calm)
@@ -129,7 +157,7 @@ class Rounds(NamedTuple):
         order = order[able[order]]
         batches = _batches(work[able], self.workers)
         found = np.full((len(Arrivals._fields), legs.start.size), np.nan)
-        # What lanes that run leave here is overwritten.
+        # Overwritten by lanes that run.
         found[Arrivals._fields.index("code")] = int(Status.MAX_STEPS)
         seat = _seats(order.size, batches * self.workers)
         for batch in range(batches):
@@ -138,14 +166,6 @@ class Rounds(NamedTuple):
                 found[:, rows] = part
             self.report(1 / batches)
         return Arrivals(*found)
-
-    def _able(self, cell: np.ndarray, wells: np.ndarray) -> np.ndarray:
-        """Which jobs their cells can wait for; others end as lanes do that give up."""
-        able = self.waited[cell] + wells <= PATIENCE
-        longest = np.zeros(self.waited.size)
-        np.maximum.at(longest, cell[able], wells[able])
-        self.waited[:] += longest
-        return able
 
     def _steered(self, jobs: Jobs, brief: np.ndarray) -> tuple[Jobs, Cells]:
         """Jobs that are `brief` in cells of their own, with their tolerance."""
