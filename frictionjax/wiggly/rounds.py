@@ -12,7 +12,7 @@ from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
 from .lanes import WIDTH, march
 from .layout import Layout
-from .needs import Needs
+from .needs import AFFORDABLE, Needs
 from .path import Path, states_at
 from .rosenbrock import Tableau
 from .starts import Ground, Starts, slow_share, starts_of
@@ -29,11 +29,12 @@ LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast
 _FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
 _LONGEST = 1.5  # times what its longest job takes: the shortest batch
 _BATCH = 1e5  # wells: a few seconds, between two reports
-# Steps of the longest lane of a bracket in each march, added up, that a cell may wait for
-# in an attempt: 5 to 20 seconds. One lane from a known start has a budget for its wells.
-# (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: where tips do not follow, lanes go through
-# 40 times the wells of the path, for maps that never begin: no answer in 10 minutes.)
-PATIENCE = 5e6
+# Steps beyond those for the wells of the path, of the longest lane in each march, added up,
+# that a cell may wait for in an attempt: 5 to 20 seconds. One lane alone, where that is
+# affordable, has its own budget. (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: where tips
+# do not follow, lanes went through 40 times the wells of the path, for maps that never
+# begin, and there was no answer in 10 minutes.)
+PATIENCE, _STEPS_A_WELL = 5e6, 200.0
 
 Report = Callable[[float], None]
 
@@ -62,11 +63,10 @@ def _batches(work: np.ndarray, workers: int) -> int:
     return max(min(int(np.ceil(work.sum() / _BATCH)), most), 1)
 
 
-def _sure(plan: Plan) -> np.ndarray:
-    """Jobs from a known start: of windows without a bracket, (jobs,)."""
-    sure = np.zeros(plan.jobs.cell.size, dtype=bool)
-    sure[: plan.known.size] = plan.known
-    return sure
+def _of_jobs(plan: Plan, of_legs: np.ndarray) -> np.ndarray:
+    """Sums over the legs of each job, (jobs,)."""
+    so_far = np.concatenate([[0.0], np.cumsum(of_legs)])
+    return so_far[plan.jobs.past_leg] - so_far[plan.jobs.first_leg]
 
 
 class Round(NamedTuple):
@@ -127,19 +127,32 @@ class Rounds(NamedTuple):
     def _within_patience(self, plan: Plan) -> tuple[np.ndarray, Plan]:
         """Which jobs their cells can still wait for, and the plan with what is left."""
         jobs, legs = plan.jobs, plan.legs
-        left = np.where(_sure(plan), np.inf, PATIENCE - self.waited[jobs.cell])
-        allowed = np.repeat(left, jobs.past_leg - jobs.first_leg)
+        left = np.where(self._alone(plan), np.inf, PATIENCE - self.waited[jobs.cell])
+        owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
+        wells = np.abs(legs.guide1 - legs.guide0) / self.ground.eps[jobs.cell[owner]]
+        allowed = left[owner] + _STEPS_A_WELL * wells
         legs = legs._replace(budget=np.minimum(legs.budget, allowed))
         return left > 0, plan._replace(legs=legs)
 
     def _wait(self, plan: Plan, found: Arrivals) -> None:
-        """Add up what the longest lane of a bracket has taken, for each cell."""
-        jobs = plan.jobs
-        so_far = np.concatenate([[0.0], np.cumsum(np.nan_to_num(found.steps))])
-        steps = so_far[jobs.past_leg] - so_far[jobs.first_leg]
+        """Add up what the longest lane has taken beyond its share, for each cell."""
+        cell, steps = plan.jobs.cell, _of_jobs(plan, np.nan_to_num(found.steps))
+        beyond = np.maximum(steps - _STEPS_A_WELL * self._wells(plan), 0.0)
         longest = np.zeros(self.waited.size)
-        np.maximum.at(longest, jobs.cell, np.where(_sure(plan), 0.0, steps))
+        np.maximum.at(longest, cell, np.where(self._alone(plan), 0.0, beyond))
         self.waited[:] += longest
+
+    def _alone(self, plan: Plan) -> np.ndarray:
+        """Jobs from a known start, in cells that one lane can go through, (jobs,)."""
+        known = np.zeros(plan.jobs.cell.size, dtype=bool)
+        known[: plan.known.size] = plan.known
+        wells = self.path.travel[-1] / self.ground.eps[plan.jobs.cell]
+        return known & (wells <= AFFORDABLE)
+
+    def _wells(self, plan: Plan) -> np.ndarray:
+        """Wells of the path that jobs go through, (jobs,)."""
+        ways = _of_jobs(plan, np.abs(plan.legs.guide1 - plan.legs.guide0))
+        return ways / self.ground.eps[plan.jobs.cell]
 
     def _march(self, plan: Plan, able: np.ndarray) -> Arrivals:
         """Deal the jobs that are `able` to the cores, the longest first.
@@ -147,10 +160,7 @@ class Rounds(NamedTuple):
         Others end as lanes do that give up.
         """
         jobs, legs = plan.jobs, plan.legs
-        eps = self.ground.eps[jobs.cell]
-        way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])
-        wells = (way[jobs.past_leg] - way[jobs.first_leg]) / eps
-        work = wells + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
+        work = self._wells(plan) + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
         work = np.where(plan.brief, _FAST, 1.0) * work
         jobs, cells = self._steered(jobs, plan.brief | plan.calm)
         order = np.argsort(-work, kind="stable")
