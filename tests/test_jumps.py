@@ -62,9 +62,13 @@ def test_cells_wait_for_lanes_that_go_astray_so_long_only():
     beyond = some.legs.budget - PATIENCE
     assert beyond == pytest.approx([1e9 - PATIENCE, 0, 0, 200 * 10, 0, 0], abs=1e-6)
     steps = PATIENCE * np.array([5.0, 0.6, 0.2, 0.3, 0.4, np.nan])
-    found = Arrivals(*np.tile(steps, (len(Arrivals._fields), 1)))
+    found = Arrivals(*np.tile(steps, (len(Arrivals._fields), 1)))._replace(code=none)
     rounds._wait(plan, found)
-    assert rounds.waited == pytest.approx(PATIENCE * np.array([0.3, 0.6, 0.2]), abs=2001)
+    assert rounds.waited == pytest.approx(PATIENCE * np.array([0.3, 0.6, 0.2]), abs=2000.1)
     rounds._wait(plan, found)
+    gave_up = found._replace(code=np.array([0, 0, 0, 1.0, 0, 0]))
+    whole = Rounds(*rounds)._replace(waited=np.zeros(3))
+    whole._wait(plan, gave_up)
+    assert whole.waited[0] == 0.3 * PATIENCE
     able = rounds._within_patience(plan)[0]
     assert able.tolist() == [True, False, True, True, False, True]

@@ -30,11 +30,11 @@ _FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewher
 _LONGEST = 1.5  # times what its longest job takes: the shortest batch
 _BATCH = 1e5  # wells: a few seconds, between two reports
 # Steps beyond those for the wells of the path, of the longest lane in each march, added up,
-# that a cell may wait for in an attempt: 5 to 20 seconds. One lane alone, where that is
+# that a cell may wait for in an attempt: 2 to 8 seconds. One lane alone, where that is
 # affordable, has its own budget. (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: where tips
 # do not follow, lanes went through 40 times the wells of the path, for maps that never
 # begin, and there was no answer in 10 minutes.)
-PATIENCE, _STEPS_A_WELL = 5e6, 200.0
+PATIENCE, _STEPS_A_WELL = 2e6, 200.0
 
 Report = Callable[[float], None]
 
@@ -135,9 +135,14 @@ class Rounds(NamedTuple):
         return left > 0, plan._replace(legs=legs)
 
     def _wait(self, plan: Plan, found: Arrivals) -> None:
-        """Add up what the longest lane has taken beyond its share, for each cell."""
+        """Add up what the longest lane has taken beyond its share, for each cell.
+
+        Of one that gave up everything counts: it would take its share again in each march.
+        """
         cell, steps = plan.jobs.cell, _of_jobs(plan, np.nan_to_num(found.steps))
         beyond = np.maximum(steps - _STEPS_A_WELL * self._wells(plan), 0.0)
+        gave_up = _of_jobs(plan, np.nan_to_num(found.code)) > 0
+        beyond = np.where(gave_up, steps, beyond)
         longest = np.zeros(self.waited.size)
         np.maximum.at(longest, cell, np.where(self._alone(plan), 0.0, beyond))
         self.waited[:] += longest
