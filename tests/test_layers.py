@@ -19,6 +19,7 @@ FLOORS = [
     {"kept_programs"},
     {"outcomes", "compilation", "programs"},
     {"roots", "taylor", "extrema", "trigonometry"},
+    {"intervals"},
     {"profiles", "bristles", "supports", "loads"},
     {"potentials"},
     {"coefficients", "clearance", "digits"},

@@ -1,6 +1,7 @@
 """Loads `l(t)`: what pulls the far end of the support, as a force."""
 
 from .custom import Custom as Custom
+from .custom import UnprovedLoad as UnprovedLoad
 from .load import AbstractLoad as AbstractLoad
 from .piecewise_linear import PiecewiseLinear as PiecewiseLinear
 from .ramp import Ramp as Ramp

@@ -1,6 +1,6 @@
 """Load given as a function."""
 
-import itertools
+import warnings
 from collections.abc import Callable
 from typing import ClassVar
 
@@ -8,42 +8,67 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from ..arguments import (
     Real,
     as_real,
+    in_64_bits,
     is_known,
     known_numbers,
     require,
     require_function,
 )
+from .course import Course, course_of
 from .load import AbstractLoad, listed_turning_points
 
-_SAMPLES = 4096  # per piece between two turning points: finds a sign change that lasts
-# What a load may change by within a few spacings of floats, of its largest value; and into
-# how many parts, how often, the stretch of the largest change is cut to look there.
-_JUMP, _PARTS, _ZOOMS = 1e-6, 64, 8
+_SAMPLES = 4096  # of a load whose numbers are traced or may have changed: finds slow turns
+_OTHER_WAY = 1e-9  # of the largest |l|: what it may go there where it should not
+_LATER = 1e-12  # of the duration: rounding of durations
+_SAME = 1e-9  # of the largest |l|, of the duration: turning points that are one
+
+
+class UnprovedLoad(UserWarning):
+    """A load may turn where nobody has looked."""
 
 
 class Custom(AbstractLoad):
-    """`l(t) = fn(t)`, monotone and C^1 between the times listed in `turning_points`.
+    """`l(t) = fn(t)`, continuous and piecewise C^1.
 
     `fn`: s to N, scalar to scalar, written with `jax.numpy`. `turning_points`: all times
-    at which `l'` changes sign or jumps, shape (n,), n = 0 allowed.
+    at which `l'` changes sign, shape (n,); none are needed.
 
-    Raises `ValueError` for times that are not finite and increasing. A scene checks on
-    its duration that no turning point is missing and that nothing jumps.
+    A scene finds what the load does on [0, duration]: turning points, kinks, steep places.
+    Interval arithmetic on the program of `fn` bounds l, l' and l'' over stretches that are
+    cut until the bounds prove that the load rises, falls or rests there: no pulse hides,
+    however short, down to 64 spacings of floats at `duration`. Where `fn` uses what has no
+    bounds (`lax.while_loop`, callbacks) or needs too many stretches, 65536 stretches of
+    [0, duration] are looked at in four places each, and closer where they surprise; then
+    an `UnprovedLoad` warning says how short a pulse may have gone unseen.
+
+    Where numbers of `fn` are traced, nothing can be found: list the turning points. A load
+    that turns elsewhere, as 4096 samples see it, has the status TOO_MANY_TURNS then; and
+    so has one of which numbers, or the duration, were changed after the scene was built.
+    Derivatives by numbers of `fn` hold its turning points where they are, which is right
+    where l' = 0 there.
+
+    Raises `ValueError` for times that are not finite and increasing. A scene raises one
+    for a load that jumps or is not finite, and where turning points are listed but some
+    that were found are not among them; listed times at which it does not turn do no harm.
     """
 
     _stored: ClassVar = {"turning_points": "listed"}
 
     fn: Callable[[Real], Real]
     listed: Float[Array, " n"] = eqx.field(converter=as_real)
+    found: Float[Array, " m"] | None
+    steepest: Real | None
+    until: Real | None
 
     def __init__(self, fn: Callable[[Real], Real], turning_points=()):
         self.fn = fn
         self.listed = turning_points
+        self.found = self.steepest = self.until = None
 
     def __check_init__(self):
         require_function("load.fn", self.fn, "a function of t")
@@ -57,44 +82,82 @@ class Custom(AbstractLoad):
     def __call__(self, t: Real) -> Real:
         return jnp.asarray(self.fn(t))
 
+    def prepared(self, duration: Real) -> "Custom":
+        """With the turning points and kinks of [0, duration] that are found there."""
+        if not in_64_bits() or not is_known(self.fn, self.listed, duration):
+            return self
+        course = course_of(self.fn, float(duration))
+        if course.unproved:
+            warnings.warn(_doubt(course), UnprovedLoad, stacklevel=3)
+        times = self._times(course, float(duration))
+        with jax.ensure_compile_time_eval():
+            known = tuple(map(jnp.asarray, (times, course.steepest, float(duration))))
+        return eqx.tree_at(_unknown, self, known, is_leaf=lambda leaf: leaf is None)
+
     def turning_count(self, duration: float) -> int:
-        for start, end in self._pieces(duration):
-            times, values = self._values(start, end, _SAMPLES)
-            _require_monotone(times, values)
-            self._require_no_jump(times, values)
-        return int(self.listed.shape[0])
+        ready = self.until is not None and duration <= self.until
+        load = self if ready else self.prepared(jnp.asarray(duration))
+        return int((load.listed if load.found is None else load.found).shape[0])
 
     def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
-        return listed_turning_points(self.listed, duration, count)
+        if self.found is None or self.until is None:
+            wrong, times = _turns_elsewhere(self, self.listed, duration), self.listed
+        else:
+            wrong, times = duration > (1 + _LATER) * self.until, self.found
+            if jax.tree_util.tree_leaves(eqx.filter(self.fn, eqx.is_array)):
+                wrong |= _turns_elsewhere(self, self.found, duration)
+        return jnp.where(wrong, jnp.nan, listed_turning_points(times, duration, count))
 
-    def _pieces(self, duration: float):
-        times = np.asarray(self.listed)
-        inside = times[(times > 0) & (times < duration)]
-        return itertools.pairwise(np.concatenate([[0.0], inside, [duration]]))
-
-    def _values(self, start: float, end: float, count: int):
-        t = np.linspace(start, end, count)
-        return t, np.asarray(jax.vmap(self)(jnp.asarray(t)))
-
-    def _require_no_jump(self, times: np.ndarray, values: np.ndarray) -> None:
-        """Looked into where the load changes most, down to the spacing of floats."""
-        allowed, end = _JUMP * (1e-300 + np.max(np.abs(values))), times[-1]
-        for _ in range(_ZOOMS):
-            steps = np.abs(np.diff(values))
-            at = int(np.argmax(steps))
-            low, high, change = times[at], times[at + 1], steps[at]
-            if change <= allowed or high - low <= 8 * np.spacing(end):
-                break
-            times, values = self._values(low, high, _PARTS + 1)
-        jump = f"jumps by {change:.6g} at t = {high:.6g}"
-        require(change <= allowed, "load.fn", jump, "a continuous function")
+    def _times(self, course: Course, duration: float) -> np.ndarray:
+        """Where pieces end: listed times, or turning points that were found; and kinks."""
+        listed = known_numbers(self.listed)
+        if listed.size == 0:
+            return np.union1d(course.turns, course.kinks)
+        inside = listed[(listed > 0) & (listed < duration)]
+        _require_complete(course, inside)
+        apart = np.abs(course.kinks[:, None] - inside) > _SAME * duration
+        return np.union1d(listed, course.kinks[apart.all(axis=1)])
 
 
-def _require_monotone(times: np.ndarray, values: np.ndarray) -> None:
-    require(np.all(np.isfinite(values)), "load.fn", "not finite", "finite values")
-    steps = np.diff(values)
-    noise = 1e-12 * (1e-300 + np.max(np.abs(values)))
-    up, down = np.any(steps > noise), np.any(steps < -noise)
-    missing = f"turns between {times[0]:.6g} and {times[-1]:.6g}"
-    allowed = "every time at which l' changes sign in turning_points"
-    require(not (up and down), "load.turning_points", missing, allowed)
+def _unknown(load: Custom) -> tuple:
+    return load.found, load.steepest, load.until
+
+
+def _doubt(course: Course) -> str:
+    share = f"a pulse of less than {course.hidden:.3g} s may have gone unseen"
+    mend = "write fn with functions of jax.numpy, or as a PiecewiseLinear load"
+    return f"load.fn: {course.unproved}, so {share}; {mend}"
+
+
+def _require_complete(course: Course, listed: np.ndarray) -> None:
+    """Check that a listed time is at each turning point: as high, and on its flanks."""
+    turns = course.turns
+    before = np.concatenate([[-np.inf], turns[:-1]])
+    after = np.append(turns[1:], np.inf)
+    missing = []
+    for turn, low, high in zip(turns, before, after, strict=True):
+        near = listed[(listed > low) & (listed < high)]
+        heights = course.values(np.append(near, turn))
+        if not np.any(np.abs(heights[:-1] - heights[-1]) <= _SAME * course.size):
+            missing.append(turn)
+    some = ", ".join(f"{turn:.9g}" for turn in missing[:4])
+    more = f" and {len(missing) - 4} more" if len(missing) > 4 else ""
+    allowed = "every time at which l' changes sign, or none: then they are found"
+    require(not missing, "load.turning_points", f"without {some}{more}", allowed)
+
+
+def _turns_elsewhere(
+    load: Custom, turns: Float[Array, " n"], duration: Real
+) -> Bool[Array, ""]:
+    """Whether samples of a load go both ways between two of these times, traceable."""
+    times = duration * jnp.linspace(0.0, 1.0, _SAMPLES)
+    values = jax.lax.stop_gradient(jax.vmap(load)(times))
+    steps, noise = jnp.diff(values), _OTHER_WAY * jnp.max(jnp.abs(values))
+    piece = jnp.searchsorted(turns, times, side="right")
+    inside = piece[1:] == piece[:-1]
+    rooms = turns.shape[0] + 1
+
+    def some(which: Bool[Array, " n"]) -> Bool[Array, " pieces"]:
+        return jnp.zeros(rooms, dtype=bool).at[piece[1:]].max(which & inside)
+
+    return jnp.any(some(steps > noise) & some(steps < -noise))

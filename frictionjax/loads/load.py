@@ -35,6 +35,10 @@ class AbstractLoad(Part):
     def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
         """Turning points and kinks in (0, duration), padded with `duration`."""
 
+    def prepared(self, duration: Real) -> "AbstractLoad":
+        """The load with what a scene must find out about it first; others are ready."""
+        return self
+
     def slope(self, t: Real) -> Real:
         """`l'(t)` in N/s, from the right at kinks."""
         t = jnp.asarray(t)

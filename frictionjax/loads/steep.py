@@ -35,4 +35,8 @@ def steep_times(load: AbstractLoad, start: Real, end: Real) -> Float[Array, " sa
         return 0.5 * (low + high)
 
     found = jax.vmap(steepest)(edges[suspects], edges[suspects + 1])
-    return jnp.concatenate([middles, found])
+    known = getattr(load, "steepest", None)
+    if known is None:
+        return jnp.concatenate([middles, found])
+    inside = (known > start) & (known < end)
+    return jnp.concatenate([middles, found, jnp.where(inside, known, middles[0])[None]])

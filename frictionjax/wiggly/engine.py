@@ -72,7 +72,8 @@ class _Sweep(NamedTuple):
         parts = *fixed, every.ground, every.cells, self.tableau
         nothing = np.zeros((2, every.eps.size))
         told = self.wanted, self.accuracy, self.report
-        return Rounds(*parts, *told, nothing, every.brief, self.workers)
+        waited = np.zeros(every.eps.size)
+        return Rounds(*parts, *told, nothing, waited, every.brief, self.workers)
 
     def attempt(self, cells: _Cellwise) -> tuple[Answers, np.ndarray]:
         """Answers of some cells, and which of them have a bracket that stays open."""

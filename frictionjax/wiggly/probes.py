@@ -54,7 +54,13 @@ def probes_of(
     count = int(np.clip(wanted, _SUSPECTS * samples, _MOST * samples))
     suspects = np.argpartition(-gaps, count, axis=1)[:, :count]
     ends = (np.take_along_axis(edges, suspects + k, axis=1) for k in (0, 1))
-    return np.concatenate([middles, _zoomed(scene, path, *ends)], axis=1)
+    found = [middles, _zoomed(scene, path, *ends)]
+    known = getattr(scene.load, "steepest", None)
+    if known is not None:
+        times = np.full((low.size, 1), float(known))
+        inside = (times > low[:, None]) & (times < high[:, None])
+        found.append(np.where(inside, times, middles[:, :1]))
+    return np.concatenate(found, axis=1)
 
 
 def nodes_inside(low: np.ndarray, high: np.ndarray) -> np.ndarray:

@@ -79,7 +79,8 @@ def find_rides(rounds: Rounds, needs: Needs) -> Callable[[], None]:
     spent: list[np.ndarray] = []
 
     def check(cells: list[int], rides: list[Ride], gaps: list[float]) -> list:
-        own = rounds._replace(spent=np.zeros_like(rounds.spent))
+        blank = np.zeros_like(rounds.spent), np.zeros_like(rounds.waited)
+        own = rounds._replace(spent=blank[0], waited=blank[1])
         spent.append(own.spent)
         errors = _errors(own, cells, rides, gaps)
         return [lambda k=k: errors()[k] for k in range(len(rides))]

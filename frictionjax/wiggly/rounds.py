@@ -12,10 +12,11 @@ from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
 from .lanes import WIDTH, march
 from .layout import Layout
-from .needs import Needs
+from .needs import AFFORDABLE, Needs
 from .path import Path, states_at
 from .rosenbrock import Tableau
 from .starts import Ground, Starts, slow_share, starts_of
+from .status import Status
 from .stops import Found
 from .windows import Plan, Windows, plan_windows
 
@@ -28,6 +29,12 @@ LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast
 _FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
 _LONGEST = 1.5  # times what its longest job takes: the shortest batch
 _BATCH = 1e5  # wells: a few seconds, between two reports
+# Steps beyond those for the wells of the path, of the longest lane in each march, added up,
+# that a cell may wait for in an attempt: 2 to 8 seconds. One lane alone, where that is
+# affordable, has its own budget. (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: where tips
+# do not follow, lanes went through 40 times the wells of the path, for maps that never
+# begin, and there was no answer in 10 minutes.)
+PATIENCE, _STEPS_A_WELL = 2e6, 200.0
 
 Report = Callable[[float], None]
 
@@ -56,6 +63,12 @@ def _batches(work: np.ndarray, workers: int) -> int:
     return max(min(int(np.ceil(work.sum() / _BATCH)), most), 1)
 
 
+def _of_jobs(plan: Plan, of_legs: np.ndarray) -> np.ndarray:
+    """Sums over the legs of each job, (jobs,)."""
+    so_far = np.concatenate([[0.0], np.cumsum(of_legs)])
+    return so_far[plan.jobs.past_leg] - so_far[plan.jobs.first_leg]
+
+
 class Round(NamedTuple):
     """What one round of windows has found."""
 
@@ -68,7 +81,8 @@ class Rounds(NamedTuple):
 
     `brief` (cells,): tolerances of lanes on rides through a few wells; None: those of the
     others. `workers`: queues at once. `spent` (2, cells): steps and rejected steps so far,
-    added in place. `lanes_run` is called as lanes set off.
+    `waited` (cells,): those of `PATIENCE`, added in place. `lanes_run` is called as
+    lanes set off.
     """
 
     scene: Scene
@@ -81,6 +95,7 @@ class Rounds(NamedTuple):
     accuracy: float
     report: Report
     spent: np.ndarray
+    waited: np.ndarray
     brief: np.ndarray | None
     workers: int = WORKERS
     lanes_run: Callable[[], None] = lambda: None
@@ -101,24 +116,64 @@ class Rounds(NamedTuple):
 
     def through(self, plan: Plan) -> Round:
         """March all windows of a plan."""
-        found = self._march(plan)
+        able, plan = self._within_patience(plan)
+        found = self._march(plan, able)
+        self._wait(plan, found)
         owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
         for total, steps in zip(self.spent, (found.steps, found.rejected), strict=True):
             total += np.bincount(owner, np.nan_to_num(steps), total.size)
         return Round(plan, found)
 
-    def _march(self, plan: Plan) -> Arrivals:
-        """Deal the jobs to the cores, the longest first."""
+    def _within_patience(self, plan: Plan) -> tuple[np.ndarray, Plan]:
+        """Which jobs their cells can still wait for, and the plan with what is left."""
         jobs, legs = plan.jobs, plan.legs
-        eps = self.ground.eps[jobs.cell]
-        way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])
-        wells = (way[jobs.past_leg] - way[jobs.first_leg]) / eps
-        work = wells + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
+        left = np.where(self._alone(plan), np.inf, PATIENCE - self.waited[jobs.cell])
+        owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
+        wells = np.abs(legs.guide1 - legs.guide0) / self.ground.eps[jobs.cell[owner]]
+        allowed = left[owner] + _STEPS_A_WELL * wells
+        legs = legs._replace(budget=np.minimum(legs.budget, allowed))
+        return left > 0, plan._replace(legs=legs)
+
+    def _wait(self, plan: Plan, found: Arrivals) -> None:
+        """Add up what the longest lane has taken beyond its share, for each cell.
+
+        Of one that gave up everything counts: it would take its share again in each march.
+        """
+        cell, steps = plan.jobs.cell, _of_jobs(plan, np.nan_to_num(found.steps))
+        beyond = np.maximum(steps - _STEPS_A_WELL * self._wells(plan), 0.0)
+        gave_up = _of_jobs(plan, np.nan_to_num(found.code)) > 0
+        beyond = np.where(gave_up, steps, beyond)
+        longest = np.zeros(self.waited.size)
+        np.maximum.at(longest, cell, np.where(self._alone(plan), 0.0, beyond))
+        self.waited[:] += longest
+
+    def _alone(self, plan: Plan) -> np.ndarray:
+        """Jobs from a known start, in cells that one lane can go through, (jobs,)."""
+        known = np.zeros(plan.jobs.cell.size, dtype=bool)
+        known[: plan.known.size] = plan.known
+        wells = self.path.travel[-1] / self.ground.eps[plan.jobs.cell]
+        return known & (wells <= AFFORDABLE)
+
+    def _wells(self, plan: Plan) -> np.ndarray:
+        """Wells of the path that jobs go through, (jobs,)."""
+        ways = _of_jobs(plan, np.abs(plan.legs.guide1 - plan.legs.guide0))
+        return ways / self.ground.eps[plan.jobs.cell]
+
+    def _march(self, plan: Plan, able: np.ndarray) -> Arrivals:
+        """Deal the jobs that are `able` to the cores, the longest first.
+
+        Others end as lanes do that give up.
+        """
+        jobs, legs = plan.jobs, plan.legs
+        work = self._wells(plan) + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
         work = np.where(plan.brief, _FAST, 1.0) * work
         jobs, cells = self._steered(jobs, plan.brief | plan.calm)
         order = np.argsort(-work, kind="stable")
-        batches = _batches(work, self.workers)
+        order = order[able[order]]
+        batches = _batches(work[able], self.workers)
         found = np.full((len(Arrivals._fields), legs.start.size), np.nan)
+        # Overwritten by lanes that run.
+        found[Arrivals._fields.index("code")] = int(Status.MAX_STEPS)
         seat = _seats(order.size, batches * self.workers)
         for batch in range(batches):
             queues = [order[seat == batch + i * batches] for i in range(self.workers)]

@@ -1,0 +1,7 @@
+"""Bounds of functions over whole intervals: what samples cannot prove."""
+
+from .enclosure import Enclosure as Enclosure
+from .enclosure import NoRuleError as NoRuleError
+from .enclosure import enclosure_of as enclosure_of
+from .interval import Interval as Interval
+from .jet import Jet as Jet
