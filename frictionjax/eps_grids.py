@@ -157,7 +157,7 @@ class _Pilot(NamedTuple):
 
 
 def _predicted(data: Any, pilot: np.ndarray, gamma: float) -> tuple[np.ndarray | None, Law]:
-    known = SlideData.of(data)
+    known = SlideData.of(data.attrs)
     if known is None:
         return None, NO_LAW
     found = predict_errors(known, pilot, np.array([gamma]))["sup_error"]

@@ -42,13 +42,6 @@ _MEANING = {
     "load": ("N", "load l(t)"),
     "z_minus": ("m", "lower edge of the strip"),
     "z_plus": ("m", "upper edge of the strip"),
-    "phase": ("1", "phase of a period of the state, Y"),
-    "well_force": ("N", "leading force of a well, W'(Y)"),
-    "well_force_change": ("N m-1", "first change of that force with eps, Q'(0; Y)"),
-    "moment_length": ("s", "length of a moment of [0, T]"),
-    "moment_pull": ("N", "change of the load in a moment"),
-    "slide_speed": ("m s-1", "speed of the limit, 0 where it rests"),
-    "slide_stiffness": ("N m-1", "stiffness of the support, Phi''"),
 }
 
 

@@ -162,7 +162,7 @@ def _part(name: str, part: Any, kind: type) -> Any:
 
 
 def _with_turns(load: AbstractLoad, duration: Any) -> tuple[AbstractLoad, int]:
-    """All that follows from load and duration: what the load does, and room for its turns."""
+    """All that follows from load and duration: what the load does, room for its turns."""
     load = load.prepared(duration)
     return load, _room_for_turns(load, duration)
 

@@ -114,7 +114,7 @@ _FIELDS = {"order": "order", "low": "order_low", "high": "order_high"}
 
 def _predictions(dataset: xr.Dataset) -> dict[str, Prediction]:
     """What the laws say of the cells, by name of the error; empty if nothing is known."""
-    data = SlideData.of(dataset)
+    data = SlideData.of(dataset.attrs)
     if data is None:
         return {}
     return predict_errors(data, dataset.eps.values, dataset.gamma.values)

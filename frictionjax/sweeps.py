@@ -88,11 +88,10 @@ def sweep(
     `rejected` and `status`; of the library's own methods also `how` and `bracket` over
     time (see `solve`), `sampled`, and `survey_error`, an estimate of what sampling slips
     adds to the error of `sup_error`; over time the limit's `z_limit`,
-    `dissipation_limit`, the strip `z_minus`, `z_plus` and the load, `data["load"]`. With
-    suprema also what the laws of the orders need: over `phase` the leading force of a well
-    `well_force` = W' and `well_force_change` = Q', over `moment` the limit's
-    `slide_speed` and `slide_stiffness`, and `moment_length`, `moment_pull` of the load.
-    Units and provenance are in the attributes; it goes to NetCDF and back without loss.
+    `dissipation_limit`, the strip `z_minus`, `z_plus` and the load, `data["load"]`. Units
+    and provenance are in the attributes, and with suprema what the laws of the orders need
+    (`law_...`: the force of a well, the speeds of the limit); it goes to NetCDF and back
+    without loss.
 
     A cell that fails has its status and NaNs and does not disturb the others; one warning
     (`FailedCells`, a `UserWarning`) names such cells.
@@ -130,19 +129,17 @@ def sweep(
     }
     columns["viscosity"] = (_DIMS[:2], viscosity_of(eps, gamma[:, None]))
     columns |= {key: (_DIMS[2:], v) for key, v in _limit_values(scene, limit).items()}
-    phase: dict[str, np.ndarray] = {}
-    if suprema:
-        known = slide_data(scene, coefficients_jit(scene.potential), np.asarray(eps))
-        if known is not None:
-            columns.update(known.columns())
-            phase = {"phase": known.phase}
     import xarray as xr  # 0.4 s, which another thread may spend while cells run
 
     # All variables at once: one by one they are aligned anew, 1 ms each.
     warn_of_failed(columns["status"][1], gamma, eps, frames=1)  # `with_nan`
-    places = {"gamma": gamma, "eps": eps, "time": np.asarray(ts), **phase}
-    data = xr.Dataset(columns, coords=places)
-    return describe(data, scene, accuracy=wanted, solver=name)
+    data = xr.Dataset(columns, coords={"gamma": gamma, "eps": eps, "time": np.asarray(ts)})
+    data = describe(data, scene, accuracy=wanted, solver=name)
+    if suprema:
+        found = coefficients_jit(scene.potential)
+        known = slide_data(scene, found, np.asarray(eps))
+        data.attrs |= {} if known is None else known.attributes()
+    return data
 
 
 def _general(method: Any) -> Any:

@@ -267,7 +267,7 @@ def test_laws_survive_a_file(studies, tmp_path):
 
 def test_a_sweep_without_suprema_has_no_data_for_laws():
     bare = fx.sweep(scene(), [0.05], [1.0], ts=[0.0, 3.0], dissipation=False, suprema=False)
-    assert SlideData.of(bare) is None
+    assert SlideData.of(bare.attrs) is None
 
 
 def synthetic(order, scatter, draws, predicted, seed=0):

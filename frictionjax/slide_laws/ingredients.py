@@ -1,5 +1,6 @@
 """What the laws of a slide need of a scene: the force of a well, speeds of the limit."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import jax
@@ -22,7 +23,7 @@ _SMALL = 1e-3  # of the largest eps: there, and at half of it, is V_eps' - W' lo
 
 
 class SlideData(NamedTuple):
-    """Arrays that `predict_errors` needs, as a data set keeps them.
+    """Arrays that `predict_errors` needs; a data set keeps them in its attributes.
 
     Over `phase`, a period of the state from its own start: `phase` Y in periods, shape
     (n,); `force` W'(Y) and `change` Q'(0; Y), in N and N/m. Over moments of [0, T], shape
@@ -38,28 +39,27 @@ class SlideData(NamedTuple):
     speed: np.ndarray
     stiffness: np.ndarray
 
-    def columns(self) -> dict[str, tuple[str, np.ndarray]]:
-        """As variables of a data set, all but the phase, which is a coordinate."""
-        return {
-            name: (dim, getattr(self, field)) for name, (dim, field) in _COLUMNS.items()
-        }
+    def attributes(self) -> dict[str, np.ndarray]:
+        """By the names that they have in the attributes of a data set."""
+        return {name: getattr(self, field) for name, field in _ATTRIBUTES.items()}
 
     @classmethod
-    def of(cls, data: Any) -> "SlideData | None":
-        """What a data set of `sweep` holds; None where it holds none."""
-        if not {"phase", *_COLUMNS} <= set(data.variables):
+    def of(cls, attributes: Mapping[Any, Any]) -> "SlideData | None":
+        """What the attributes of a data set of `sweep` hold; None where they hold none."""
+        if not set(_ATTRIBUTES) <= set(attributes):
             return None
-        fields = {field: data[name].values for name, (_, field) in _COLUMNS.items()}
-        return cls(phase=data.phase.values, **fields)
+        fields = {field: attributes[name] for name, field in _ATTRIBUTES.items()}
+        return cls(**{field: np.asarray(value) for field, value in fields.items()})
 
 
-_COLUMNS = {
-    "well_force": ("phase", "force"),
-    "well_force_change": ("phase", "change"),
-    "moment_length": ("moment", "length"),
-    "moment_pull": ("moment", "pull"),
-    "slide_speed": ("moment", "speed"),
-    "slide_stiffness": ("moment", "stiffness"),
+_ATTRIBUTES = {
+    "law_phase": "phase",
+    "law_well_force": "force",
+    "law_well_force_change": "change",
+    "law_length": "length",
+    "law_pull": "pull",
+    "law_speed": "speed",
+    "law_stiffness": "stiffness",
 }
 
 
