@@ -3,6 +3,7 @@
 import contextlib
 import dataclasses
 import inspect
+import weakref
 from collections.abc import Iterator
 from typing import Any, ClassVar, Self, TypeVar
 
@@ -12,9 +13,31 @@ import jax
 from .arguments import in_64_bits, is_concrete, is_known, require
 
 _PartT = TypeVar("_PartT", bound="Part")
-# An attribute that is no field: what is made of leaves (`eqx.tree_at`, `jax.tree.map`)
-# does not have it. (A table of weak references by id: modules cannot be its keys.)
-_CHECKED = "_checked"
+
+
+class ByIdentity:
+    """Notes on modules, which cannot be keys of a dictionary, as long as they live.
+
+    What is made of a module's leaves (`eqx.tree_at`, `jax.tree.map`) or a copy has none. An
+    attribute beside the fields would be seen by `vars(part)`.
+    """
+
+    def __init__(self) -> None:
+        self._notes: dict[int, tuple[weakref.ref, Any]] = {}
+
+    def get(self, thing: Any) -> Any:
+        """The note on a thing; None without one."""
+        known, note = self._notes.get(id(thing), (None, None))
+        return note if known is not None and known() is thing else None
+
+    def put(self, thing: Any, note: Any) -> None:
+        """Keep a note that does not refer to the thing itself."""
+        key = id(thing)
+        gone = weakref.ref(thing, lambda _: self._notes.pop(key, None))
+        self._notes[key] = gone, note
+
+
+_CHECKED = ByIdentity()
 
 
 class Part(eqx.Module):
@@ -57,12 +80,12 @@ def asked_names(kind: type, changes: dict[str, Any]) -> list[str]:
 def mark_checked(thing: eqx.Module) -> None:
     """Remember that its constructor has looked at its numbers, if it could."""
     if in_64_bits() and is_concrete(thing):
-        object.__setattr__(thing, _CHECKED, True)
+        _CHECKED.put(thing, True)
 
 
 def is_checked(thing: eqx.Module) -> bool:
     """Whether it is as a constructor has seen it."""
-    return _CHECKED in vars(thing)
+    return _CHECKED.get(thing) is not None
 
 
 def checked(part: _PartT) -> _PartT:

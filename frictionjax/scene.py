@@ -25,6 +25,7 @@ from .arguments import (
 from .bristles import AbstractBristle
 from .loads import AbstractLoad
 from .parts import (
+    ByIdentity,
     asked_names,
     checked,
     eagerly,
@@ -39,7 +40,7 @@ from .supports import AbstractSupport
 
 _TRACED_TURNS = 64  # turning points allowed for where the load's numbers are traced
 _TOLD_APART = 1e-13  # of the largest |z|: rounding of z itself is 1e-3 eps there
-_ANEW = "_anew"  # attribute, no field: the scene built of one with other leaves
+_ANEW = ByIdentity()  # the scene built of one with other leaves
 _ROUNDED = 8  # spacings of floats by which a time may exceed the duration
 _MOST_TURNS = 2**20  # in a scene: 8 MB a copy of their times
 
@@ -220,11 +221,11 @@ def known_scene(scene: Any) -> Scene:
     require_x64(scene)
     if is_checked(scene):
         return scene
-    anew = vars(scene).get(_ANEW)
+    anew = _ANEW.get(scene)
     if anew is None:
         anew = _built_anew(scene)
         if is_checked(anew):  # else it was made in a trace, which it must not outlive
-            object.__setattr__(scene, _ANEW, anew)
+            _ANEW.put(scene, anew)
     return anew
 
 

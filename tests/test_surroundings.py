@@ -2,6 +2,7 @@
 
 import errno
 import os
+import signal
 import subprocess
 import sys
 import traceback
@@ -12,6 +13,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+import xarray as xr
 from command_line import run
 from sweep_like import sweep_like
 
@@ -101,6 +103,7 @@ def forked(work):
         child = os.fork()
     if child == 0:
         try:
+            signal.alarm(60)
             work()
             said = "done"
         except BaseException:
@@ -237,11 +240,26 @@ def test_a_full_disk_is_one_line_of_the_shell(tmp_path, monkeypatch):
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is full")
 @pytest.mark.parametrize("name", ["study.nc", "tables.txt", "scene.toml"])
 def test_every_file_of_a_record_may_meet_a_full_disk(name, tmp_path):
-    """HDF5 ended the process with a segmentation fault."""
     (tmp_path / name).symlink_to("/dev/full")
     data = {"study": sweep_like()}
-    with pytest.raises(OSError, match=FULL.strerror):
+    with pytest.raises(OSError, match=FULL.strerror) as found:
         report_folder.write_record(tmp_path, data, "z0 = 0.0", "text")
+    assert found.value.errno == errno.ENOSPC
+
+
+def test_no_data_set_is_written_by_hdf5(tmp_path, monkeypatch):
+    """On a disk that is full half way it ended the process by a segmentation fault."""
+    to_netcdf, places = xr.Dataset.to_netcdf, []
+
+    def recorded(data, path, **options):
+        places.append(path)
+        return to_netcdf(data, path, **options)
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", recorded)
+    report_folder.write_record(tmp_path, {"study": sweep_like()}, "", "")
+    assert places == [None]
+    again = xr.load_dataset(tmp_path / "study.nc", engine="h5netcdf")
+    assert again.identical(sweep_like())
 
 
 def write_three(folder):

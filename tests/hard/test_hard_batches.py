@@ -10,6 +10,7 @@ from catalogue import HARD
 
 import frictionjax as fx
 from frictionjax.wiggly.engine import integrate_cells
+from frictionjax.wiggly.status import FailedCells
 
 ACCURACY = 1e-3
 SAME = 1e-3 * ACCURACY
@@ -49,7 +50,8 @@ def test_a_viscosity_that_no_float_holds_is_a_status():
     """In wells of 10 m; NumPy warned of an overflow, which here is an error."""
     bristle, load = fx.bristles.Homothetic(1e4), fx.loads.Sine(3000.0, 3.0)
     scene = fx.Scene(fx.profiles.Sine(0.1), bristle, fx.supports.Spring(1.0), load, 3.0)
-    found = fx.sweep(scene, [10.0], [400.0, 1.0])
+    with pytest.warns(FailedCells, match="1 of 2 cells failed"):
+        found = fx.sweep(scene, [10.0], [400.0, 1.0])
     assert np.isinf(found.viscosity.sel(gamma=400.0)).all()
     assert int(found.status.sel(gamma=400.0).item()) != 0
     assert int(found.status.sel(gamma=1.0).item()) == 0
@@ -58,7 +60,8 @@ def test_a_viscosity_that_no_float_holds_is_a_status():
 def test_a_failing_lane_disturbs_no_other_cell_of_a_sweep():
     scene, ts = HARD["kinks and plateaus"].build(), np.linspace(0.0, 3.0, 61)
     alone = fx.sweep(scene, [0.05, 0.02], [1.0], ts)
-    beside = fx.sweep(scene, [0.05, 0.02, 1e-8], [1.0, 39.0], ts)
+    with pytest.warns(FailedCells):
+        beside = fx.sweep(scene, [0.05, 0.02, 1e-8], [1.0, 39.0], ts)
     bad = beside.sel(gamma=39.0, eps=1e-8)
     assert int(bad.status) != 0
     assert np.isnan(float(bad.sup_error))
