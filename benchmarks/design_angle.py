@@ -75,7 +75,7 @@ def accuracy():
             true, start, free, names = draws(kind, rng)
             name = names[trial % len(names)]
             target = value_of(name, fx.friction(ground, true))
-            found = fx.fit_angle(ground, start, free=free, **{name: target})
+            found = fx.fit_angle(ground, start, free=free, pulling=True, **{name: target})
             met += found.success
             try:
                 got = value_of(name, fx.friction(ground, found.bristle))

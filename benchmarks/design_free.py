@@ -38,7 +38,7 @@ def random_bristle(rng):
 def bounds_of(rng, part, name):
     """Wide, around the number that the part has."""
     number = free_parameter(part, name)
-    own, (least, most) = float(number.now(part)), number.own_range
+    own, (least, most) = float(number.now(part)), number.range_of(part)
     if not np.isfinite(most):
         return own * rng.uniform(0.3, 1), own * rng.uniform(1, 3)
     return own - (own - least) * rng.uniform(0, 0.95), own + (most - own) * rng.uniform(
@@ -84,7 +84,7 @@ def main(count: int = 40, seed: int = 2) -> None:
             continue
         target, free, bounds = case
         try:
-            fit = fx.fit_profile(target, free=free, bounds=bounds)
+            fit = fx.fit_profile(target, free=free, bounds=bounds, pulling=True)
         except ValueError:  # bounds with no bristle at one of their ends
             continue
         done += 1

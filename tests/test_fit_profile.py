@@ -97,7 +97,7 @@ def test_a_plateau_of_bumps_that_hardly_bend():
     """Newton's steps alone left 4e-9 of the coefficient there, with status MET."""
     part = fx.bristles.SlantedSpring(1.79937389623384, 0.562861595867061, 1.0, 0.2835998986)
     target = fx.Target(part, 0.6710843956660764, -5.435253666816398)
-    check_met(fx.fit_profile(target), target)
+    check_met(fx.fit_profile(target, pulling=True), target)
 
 
 @pytest.mark.parametrize("kind", BRISTLES)
@@ -105,7 +105,7 @@ def test_random_reachable_targets(kind):
     rng = np.random.default_rng(7)
     for _ in range(5):
         target = reachable_target(kind, rng)
-        check_met(fx.fit_profile(target, starts=2), target)
+        check_met(fx.fit_profile(target, starts=2, pulling=True), target)
 
 
 @pytest.mark.slow
@@ -114,7 +114,7 @@ def test_many_random_targets_of_every_bristle_at_once(count):
     """One batch of the compiled program, coefficients by Lemmas 2 and 3."""
     rng = np.random.default_rng(11)
     targets = [reachable_target(kind, rng) for kind in BRISTLES for _ in range(count)]
-    problems = [problem_of([target]) for target in targets]
+    problems = [problem_of([target], pulling=True) for target in targets]
     layout = problems[0].layout
     tasks = jax.tree_util.tree_map(lambda *one: np.stack(one), *(p.task for p in problems))
     keys, shares = jax.random.split(jax.random.PRNGKey(0), 1), np.zeros((1, 0))
@@ -144,7 +144,7 @@ def test_many_random_reachable_targets(kind):
     rng = np.random.default_rng(11)
     for _ in range(200):
         target = reachable_target(kind, rng)
-        check_met(fx.fit_profile(target), target)
+        check_met(fx.fit_profile(target, pulling=True), target)
 
 
 def test_round_trip_of_random_surfaces():
