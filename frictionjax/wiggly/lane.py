@@ -111,8 +111,8 @@ def step_of_lane(
         tableau, field.velocity, start, motion.time, step, motion.tip
     )
     moved, error = jnp.abs(tip - motion.tip), jnp.abs(stages[-1])
-    control = task.cell.control
-    fits, level, trend = judge(tableau.order, control, motion.trend, step, moved, error)
+    found = motion.trend, step, moved, error, step * motion.point.by_state
+    fits, level, trend = judge(tableau.order, task.cell.control, *found)
     # A step cut short by its stop says nothing about the next one.
     level = jnp.where(fits & cut, jnp.maximum(level, motion.level), level)
     trend = jnp.where(cut, motion.trend, trend)

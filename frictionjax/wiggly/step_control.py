@@ -26,6 +26,13 @@ _TINY = 1e-5  # of the tolerance: errors are counted as that at least
 _FAR = 20.0  # reaches: whatever is further counts as that
 
 
+# E-folds of growth in one step. Stiffly accurate methods damp growth as they damp decay: of a
+# tip that rounding has put past a fold they make one that follows the unstable branch, with
+# errors estimated as nothing (at eps = 1e-12 for 0.25 s, in steps of up to 1e22 e-folds).
+# Steps through slips have 0.6, and up to 1.5.
+_GROWTH = 3.0
+
+
 class Control(NamedTuple):
     """What steers the steps of a cell.
 
@@ -59,14 +66,20 @@ def _power(x: Real, order: int) -> Real:
 
 
 def judge(
-    order: int, control: Control, trend: Real, step: Real, moved: Real, error: Real
+    order: int,
+    control: Control,
+    trend: Real,
+    step: Real,
+    moved: Real,
+    error: Real,
+    growth: Real,
 ) -> Verdict:
     """Judge a step of `step` s that has moved the tip by `moved` periods.
 
     `order`: of the error in the step. `trend`: what the last accepted step has left, 0 at
-    a start, which is of level 0.
+    a start, which is of level 0. `growth`: by how many e-folds solutions part in the step.
     """
-    excess = moved / control.reach
+    excess = jnp.maximum(moved / control.reach, growth / _GROWTH)
     finite = (excess < _FAR) & (error < 1e300)
     excess = jnp.where(finite, excess, _FAR)
     pace = jnp.where(finite, moved, 0.0) / (step * control.pace)
