@@ -10,6 +10,7 @@ import pytest
 import frictionjax as fx
 from frictionjax.design.angle_fit import AngleFit
 from frictionjax.design.fit_status import FitStatus
+from frictionjax.design.inverse import Pulled
 from frictionjax.design.steady_slide import SteadySlide
 from frictionjax.limit_system import LimitSolution, LimitStatus
 from frictionjax.outcomes import counted
@@ -39,7 +40,8 @@ def slide(codes):
 def angle_fit(codes):
     codes, one = jnp.asarray(codes), jnp.ones(jnp.shape(codes))
     codes = jnp.where(codes == 0, 0, int(FitStatus.INADMISSIBLE))
-    known = one, one, one, one[..., None], jnp.ones((1, 2)), jnp.ones((1, 2)), codes
+    ends = jnp.ones((1, 2))
+    known = one, one, one, one, one[..., None], ends, ends, codes, Pulled(one, one)
     return AngleFit(None, *known, None, None, "angle", "ratio")
 
 
