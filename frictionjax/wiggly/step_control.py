@@ -26,7 +26,7 @@ _TINY = 1e-5  # of the tolerance: errors are counted as that at least
 _FAR = 20.0  # reaches: whatever is further counts as that
 
 
-# E-folds of growth in one step. Stiffly accurate methods damp growth as they damp decay: of a
+# E-folds of growth in one step. Stiffly accurate methods damp growth as well as decay: of a
 # tip that rounding has put past a fold they make one that follows the unstable branch, with
 # errors estimated as nothing (at eps = 1e-12 for 0.25 s, in steps of up to 1e22 e-folds).
 # Steps through slips have 0.6, and up to 1.5.
