@@ -197,6 +197,15 @@ def _write(path: Path, data: bytes) -> None:
     except OSError:
         Path(temporary).unlink(missing_ok=True)
         raise
-    files = sorted(path.parent.parent.glob("*/*"), key=lambda f: f.stat().st_mtime)
-    for old in files[:-_MOST]:
-        old.unlink(missing_ok=True)
+    _drop_oldest(path.parent.parent)
+
+
+def _drop_oldest(folder: Path) -> None:
+    """Keep the newest programs. Other processes do so too: what is gone is gone."""
+    ages: list[tuple[float, Path]] = []
+    for path in folder.glob("*/*"):
+        with contextlib.suppress(OSError):
+            ages.append((path.stat().st_mtime, path))
+    for _, old in sorted(ages)[:-_MOST]:
+        with contextlib.suppress(OSError):
+            old.unlink()

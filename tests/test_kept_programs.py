@@ -172,6 +172,19 @@ def test_the_oldest_go_first(tmp_path, monkeypatch, traced):
     assert len(traced) == 3
 
 
+def test_files_that_another_process_drops_meanwhile_are_no_failure(tmp_path, monkeypatch):
+    """A file listed and gone before it was looked at: seen with two test workers."""
+    folder = tmp_path / "one"
+    folder.mkdir()
+    for name in ("gone.bin", "kept.bin"):
+        (folder / name).touch()
+    listed = list(folder.iterdir())
+    (folder / "gone.bin").unlink()
+    monkeypatch.setattr(type(tmp_path), "glob", lambda *_: iter(listed))
+    kept_programs._write(folder / "new.bin", b"new")
+    assert {path.name for path in folder.iterdir()} == {"kept.bin", "new.bin"}
+
+
 def test_functions_and_settings_are_told_apart():
     structure = jax.tree_util.tree_structure((0,))
     tips, heights = (kept_programs._described(fn, structure, ()) for fn in (TIPS, HEIGHTS))

@@ -72,7 +72,7 @@ def judge(
     step: Real,
     moved: Real,
     error: Real,
-    growth: Real,
+    growth: Real | float = 0.0,
 ) -> Verdict:
     """Judge a step of `step` s that has moved the tip by `moved` periods.
 
