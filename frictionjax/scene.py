@@ -39,7 +39,10 @@ from .programs import Program
 from .supports import AbstractSupport
 
 _TRACED_TURNS = 64  # turning points allowed for where the load's numbers are traced
-_TOLD_APART = 1e-13  # of the largest |z|: rounding of z itself is 1e-3 eps there
+# Of the largest |z|: rounding of z itself is 1e-4 eps there. (At 1e-13 to 3e-13 most sweeps
+# of five scenes held ROUGH_SURVEY, at accuracy 1e-3; at 5e-13 to 8e-13 a stiff one did, and
+# 1 in 100 above.)
+_TOLD_APART = 2.0**-40
 _ANEW = ByIdentity()  # the scene built of one with other leaves
 _ROUNDED = 8  # spacings of floats by which a time may exceed the duration
 _MOST_TURNS = 2**20  # in a scene: 8 MB a copy of their times

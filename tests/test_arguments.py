@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.wiggly import engine
 
 SURFACE, BRISTLE = fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0)
 
@@ -105,9 +106,11 @@ def test_eps_that_is_no_number_nor_list_is_named(value):
 )
 def test_wells_that_floats_cannot_tell_apart_are_refused(call):
     """At eps = 1e-20 a run did not end; at 1e-15 all was NaN, after 20 s."""
-    with pytest.raises(ValueError, match=r"eps = 1e-20: needs eps >= 1e-13: wells at 1 m"):
+    with pytest.raises(
+        ValueError, match=r"eps = 1e-20: needs eps >= 9.09e-13: wells at 1 m"
+    ):
         call(SCENE, 1e-20)
-    with pytest.raises(ValueError, match=r"eps = 1e-07: needs eps >= 1e-06"):
+    with pytest.raises(ValueError, match=r"eps = 1e-07: needs eps >= 9.09e-06"):
         call(scene_of(fx.supports.Spring(1e-7)), 1e-7)
 
 
@@ -115,3 +118,20 @@ def test_eps_of_1e_minus_12():
     found = fx.solve(SCENE, 1e-12, 1.0, [0.0, 1.0, 3.0])
     assert found.ok
     assert np.all(np.isfinite(found.z))
+
+
+@pytest.mark.parametrize("gamma", [1.0, 2.0])
+def test_wrong_solutions_do_not_balance_at_the_smallest_eps(monkeypatch, gamma):
+    """Steps that err by a hundredth of a well, by a third in slips."""
+    plans = engine.planned
+
+    def carelessly(*parts):
+        plan = plans(*parts)
+        loose = {"tolerance": 1e-2, "loosest": 0.3, "reach": 0.25}
+        size = plan.control.tolerance.shape
+        control = {name: np.full(size, value) for name, value in loose.items()}
+        return plan._replace(control=plan.control._replace(**control))
+
+    monkeypatch.setattr(engine, "planned", carelessly)
+    found = fx.solve(SCENE, 1e-12, gamma, [0.0, 1.0, 3.0])
+    assert found.status is fx.Status.UNBALANCED

@@ -136,7 +136,7 @@ def test_lanes_look_at_the_field_once_a_stage(monkeypatch):
     none = jnp.asarray(0)
     task = lane.Task(none, none, cell, one, guide, one, one, one)
     sums, extent = lane.Balance(*[one] * 3), lane.Extent(*[one] * 5)
-    motion = lane.Motion(one, one, point, one, one, sums, extent, one, one, one)
+    motion = lane.Motion(one, one, one, point, one, one, sums, extent, one, one, one)
     parts = lane.LaneScene(SCENE.potential, SCENE.support, SCENE.load, one, -one), TABLEAU
     jax.make_jaxpr(lambda m: lane.step_of_lane(*parts, Sums(False, False), task, m))(motion)
     assert len(looks) == len(TABLEAU.a)

@@ -41,15 +41,15 @@ def test_steps_follow_what_the_error_allows(octaves):
     assert -0.3 - max(octaves, 0.0) < used < 0
 
 
-def accepts(step=FIRST, moved=1e-9, error=1e-6, control=CONTROL, growth=0.0) -> bool:
-    return bool(JUDGE(ORDER, control, 0.0, step, moved, error, growth).accepted)
+def accepts(step=FIRST, moved=1e-9, error=1e-6, control=CONTROL, overgrown=0.0) -> bool:
+    return bool(JUDGE(ORDER, control, 0.0, step, moved, error, overgrown).accepted)
 
 
 def test_steps_over_which_solutions_part_are_rejected_whatever_their_error():
     """Stiffly accurate methods damp growth: their error says nothing of it."""
-    assert accepts(error=0.0, growth=2.9)
-    assert not accepts(error=0.0, growth=3.1)
-    assert not accepts(error=0.0, growth=1e22)
+    assert accepts(error=0.0, overgrown=0.99)
+    assert not accepts(error=0.0, overgrown=1.01)
+    assert not accepts(error=0.0, overgrown=1e22)
 
 
 def test_errors_count_less_in_slips():

@@ -108,6 +108,7 @@ def _idle(tables: Tables, width: int) -> tuple[Task, Motion]:
     motion = Motion(
         tip=zero,
         time=zero,
+        unseen=zero,
         point=Point(*[zero] * 6),
         level=zero,
         trend=zero,
@@ -173,6 +174,7 @@ def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
     set_off = motion._replace(
         tip=tip - shift,
         time=time,
+        unseen=jnp.where(fresh, 0.0, motion.unseen),
         level=jnp.where(fresh, 0.0, motion.level),
         trend=jnp.where(fresh, 0.0, motion.trend),
         sums=keep(change, Balance(zero, zero, zero), motion.sums),

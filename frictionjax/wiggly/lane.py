@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Int
+from jaxtyping import Array, Bool, Int
 
 from ..arguments import Real
 from ..loads import AbstractLoad
@@ -14,10 +14,11 @@ from ..supports import AbstractSupport
 from .balance import Balance, advance, arrival, slopes_between
 from .extent import Extent, Guide, leave, spend, widen
 from .field import Point, TipField
+from .fold_steps import Foothold, foothold, pause_of
 from .once import once
 from .rosenbrock import Linearised, Tableau, rosenbrock_step
 from .status import Status
-from .step_control import Control, judge
+from .step_control import Control, Verdict, judge
 from .step_sizes import PER_OCTAVE, step_of
 
 _LOWEST_LEVEL = -900 * PER_OCTAVE
@@ -74,10 +75,12 @@ class Task(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """What moves on a leg; `time` in s since the task's origin."""
+    """What moves on a leg; `time` in s since the task's origin, `unseen`: what rounding has
+    left out of it."""
 
     tip: Real
     time: Real
+    unseen: Real
     point: Point
     level: Real
     trend: Real
@@ -97,29 +100,62 @@ def keep(condition: Real, new: Any, old: Any) -> Any:
     return jax.tree_util.tree_map(lambda a, b: jnp.where(condition, a, b), new, old)
 
 
+class _Trial(NamedTuple):
+    """A step before it is accepted: where it ends, how it is judged, and whether its stop
+    or a failure has made it shorter, or nothing of it."""
+
+    step: Real
+    tip: Real
+    time: Real
+    unseen: Real
+    end: Point
+    judged: Verdict
+    cut: Bool[Array, ""]
+    live: Bool[Array, ""]
+
+
+def _try_step(scene: LaneScene, tableau: Tableau, task: Task, motion: Motion) -> _Trial:
+    field = field_of(scene, task)
+    live = (motion.time < task.stop) & (motion.code == 0)
+    full = step_of(motion.level, task.cell.first_step)
+    pause = pause_of(motion.point, task.origin + motion.time, _drag(task, motion.point))
+    waits = full < pause
+    full = jnp.where(waits, pause, full)
+    left = task.stop - motion.time - motion.unseen
+    cut = full >= left
+    step = once(jnp.where(live, jnp.where(cut, left, full), 1.0), task.cell.eps)
+    place = _foothold(scene, task, motion, step)
+    start = Linearised(place.velocity(), *motion.point[1:3])
+    tip, stages = rosenbrock_step(
+        tableau, field.velocity, start, motion.time, step, motion.tip
+    )
+    tip = jnp.where(waits, motion.tip, tip)
+    time, unseen = _later(motion, step)
+    time = jnp.where(cut, task.stop, time)
+    end = once(field.point(time, tip), task.cell.eps)
+    moved = jnp.abs(tip - motion.tip)
+    error = jnp.where(waits, 0.0, place.beyond_rounding(jnp.abs(stages[-1]), end))
+    branches = place.overgrown(), place.resolves(end)
+    found = motion.trend, step, moved, error, *branches
+    judged = judge(tableau.order, task.cell.control, *found)
+    unseen = jnp.where(cut, 0.0, unseen)
+    return _Trial(step, tip, time, unseen, end, judged, cut, live)
+
+
 def step_of_lane(
     scene: LaneScene, tableau: Tableau, wanted: Sums, task: Task, motion: Motion
 ) -> Motion:
     """One step of one lane; a lane that has reached its stop stays as it is."""
     field = field_of(scene, task)
-    live = (motion.time < task.stop) & (motion.code == 0)
-    full, left = step_of(motion.level, task.cell.first_step), task.stop - motion.time
-    cut = full >= left
-    step = once(jnp.where(live, jnp.where(cut, left, full), 1.0), task.cell.eps)
-    start = Linearised(*motion.point[:3])
-    tip, stages = rosenbrock_step(
-        tableau, field.velocity, start, motion.time, step, motion.tip
+    step, tip, time, unseen, end, judged, cut, live = _try_step(
+        scene, tableau, task, motion
     )
-    moved, error = jnp.abs(tip - motion.tip), jnp.abs(stages[-1])
-    found = motion.trend, step, moved, error, step * motion.point.by_state
-    fits, level, trend = judge(tableau.order, task.cell.control, *found)
+    fits, level, trend = judged
     # A step cut short by its stop says nothing about the next one.
     level = jnp.where(fits & cut, jnp.maximum(level, motion.level), level)
     trend = jnp.where(cut, motion.trend, trend)
     accepted = fits & live
     tip = jnp.where(accepted, tip, motion.tip)
-    time = jnp.where(cut, task.stop, motion.time + step)
-    end = once(field.point(time, tip), task.cell.eps)
     sums, extent = motion.sums, motion.extent
     arrived = arrival(field, motion.time, step, end) if any(wanted) else end
     if wanted.energies:
@@ -139,6 +175,7 @@ def step_of_lane(
     after = Motion(
         tip=tip,
         time=time,
+        unseen=unseen,
         point=end,
         level=level,
         trend=trend,
@@ -156,6 +193,28 @@ def step_of_lane(
         rejected=motion.rejected + (live & ~fits),
         code=jnp.where(live, failure, motion.code),
     )
+
+
+def _later(motion: Motion, step: Real) -> tuple[Real, Real]:
+    """The time after a step, and what rounding leaves out of it.
+
+    Short steps add up: at a fold, eps = 1e-12, the load was never seen to go on, where
+    every step was shorter than the spacing of floats at t.
+    """
+    gone = motion.unseen + step
+    time = motion.time + gone
+    return time, gone - (time - motion.time)
+
+
+def _foothold(scene: LaneScene, task: Task, motion: Motion, step: Real) -> Foothold:
+    point, width = motion.point, scene.rho_plus - scene.rho_minus
+    since = task.origin + motion.time
+    return foothold(step, point, since, _drag(task, point), width)
+
+
+def _drag(task: Task, point: Point) -> Real:
+    """N over periods a second."""
+    return task.cell.viscosity * task.cell.eps * point.stretch
 
 
 def _extent(

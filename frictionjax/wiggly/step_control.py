@@ -26,13 +26,6 @@ _TINY = 1e-5  # of the tolerance: errors are counted as that at least
 _FAR = 20.0  # reaches: whatever is further counts as that
 
 
-# E-folds of growth in one step. Stiffly accurate methods damp growth as well as decay: of a
-# tip that rounding has put past a fold they make one that follows the unstable branch, with
-# errors estimated as nothing (at eps = 1e-12 for 0.25 s, in steps of up to 1e22 e-folds).
-# Steps through slips have 0.6, and up to 1.5.
-_GROWTH = 3.0
-
-
 class Control(NamedTuple):
     """What steers the steps of a cell.
 
@@ -72,18 +65,20 @@ def judge(
     step: Real,
     moved: Real,
     error: Real,
-    growth: Real | float = 0.0,
+    overgrown: Real | float = 0.0,
+    shifts: Bool[Array, ""] | bool = True,
 ) -> Verdict:
     """Judge a step of `step` s that has moved the tip by `moved` periods.
 
     `order`: of the error in the step. `trend`: what the last accepted step has left, 0 at
-    a start, which is of level 0. `growth`: by how many e-folds solutions part in the step.
+    a start, which is of level 0. `overgrown`: how many times it is too long for unstable
+    branches. `shifts`: whether an error in a slip is one in time.
     """
-    excess = jnp.maximum(moved / control.reach, growth / _GROWTH)
+    excess = jnp.maximum(moved / control.reach, overgrown)
     finite = (excess < _FAR) & (error < 1e300)
     excess = jnp.where(finite, excess, _FAR)
     pace = jnp.where(finite, moved, 0.0) / (step * control.pace)
-    tolerance = control.tolerance * jnp.maximum(pace, 1.0)
+    tolerance = control.tolerance * jnp.where(shifts, jnp.maximum(pace, 1.0), 1.0)
     tolerance = jnp.minimum(tolerance, control.loosest)
     share = jnp.where(finite, jnp.maximum(error / tolerance, _TINY), 1.0)
     # One logarithm of both: each costs as much as a stage's sine.
