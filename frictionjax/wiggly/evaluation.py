@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
+from .bracket_values import Found
 from .cell_sums import (
     NOT_ASKED,
     CellWay,
@@ -17,7 +18,7 @@ from .lane import Sums
 from .layout import Layout
 from .path import Path, states_at
 from .status import Status
-from .stops import Found, states_of, stops_of, surveys_at
+from .stops import states_of, stops_of, surveys_at
 
 _RESIDUAL_SHARE = 0.05  # of the energy dissipated; solutions leave about 1e-6 of it
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
+from .bracket_values import Found
 from .brackets import gaps_of, shifts_of
 from .job_queue import Arrivals, Jobs, Legs
 from .lane import Cells, LaneScene, Sums
@@ -17,7 +18,6 @@ from .path import Path, states_at
 from .rosenbrock import Tableau
 from .starts import Ground, Starts, slow_share, starts_of
 from .status import Status
-from .stops import Found
 from .windows import Plan, Windows, plan_windows
 
 WORKERS = 2  # XLA runs each queue of lanes on one core

@@ -9,26 +9,11 @@ import numpy as np
 from ..arguments import Real
 from ..programs import Program, in_chunks
 from ..scene import Scene
-from .job_queue import Arrivals, Legs
+from .bracket_values import Found
 from .layout import Layout, Slide
 from .survey import SURPLUS, WORK, Survey, surveys_of
 
 _CHUNK = 2048  # stops of one compiled call
-
-
-class Found(NamedTuple):
-    """Values at all stops of a layout, shape (S,), and of the legs that lead to them.
-
-    `gap`: how closely brackets have closed, in eps; `how`: as in `Answers`.
-    `steps`, `rejected`: of each cell.
-    """
-
-    arrivals: Arrivals
-    legs: Legs
-    gap: np.ndarray
-    how: np.ndarray
-    steps: np.ndarray
-    rejected: np.ndarray
 
 
 @Program
