@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import reference as ref
+from by_hand import piecewise
 from scipy.integrate import solve_ivp
-from test_trajectories import piecewise
 
 import frictionjax as fx
 from frictionjax.wiggly.tolerance import _of_few_wells

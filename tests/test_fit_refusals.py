@@ -3,7 +3,7 @@
 import jax
 import numpy as np
 import pytest
-from test_fit_profile import ANGULAR, HOMOTHETIC, SLANTED, slopes_of
+from designs import ANGULAR, HOMOTHETIC, SLANTED, slopes_of
 
 import frictionjax as fx
 from frictionjax.design.profile_status import ProfileStatus

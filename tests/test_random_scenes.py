@@ -2,10 +2,10 @@
 
 import math
 
+import by_hand as known
 import numpy as np
 import pytest
 import reference as ref
-import test_trajectories as known
 
 import frictionjax as fx
 

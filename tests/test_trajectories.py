@@ -1,55 +1,18 @@
 """All bristles, supports and loads against independent trajectories."""
 
 import math
-from dataclasses import dataclass
 
 import jax.numpy as jnp
 import numpy as np
 import pytest
 import reference as ref
+from by_hand import Case, angular, piecewise, sine_load, slanted, vertical
 from scipy.interpolate import CubicSpline
 
 import frictionjax as fx
 
 EPS = 0.02
 TIMES = np.linspace(0.0, 3.0, 61)
-
-
-@dataclass(frozen=True)
-class Case:
-    scene: fx.Scene
-    system: ref.System
-    gamma: float
-    z0: float
-
-
-def vertical(k, rest, h):
-    return lambda eta: (0.0, 0.0, k * (rest - h + eta))
-
-
-def slanted(k, rest, h, theta):
-    t, c = math.tan(theta), math.cos(theta)
-    return lambda eta: (-eta * t, -t, k / c * (rest - (h - eta) / c))
-
-
-def angular(k, length, h, rest):
-    reach0 = math.sqrt(length**2 - h**2)
-
-    def bristle(eta):
-        drop = h - eta
-        reach = math.sqrt(length**2 - drop**2)
-        force = k * (math.acos(drop / length) - rest) / reach
-        return reach - reach0, drop / reach, force
-
-    return bristle
-
-
-def sine_load(amplitude, period):
-    return lambda t: amplitude * math.sin(ref.TWO_PI * t / period)
-
-
-def piecewise(times, values):
-    return lambda t: float(np.interp(t, times, values))
 
 
 def case(profile, bristle_, support, load_, gamma, z0, **system) -> Case:

@@ -6,9 +6,9 @@ from dataclasses import replace
 import jax
 import numpy as np
 import reference as ref
+from by_hand import piecewise
 from entry import Entry, Truth, every_slip
 from springs import CALM, END, SPACED, Spring, entry_of, scene_of
-from test_trajectories import piecewise
 
 import frictionjax as fx
 

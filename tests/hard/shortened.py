@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 import reference as ref
+from by_hand import piecewise
 from entry import Entry, Truth, load_of, strip_of
-from test_trajectories import piecewise
 
 STAY = 40  # periods of a slide that are kept; tests compare with twice as many
 _LEAST = 4

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 import reference as ref
+from by_hand import piecewise
 from entry import METHODS, Entry, Truth, plain
 from scipy.optimize import brentq
-from test_trajectories import piecewise
 
 import frictionjax as fx
 
