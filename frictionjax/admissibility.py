@@ -8,12 +8,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .arguments import Real, as_text, is_concrete, require
+from .arguments import Real, is_concrete, no_more, require
 from .bristles import AbstractBristle
 from .clearance import clearance
 from .coefficients import Coefficients, coefficients_jit
-from .digits import require_digits
 from .extrema import smallest
+from .given_rest import require_given
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
 from .programs import Program, in_chunks
 from .supports import AbstractSupport
@@ -127,20 +127,21 @@ def require_reach(potential: AbstractPotential, eps: Real) -> None:
 
     `G = 1 + A'(eta) w' > 0` (eq. 3.31), and of a rod that only its tip touches the surface,
     `w' < cot(theta)` of Section 3.3 at the angle in use; of a `GivenPotential` that W and Q
-    keep their digits. Raises `ValueError` with the eps below which it holds.
+    keep their digits, and that Q is 1-periodic and bounded. Raises `ValueError` with the
+    eps below which it holds.
     """
     if not is_concrete(potential, eps):
         return
     sizes = np.unique(np.asarray(eps, dtype=float))
     fits = _fits(potential, sizes)
     if np.all(fits):
-        require_digits(potential, sizes)
+        require_given(potential, sizes)
         return
     worst = float(sizes[~fits][0])
     limit = largest_eps(potential, worst)
     stretch = float(_margins(potential, np.array([worst]))[0][0])
     fails = "the rod cuts the surface" if stretch > 0 else "G = dz/dp > 0 fails"
-    require(False, "eps", worst, f"eps < {as_text(limit)}, where {fails}")
+    require(False, "eps", worst, f"eps < {no_more(limit)}, where {fails}")
 
 
 def largest_eps(potential: AbstractPotential, upper: float) -> float:

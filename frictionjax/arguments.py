@@ -1,5 +1,6 @@
 """What every entry point asks of its arguments: 64-bit, finite, in range."""
 
+import decimal
 import inspect
 from types import CellType
 from typing import Any
@@ -132,6 +133,24 @@ def as_text(value: Any) -> str:
     if array.ndim == 0:
         return f"{float(array):.6g}"
     return np.array2string(array, threshold=6, precision=6)
+
+
+def no_less(value: float, digits: int = 6) -> str:
+    """A limit from below in so many digits, rounded up: what is named is allowed."""
+    return _rounded(value, digits, decimal.ROUND_CEILING)
+
+
+def no_more(value: float, digits: int = 6) -> str:
+    """A limit from above in so many digits, rounded down: what is named is allowed."""
+    return _rounded(value, digits, decimal.ROUND_FLOOR)
+
+
+def _rounded(value: float, digits: int, rounding: str) -> str:
+    if not np.isfinite(value):
+        return f"{value:g}"
+    exact = decimal.Decimal(float(value))
+    context = decimal.Context(prec=digits, rounding=rounding)
+    return f"{float(context.plus(exact)):.{digits}g}"
 
 
 def require(condition: Any, name: str, value: Any, allowed: str) -> None:

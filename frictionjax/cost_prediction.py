@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .admissibility import require_reach
-from .arguments import as_real, require, require_flags, require_real
+from .arguments import as_real, no_less, require, require_flags, require_real
 from .grids import cells_of, grid_of
 from .limit_system import require_start_in_strip
 from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
@@ -166,7 +166,9 @@ def fit_budget(
         cost = predict_cost(scene, values, gamma, accuracy, ts, method)
         if cost.seconds <= budget:
             return Affordable(values, accuracy, cost)
-    needs = f"at least {cost.seconds:.2g} s, for {values.size} eps at {accuracy:.0e}"
+    needs = (
+        f"at least {no_less(cost.seconds, 2)} s, for {values.size} eps at {accuracy:.0e}"
+    )
     raise ValueError(f"budget = {budget:g}: needs {needs}")
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array
 
 from .admissibility import admissible_coefficients
@@ -17,6 +18,8 @@ from .profiles.slope_errors import AbstractSampled
 from .surroundings import with_nan
 
 _SLACK = 1e-10  # of the interval; rounding of l - Phi' at |l| = 1e4 rho is 1e-12
+_SPACINGS = 8  # of l: two each of l, z and Phi', and of what z is solved from
+_SPACING = float(np.finfo(np.float64).eps)
 _STEPS = 6  # of Newton: H' is a parabola at worst, where xi is close to rho
 
 
@@ -123,15 +126,20 @@ def limit_dissipation(
     v: Real,
     xi: Real,
     slack: Real | float = 0.0,
+    load: Real | float = 0.0,
 ) -> Real:
     """`M(v, xi) = |v| K(xi) + chi(xi)` (eq. 5.4), infinite outside the rho interval.
 
     On a slide xi = l - Phi'(z) is rho but for rounding, so the interval is wider by
-    1e-10 (rho_plus - rho_minus), and by `slack` N where l and Phi' are so much larger than
-    rho that a few of their units in the last place are more. K is that of the nearest xi
-    inside.
+    1e-10 (rho_plus - rho_minus), and by `slack` N. `load`: l in N, of which xi is what is
+    left: eight spacings of floats at l and at Phi' = l - xi are added, which are more than
+    that where l is 1e5 rho or larger. From xi alone nobody can tell: without `load`, and
+    for a Phi' that is itself a difference of large forces, `slack` has to. K is that of
+    the nearest xi inside.
     """
-    slack = slack + _SLACK * (found.rho_plus - found.rho_minus)
+    size = jnp.maximum(jnp.abs(load), jnp.abs(load - xi))
+    lost = jnp.where(jnp.asarray(load) == 0, 0.0, _SPACINGS * _SPACING * size)
+    slack = slack + lost + _SLACK * (found.rho_plus - found.rho_minus)
     inside = (xi >= found.rho_minus - slack) & (xi <= found.rho_plus + slack)
     held = jnp.clip(xi, found.rho_minus, found.rho_plus)
     return jnp.where(inside, jnp.abs(v) * dual_dissipation(potential, held), jnp.inf)

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .arguments import Real, is_concrete, is_known, require
+from .arguments import Real, is_concrete, is_known, no_less, no_more, require
 from .coefficients import Coefficients, coefficients_jit
 from .friction_law import dissipation_potential
 from .outcomes import Outcome, counted, flags, outcomes
@@ -115,7 +115,8 @@ def require_start_in_strip(scene: Scene) -> None:
     _, lower, upper = (float(v[0]) for v in strips_at(scene, *rho, np.zeros(1)))
     slack = 4 * float(np.finfo(float).eps) * max(abs(lower), abs(upper))
     z0 = float(scene.z0)
-    needs = f"z_minus(0) <= z0 <= z_plus(0), the interval [{lower:.9g}, {upper:.9g}]"
+    low, high = no_less(lower, 9), no_more(upper, 9)
+    needs = f"z_minus(0) <= z0 <= z_plus(0), the interval [{low}, {high}]"
     require(lower - slack <= z0 <= upper + slack, "scene.z0", z0, needs)
 
 

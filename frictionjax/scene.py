@@ -13,11 +13,12 @@ from .admissibility import admissible_coefficients, require_convex
 from .arguments import (
     Real,
     as_real,
-    as_text,
     in_64_bits,
     is_concrete,
     is_known,
     known_numbers,
+    no_less,
+    no_more,
     require,
     require_real,
     require_x64,
@@ -253,7 +254,9 @@ def require_told_apart(scene: Scene, eps: Any) -> None:
         return
     least, far = float(np.min(np.asarray(eps, dtype=float))), float(_farthest(scene))
     smallest = _TOLD_APART * far
-    allowed = f"eps >= {smallest:.3g}: wells at {far:.3g} m that floats can tell apart"
+    allowed = (
+        f"eps >= {no_less(smallest, 4)}: wells at {far:.3g} m that floats can tell apart"
+    )
     require(least >= smallest, "eps", least, allowed)
 
 
@@ -280,7 +283,7 @@ def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " 
     # 3 * 0.1 > 0.3, and what is added up n times is n spacings off.
     slack = (_ROUNDED + known.size) * np.spacing(end)
     inside = known[0] >= -slack and known[-1] <= end + slack
-    require(inside, "ts", known[[0, -1]], f"times in [0, duration] = [0, {as_text(end)}]")
+    require(inside, "ts", known[[0, -1]], f"times in [0, duration] = [0, {no_more(end)}]")
     if known[0] >= 0 and known[-1] <= end:
         return ts
     return jnp.asarray(np.clip(known, 0.0, end))

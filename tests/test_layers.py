@@ -23,6 +23,7 @@ FLOORS = [
     {"profiles", "bristles", "supports", "loads"},
     {"potentials"},
     {"coefficients", "clearance", "digits"},
+    {"given_rest"},
     {"admissibility"},
     {"friction_law"},
     {"scene", "measured"},

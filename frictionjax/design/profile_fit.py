@@ -240,7 +240,7 @@ def _bounds_of(name: str, number: Any, bristle: Any, given: Any) -> tuple[float,
     low, high = np.clip(np.asarray(given, dtype=float), *number.range_of(bristle)).tolist()
     own = float(number.now(bristle))
     inside = low <= own <= high
-    require(inside, label, (low, high), f"low <= {own:.6g} <= high")
+    require(inside, label, (low, high), f"low <= {own!r} <= high")
     return low, high
 
 

@@ -5,7 +5,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..arguments import as_text
+from ..arguments import as_text, no_less, no_more
 from .constraints import ORDERS, Layout, basis
 from .law import AbstractLaw, FreeLaw
 from .targets import Geometry, extreme_slopes
@@ -120,8 +120,8 @@ def reachable_text(
     parts = []
     for index, (high, low) in enumerate(limits):
         name = f"targets[{index}]: " if len(limits) > 1 else ""
-        span = [f"rho_plus < {as_text(high)} N"] if np.isfinite(high) else []
-        span += [f"rho_minus > {as_text(low)} N"] if np.isfinite(low) else []
+        span = [f"rho_plus < {no_more(high)} N"] if np.isfinite(high) else []
+        span += [f"rho_minus > {no_less(low)} N"] if np.isfinite(low) else []
         parts.append(f"{name}{' and '.join(span) or 'any rho_plus > 0 > rho_minus'}")
     ratios = ", ".join(as_text(p / m) for p, m in asked if np.isfinite(p / m))
     parts.append(

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arguments import require
+from ..arguments import no_more, require
 from ..profiles.heights import find_period
 from .samples import Samples
 
@@ -73,7 +73,8 @@ def _require_short(samples: Samples, missing: np.ndarray, filled: np.ndarray) ->
     gap = max(float(x[after] - x[before]) - spacing, count * spacing)
     if count > 1:
         period = find_period(x, filled, _HARMONICS)
-        needs = f"a gap <= {_LONGEST * period:.4g} m, a tenth of the period {period:.4g} m"
+        most = no_more(_LONGEST * period, 4)
+        needs = f"a gap <= {most} m, a tenth of the period {period:.4g} m"
         said = f"{gap:.4g} m of missing heights"
         require(gap <= _LONGEST * period, samples.place(row, start), said, needs)
     return count

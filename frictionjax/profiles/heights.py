@@ -4,7 +4,14 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from ..arguments import numbers_of, require, require_real, require_whole, without_masked
+from ..arguments import (
+    no_more,
+    numbers_of,
+    require,
+    require_real,
+    require_whole,
+    without_masked,
+)
 from .slope_errors import SlopeErrors
 from .smoothing import gaussian_gain
 from .steepest import Waves
@@ -132,7 +139,7 @@ def fit_heights(
     span, spacing = float(np.ptp(x)), float(np.ptp(x)) / (x.size - 1)
     if period is None:
         period = find_period(x, heights, harmonics)
-    needs = f"0 < period <= {span / 1.5:.6g} (1.5 periods in the trace)"
+    needs = f"0 < period <= {no_more(span / 1.5)} (1.5 periods in the trace)"
     require_real("period", period, needs, lambda p: 0 < p <= span / 1.5)
     most = max(1, int(0.5 * period / spacing) - 1)
     needs = f"harmonics <= {most} at {period / spacing:.3g} samples a period"

@@ -7,7 +7,15 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_known, known_numbers, require, require_real
+from ..arguments import (
+    Real,
+    as_real,
+    is_known,
+    known_numbers,
+    no_more,
+    require,
+    require_real,
+)
 from .profile import AbstractProfile
 
 _A_CORNER = 8  # samples in the narrowest corner, and on the shortest flank
@@ -122,5 +130,5 @@ def _require_room(corners: Corners, radius: float) -> None:
     half = 0.5 * corners.width
     taken = np.maximum(half + np.roll(half, -1), _NARROWEST)
     largest = radius * float(np.min(1 + corners.straight / taken))
-    needs = f"radius <= {largest:.6g}, or the corners of a flank overlap"
+    needs = f"radius <= {no_more(largest)}, or the corners of a flank overlap"
     require(radius <= largest * (1 + 1e-12), "profile.radius", radius, needs)

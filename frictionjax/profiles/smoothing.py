@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import require, require_real
+from ..arguments import no_more, require, require_real
 
 _LEAST = 1e-2  # of the fundamental: what a longer filter leaves is no surface any more
 
@@ -21,7 +21,7 @@ def gaussian_gain(length: Any, period: float, harmonics: int) -> np.ndarray:
     """
     most = period * math.sqrt(-math.log2(_LEAST))
     require_real("smoothing", length, "a length > 0", lambda size: size > 0)
-    needs = f"smoothing <= {most:.6g}: a longer one leaves less than 1% of the surface"
+    needs = f"smoothing <= {no_more(most)}: a longer one leaves less than 1% of the surface"
     require(float(length) <= most, "smoothing", length, needs)
     waves = np.arange(1, harmonics + 1) * (float(length) / period)
     return np.exp2(-(waves**2))

@@ -29,6 +29,8 @@ _NOISE = (
     "rows lies above the friction of the mean profile, which is the one above.)"
 )
 _BRISTLE = ("alpha", "a")  # the bristle's own, the same on every surface
+# alpha < 0: rho_plus, of a slide to the right, is made by the smallest slope.
+_SLOPES = {"omega_plus": "left", "omega_minus": "right"}
 _FITTED = ("explained", "", "share of the variance that is periodic")
 
 
@@ -99,15 +101,29 @@ def coefficient_table(found: Coefficients, error: dict[str, float] | None = None
     `error`: standard errors over the rows of a map, beside those of `errors_of`.
     """
     numbers, error = coefficients_of(found), errors_of(found, error)
+    pulls = numbers.get("alpha", 0.0) < 0
     rows = [
-        (name, _signed(numbers[name]), *_plus_minus(name, error), unit.ljust(4), meaning)
+        (
+            name,
+            _signed(numbers[name]),
+            *_plus_minus(name, error),
+            unit.ljust(4),
+            _meaning(name, meaning, pulls),
+        )
         for name, unit, meaning in _LAW
         if name in numbers
     ]
     added = ("+-",) if error else ()
     text = _with_meanings(("coefficient", "value", *added, "unit", "meaning"), rows)
-    pulls = pulling_text(numbers.get("alpha", 0.0))
-    return f"{text}\n({pulls})" if pulls else text
+    note = pulling_text(numbers.get("alpha", 0.0))
+    return f"{text}\n({note})" if note else text
+
+
+def _meaning(name: str, meaning: str, pulls: bool) -> str:
+    """What a number means; where a bristle pulls, the normal forces change sides."""
+    if not (pulls and name in _SLOPES):
+        return meaning
+    return f"{meaning} of a slide to the {_SLOPES[name]}"
 
 
 def _plus_minus(name: str, error: dict[str, float] | None) -> tuple[str, ...]:
@@ -121,7 +137,13 @@ def row_table(rows: RowCoefficients) -> str:
     """Friction over the rows of a map: mean and standard deviation of a row."""
     mean, std = rows.mean, rows.std
     lines = [
-        (name, _signed(mean[name]), f"{std[name]:.2g}", unit.ljust(4), meaning)
+        (
+            name,
+            _signed(mean[name]),
+            f"{std[name]:.2g}",
+            unit.ljust(4),
+            _meaning(name, meaning, mean["alpha"] < 0),
+        )
         for name, unit, meaning in (*_LAW, _FITTED)
         if name not in _BRISTLE
     ]
