@@ -33,7 +33,8 @@ class Coefficients(eqx.Module):
     normal force, and mu = rho/alpha is friction per normal force at rest only.)
 
     `omega_plus_error` and the like: how far off they may be where the surface is known by
-    samples (`SlopeErrors`); None where it is exact, or nothing says so.
+    samples (`SlopeErrors`); None where it is exact, or nothing says so. `omega_plus_taken`
+    and `omega_minus_taken`: part of these, what a smoothing filter has taken off.
     """
 
     rho_plus: Real
@@ -50,6 +51,8 @@ class Coefficients(eqx.Module):
     omega_minus_error: OfBristle = None
     rho_plus_error: OfBristle = None
     rho_minus_error: OfBristle = None
+    omega_plus_taken: OfBristle = None
+    omega_minus_taken: OfBristle = None
 
     def __repr__(self) -> str:
         if not is_known(self):

@@ -1,5 +1,6 @@
 """The limit friction law: coefficients, dissipation potential, dual form."""
 
+import dataclasses
 from collections.abc import Callable
 from typing import Any
 
@@ -56,7 +57,14 @@ def _with_errors_of_samples(wiggle: AbstractPotential, found: Coefficients) -> C
     known = profile.slope_errors() if isinstance(profile, AbstractSampled) else None
     if known is None:
         return found
-    return with_errors(found, jnp.asarray(known.error_plus), jnp.asarray(known.error_minus))
+    found = with_errors(
+        found, jnp.asarray(known.error_plus), jnp.asarray(known.error_minus)
+    )
+    taken = known.taken_plus, known.taken_minus
+    if not any(taken):
+        return found
+    plus, minus = map(jnp.asarray, taken)
+    return dataclasses.replace(found, omega_plus_taken=plus, omega_minus_taken=minus)
 
 
 def dissipation_potential(rho_plus: Real, rho_minus: Real, v: Real) -> Real:

@@ -38,11 +38,9 @@ def _require_periodic(found: Noises, eps: np.ndarray) -> None:
     if not wrong.any():
         return
     which, order = (int(i) for i in np.argwhere(wrong)[0])
-    jump = (
-        f"{('Q', 'its slope')[order]} jumps by {found.seam[which, order]:.3g} at the seam"
-    )
+    jump = f"{('Q', 'its slope')[order]} jumps by {found.seam[which, order]:.3g}"
     name = f"potential.Q at eps = {eps[which]:.6g}"
-    require(False, name, f"{jump} Y = 0", "a 1-periodic C^2 function of Y")
+    require(False, name, f"{jump} at the seam Y = 0", "a 1-periodic C^2 function of Y")
 
 
 def _require_bounded(potential: GivenPotential, least: float) -> None:
@@ -56,6 +54,8 @@ def _require_bounded(potential: GivenPotential, least: float) -> None:
     felt = least * largest[now] > _FELT * found.range[now]
     known = np.isfinite(growth[now - 1]) or np.isfinite(growth[now])
     name = f"potential.Q at eps = {least:.6g}"
-    said = f"|Q| and |Q'| up to {largest[now]:.3g}, {growth[now]:.3g} times that at eps/8"
+    said = (
+        f"|Q| and |Q'| up to {largest[now]:.3g}, {growth[now]:.3g} times as much at eps/8"
+    )
     needs = "Q and Q' bounded as eps -> 0 (eq. 2.8), or rho is not the largest W'"
     require(not (grows and felt and known), name, said, needs)

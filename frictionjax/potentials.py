@@ -211,8 +211,8 @@ class GivenPotential(AbstractPotential):
     """The abstract setting: `W` and `Q` as functions (eq. 2.8), z its own tip coordinate.
 
     `W_fn(Y)` in N: 1-periodic, C^2; `Q_fn(eps, Y)` in N/m: 1-periodic and C^2 in Y, and
-    bounded with its derivative as eps -> 0, both checked at the eps in use; scalar functions written with
-    `jax.numpy`.
+    bounded with its derivative as eps -> 0; scalar functions written with `jax.numpy`. Q is
+    looked at where an eps is in use, and refused there.
 
     Raises `ValueError` where `W` does not repeat as a C^2 function or is constant.
     """

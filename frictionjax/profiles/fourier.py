@@ -17,6 +17,7 @@ from .slope_errors import (
     of_waves,
     require_slope_error,
     warn_of,
+    with_taken,
 )
 from .steepest import Waves, extreme_slopes
 
@@ -26,7 +27,8 @@ class Fourier(AbstractSampled):
 
     `cos`, `sin`: coefficients in periods, shape (harmonics,) each. `slope_error`: of
     omega_plus and omega_minus, shape (2,), where the series stands for a measured surface
-    (`from_heights`); None where it is exact.
+    (`from_heights`); None where it is exact. `slope_taken`: what of it a smoothing filter
+    has taken off; None without one.
 
     Raises `ValueError` where the shapes differ, a coefficient is not finite or all are 0.
     """
@@ -35,6 +37,10 @@ class Fourier(AbstractSampled):
     sin: Float[Array, " harmonics"] = eqx.field(converter=as_real)
     slope_error: Float[Array, "2"] | None = eqx.field(
         default=None, converter=lambda error: None if error is None else as_real(error)
+    )
+
+    slope_taken: Float[Array, "2"] | None = eqx.field(
+        default=None, converter=lambda taken: None if taken is None else as_real(taken)
     )
 
     def __check_init__(self):
@@ -49,6 +55,7 @@ class Fourier(AbstractSampled):
         require(np.all(np.isfinite(sin)), "profile.sin", sin, "finite coefficients")
         require(np.any(cos) or np.any(sin), "profile.cos", cos, "a coefficient != 0")
         require_slope_error(self.slope_error)
+        require_slope_error(self.slope_taken, "slope_taken")
 
     def __call__(self, y: Real) -> Real:
         return fourier_sum(self.cos, self.sin, jnp.asarray(y))
@@ -62,7 +69,7 @@ class Fourier(AbstractSampled):
         if self.slope_error is None or not is_concrete(self):
             return None
         slopes = extreme_slopes(np.asarray(self.cos) - 1j * np.asarray(self.sin))
-        return SlopeErrors(*slopes, *map(float, self.slope_error))
+        return with_taken(slopes, self.slope_error, self.slope_taken)
 
     @classmethod
     def from_heights(
@@ -80,14 +87,17 @@ class Fourier(AbstractSampled):
         first, since grooves cross the rows at an angle (`.explained`: their mean).
         `period`: in m; found in the data where it is None. `harmonics`: how many.
         `smoothing`: cut-off in m of a Gaussian filter, by which waves of that length are
-        halved (ISO 16610-21); None: no filter.
+        halved (ISO 16610-21); None: no filter. It lowers the slopes: an estimate of what it
+        takes off is `.slopes.taken_plus` and `.taken_minus`, a part of their errors.
 
         A straight trend and all harmonics are fitted together by least squares, which
         averages over the periods in the trace. Returns `.profile`, `.period` in m,
         `.explained`, the share of the detrended variance that the periodic profile
         explains, `.slopes`, the steepest slopes with their errors (corners that so few
-        harmonics overshoot, noise, too few samples), and `.smoothing`. `w` =
-        height/period, so slopes are those measured.
+        harmonics overshoot, noise, too few samples, the filter), and `.smoothing`. `w` =
+        height/period, so slopes are those measured. Noise is told from the surface where it
+        is white; of noise that neighbours share the errors know too little, and of one
+        that repeats with the period nothing.
 
         Samples that are masked (`numpy.ma`) in either are left out.
 
@@ -108,4 +118,5 @@ class Fourier(AbstractSampled):
     ) -> "tuple[Fourier, SlopeErrors]":
         """A series in periods with the errors that measured waves leave to its slopes."""
         errors = of_waves(extreme_slopes(cos - 1j * sin), waves)
-        return cls(as_real(cos), as_real(sin), as_real(errors[2:])), errors
+        taken = errors[4:] if any(errors[4:]) else None
+        return cls(cos, sin, errors[2:4], taken), errors

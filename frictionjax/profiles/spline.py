@@ -14,6 +14,7 @@ from .slope_errors import (
     require_once,
     require_slope_error,
     warn_of,
+    with_taken,
 )
 from .smoothing import gaussian_gain
 
@@ -30,8 +31,10 @@ class Spline(AbstractSampled):
     A spline through samples of corners, or through noise, is steeper than what was
     measured: `.slope_errors()` says by how much, and 16 heights or more that leave a
     steepest slope open by more than 10% are a `SlopesUndetermined` warning. (Fewer are
-    taken for points of a design.) `slope_error`: of omega_plus and omega_minus, where
-    they are known better than the heights tell, shape (2,).
+    taken for points of a design.) Noise is told from the surface where it is white; noise
+    that neighbours share is not, and the errors are far too small then. `slope_error`: of
+    omega_plus and omega_minus, where they are known better than the heights tell, shape
+    (2,); `slope_taken`: what of it a smoothing filter has taken off.
 
     Raises `ValueError` for fewer than 4 heights, a wrong shape, heights that are not
     finite or all equal, or the first one again at the end.
@@ -39,13 +42,16 @@ class Spline(AbstractSampled):
 
     coefficients: Float[Array, " n"]
     slope_error: Float[Array, "2"] | None = None
+    slope_taken: Float[Array, "2"] | None = None
 
-    def __init__(self, heights: Any, slope_error: Any = None):
+    def __init__(self, heights: Any, slope_error: Any = None, slope_taken: Any = None):
         heights = as_real(heights)
         if is_known(heights):
             _require_heights(heights)
         self.slope_error = None if slope_error is None else as_real(slope_error)
         require_slope_error(self.slope_error)
+        self.slope_taken = None if slope_taken is None else as_real(slope_taken)
+        require_slope_error(self.slope_taken, "slope_taken")
         self.coefficients = _coefficients(heights, jnp)
         if is_concrete(heights):
             warn_of(self.slope_errors(), heights.shape[0], stacklevel=5)  # equinox calls
@@ -55,8 +61,10 @@ class Spline(AbstractSampled):
         """The spline through heights that a Gaussian filter has smoothed.
 
         `length`: its cut-off in periods; waves of that length are halved (ISO 16610-21).
-        The errors of the slopes are those of the smoothed surface, by the noise that the
-        heights show before.
+        The filter lowers the slopes: `.slope_errors()` holds an estimate of what it takes
+        off (`.taken_plus`, `.taken_minus`), which is part of their errors, beside the noise
+        that the heights show before. It is a `SlopesUndetermined` warning where the errors
+        are more than 10%.
 
         Raises `ValueError` as `Spline`, and for a length that is not in (0, 2.5].
         """
@@ -66,7 +74,9 @@ class Spline(AbstractSampled):
         spectrum = np.fft.rfft(known) * np.append(1.0, gain)
         smooth = np.fft.irfft(spectrum, known.size)
         errors = of_heights(known, _steepest(_coefficients(smooth, np)), gain)
-        return cls(smooth, None if errors is None else errors[2:])
+        if errors is None:
+            return cls(smooth)
+        return cls(smooth, errors[2:4], errors[4:])
 
     def slope_errors(self) -> SlopeErrors | None:
         """How far the steepest slopes may be off, if the heights are samples.
@@ -77,7 +87,7 @@ class Spline(AbstractSampled):
             return None
         slopes = _steepest(np.asarray(self.coefficients))
         if self.slope_error is not None:
-            return SlopeErrors(*slopes, *map(float, self.slope_error))
+            return with_taken(slopes, self.slope_error, self.slope_taken)
         return of_heights(np.asarray(self.heights), slopes)
 
     def __check_init__(self):

@@ -6,7 +6,9 @@ samples, so more samples, or half of them, agree with each other and are wrong. 
 not overshoot is the mean slope of a window (a chord). The longest of the chords over one,
 two and three spacings go to the steepest slope of a smooth surface as even powers of the
 spacing, and equal it on a straight flank: so their extrapolation is right for both. Noise
-raises all of them: so they are taken of the waves alone that stand out of the noise.
+raises all of them: so they are taken of the waves alone that stand out of the noise. It is
+taken for white, another one at every sample: noise that neighbours share has the long waves
+of a surface, and one period cannot tell the two apart.
 """
 
 import math

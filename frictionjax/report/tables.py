@@ -116,7 +116,17 @@ def coefficient_table(found: Coefficients, error: dict[str, float] | None = None
     added = ("+-",) if error else ()
     text = _with_meanings(("coefficient", "value", *added, "unit", "meaning"), rows)
     note = pulling_text(numbers.get("alpha", 0.0))
-    return f"{text}\n({note})" if note else text
+    notes = [note for note in (_taken_text(found), note) if note]
+    return "\n".join([text, *(f"({note})" for note in notes)])
+
+
+def _taken_text(found: Coefficients) -> str:
+    """What of the errors of slopes a filter is the cause of; nothing without one."""
+    plus, minus = found.omega_plus_taken, found.omega_minus_taken
+    if plus is None or minus is None:
+        return ""
+    plus, minus = float(plus), float(minus)
+    return f"+-: of omega_plus {plus:.2g}, of omega_minus {minus:.2g} by smoothing"
 
 
 def _meaning(name: str, meaning: str, pulls: bool) -> str:
