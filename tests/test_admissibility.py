@@ -8,6 +8,7 @@ from samples import BRISTLES, pair
 
 import frictionjax as fx
 from frictionjax.admissibility import largest_eps, require_reach
+from frictionjax.arguments import no_more
 from frictionjax.extrema import smallest
 
 SINE = fx.profiles.Sine(0.5)
@@ -115,7 +116,7 @@ def test_largest_eps_against_brute_force(case):
     found = largest_eps(potential, 50.0)
     assert found == pytest.approx(expected, rel=1e-6)
     require_reach(potential, np.array([0.5, 1 - 1e-6]) * found)
-    with pytest.raises(ValueError, match=f"eps = .*needs eps < {found:.6g}, where G"):
+    with pytest.raises(ValueError, match=f"eps = .*needs eps < {no_more(found)}, where G"):
         require_reach(potential, np.array([0.5, 1 + 1e-6]) * found)
 
 
@@ -232,7 +233,9 @@ def test_a_rod_clears_the_surface_at_the_eps_in_use(ratio):
     potential = steep(ratio)
     largest = largest_eps(potential, 1.0)
     require_reach(potential, 0.99 * largest)
-    with pytest.raises(ValueError, match=f"needs eps < {largest:.6g}, where the rod cuts"):
+    with pytest.raises(
+        ValueError, match=f"needs eps < {no_more(largest)}, where the rod cuts"
+    ):
         require_reach(potential, 1.01 * largest)
     assert not cuts(potential, 0.98 * largest)
     assert cuts(potential, 1.1 * largest)
@@ -285,3 +288,61 @@ def test_a_Q_that_keeps_its_digits_is_taken_at_any_eps():
 def test_a_W_that_loses_its_digits_is_refused(W):
     with pytest.raises(ValueError, match=r"potential\.W"):
         require_reach(fx.GivenPotential(W), np.array([1e-3]))
+
+
+def lost_on(part):
+    """Q by hand where `part(Y)`, without loss elsewhere."""
+    by_loss = BY_HAND["exponential"]
+    return lambda eps, Y: jnp.where(part(Y), by_loss(eps, Y), 0.5 * small_sine(Y) ** 2)
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        lambda Y: Y < 0.4,
+        lambda Y: Y > 0.9,
+        lambda Y: jnp.abs(Y - 0.5) < 0.1,
+        lambda Y: (Y > 0.2) & (Y < 0.27),
+    ],
+)
+def test_digits_lost_on_a_part_of_the_period_are_seen(part):
+    with pytest.raises(ValueError, match=r"potential\.Q at eps = 1e-07: noise over"):
+        require_reach(fx.GivenPotential(small_sine, lost_on(part)), np.array([1e-7]))
+
+
+def cosine(Y):
+    return 0.2 * jnp.cos(2 * jnp.pi * Y)
+
+
+@pytest.mark.parametrize(
+    ("Q", "message"),
+    [
+        (lambda eps, Y: 0.2 * jnp.cos(2.2 * jnp.pi * Y), "Q jumps by 0.0382 at the seam"),
+        (lambda eps, Y: cosine(Y) + 1e-4 * Y, "Q jumps by 0.0001 at the seam"),
+        (lambda eps, Y: Y * (1 - Y), "its slope jumps by 2 at the seam"),
+        (lambda eps, Y: cosine(Y) / eps, "126, 8 times as much at eps/8.*bounded as eps"),
+        (lambda eps, Y: cosine(Y) / jnp.sqrt(eps), "2.83 times as much at eps/8"),
+        (lambda eps, Y: 1e-6 * cosine(Y) / eps**2, "64 times as much at eps/8"),
+    ],
+)
+def test_a_Q_that_is_not_periodic_or_not_bounded_is_refused(Q, message):
+    with pytest.raises(ValueError, match=rf"potential\.Q at eps = 0\.01 = .*{message}"):
+        require_reach(fx.GivenPotential(small_sine, Q), np.array([0.1, 0.01]))
+
+
+@pytest.mark.parametrize(
+    ("Q", "sizes"),
+    [
+        (lambda eps, Y: small_sine(Y) ** 2 / 2 + eps * small_sine(Y) ** 3, [0.5, 1e-9]),
+        (lambda eps, Y: cosine(Y) * jnp.log(eps), [0.3, 0.01, 1e-10]),
+        (lambda eps, Y: 1e-3 * cosine(Y) / (1e-4 + eps), [0.1]),
+        (lambda eps, Y: 1e-15 * cosine(Y) / eps, [1e-3]),
+        (lambda eps, Y: jnp.exp(-(((Y - 0.4) / 2e-3) ** 2)), [1e-6]),
+        (lambda eps, Y: jnp.abs(jnp.sin(2 * jnp.pi * Y - 1)), [1e-5]),
+        (BY_HAND["exponential"], [1e-4, 1e-5]),
+    ],
+)
+def test_a_bounded_Q_with_kinks_bumps_or_a_logarithm_is_taken(Q, sizes):
+    potential = fx.GivenPotential(small_sine, Q)
+    for size in sizes:
+        require_reach(potential, np.array([size]))

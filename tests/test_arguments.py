@@ -1,10 +1,14 @@
 """What every entry point refuses, by the argument's name, value and what is allowed."""
 
+import re
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.arguments import no_less, no_more
+from frictionjax.scene import require_times, require_told_apart
 from frictionjax.wiggly import engine
 
 SURFACE, BRISTLE = fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0)
@@ -107,10 +111,10 @@ def test_eps_that_is_no_number_nor_list_is_named(value):
 def test_wells_that_floats_cannot_tell_apart_are_refused(call):
     """At eps = 1e-20 a run did not end; at 1e-15 all was NaN, after 20 s."""
     with pytest.raises(
-        ValueError, match=r"eps = 1e-20: needs eps >= 9.09e-13: wells at 1 m"
+        ValueError, match=r"eps = 1e-20: needs eps >= 9.095e-13: wells at 1 m"
     ):
         call(SCENE, 1e-20)
-    with pytest.raises(ValueError, match=r"eps = 1e-07: needs eps >= 9.09e-06"):
+    with pytest.raises(ValueError, match=r"eps = 1e-07: needs eps >= 9.095e-06"):
         call(scene_of(fx.supports.Spring(1e-7)), 1e-7)
 
 
@@ -135,3 +139,27 @@ def test_wrong_solutions_do_not_balance_at_the_smallest_eps(monkeypatch, gamma):
     monkeypatch.setattr(engine, "planned", carelessly)
     found = fx.solve(SCENE, 1e-12, gamma, [0.0, 1.0, 3.0])
     assert found.status is fx.Status.UNBALANCED
+
+
+@pytest.mark.parametrize("value", [5.00049e-13, 9.0949470177e-13, 1 / 3, -0.1234567, 12, 0])
+@pytest.mark.parametrize("digits", [2, 4, 6])
+def test_a_limit_that_is_named_is_allowed(value, digits):
+    low, high = float(no_less(value, digits)), float(no_more(value, digits))
+    assert high <= value <= low
+    assert low - high <= 10.0 ** (1 - digits) * abs(value)
+
+
+def test_the_smallest_eps_named_in_an_error_is_accepted():
+    for load in (1.0, 5.4987, 0.31):
+        scene = scene_of(load=fx.loads.Ramp(0.1, load))
+        with pytest.raises(ValueError, match="needs eps >= ") as caught:
+            require_told_apart(scene, 1e-20)
+        named = re.search(r"eps >= (\S+):", str(caught.value)).group(1)
+        require_told_apart(scene, float(named))
+
+
+def test_the_end_named_in_an_error_is_a_time_that_is_accepted():
+    scene = fx.Scene(SURFACE, BRISTLE, SCENE.support, SCENE.load, 1.23456789)
+    with pytest.raises(ValueError, match=r"\[0, 1\.23456\]"):
+        require_times(scene, [0.0, 1.3])
+    require_times(scene, [0.0, 1.23456])

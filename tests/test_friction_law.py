@@ -1,5 +1,7 @@
 """The friction law and its dual: R, K, M."""
 
+from functools import partial
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -132,6 +134,23 @@ def test_what_the_limit_dissipates_on_its_slides_is_finite(stiffness, amplitude)
     assert slides.size > 500
     rate = M_OF_SLIDES(scene.potential, found, speed[slides][:500], xi[:500])
     assert rate == pytest.approx(0.1 * np.abs(speed[slides][:500]), rel=1e-7)
+
+
+@pytest.mark.parametrize("stiffness", [2.0, 2e-3])
+@pytest.mark.parametrize("rate", [1e4, 1e6, 1e9])
+def test_loads_far_above_rho_are_told_by_the_load(rate, stiffness):
+    """At l = 1e6 N one spacing of floats is 1e-10 N: 1,159 of 1,201 were infinite."""
+    parts = fx.profiles.Sine(0.1), fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
+    found, wiggle = fx.friction(*parts), fx.potential(*parts)
+    load = 0.7 + rate * np.linspace(1.0, 2.0, 101)
+    z = (load - 0.1) / stiffness
+    xi = load - stiffness * z
+    speed = np.full(101, rate / stiffness)
+    law = jax.jit(jax.vmap(partial(limit_dissipation, wiggle, found)))
+    told = law(speed, xi, load=load)
+    assert np.all(np.isfinite(told))
+    wrong = law(speed, xi + 20 * np.spacing(2 * rate) + 1e-9, load=load)
+    assert np.all(np.isinf(wrong))
 
 
 def test_a_batch_equals_its_lanes():

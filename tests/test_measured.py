@@ -188,8 +188,8 @@ def test_slopes_of_a_noisy_map_are_known_better_than_those_of_a_row():
         assert abs(errors.omega_plus - exact[0]) < errors.error_plus
         assert abs(errors.omega_minus - exact[1]) < errors.error_minus
     assert found.relative < 0.4 * one.relative < 0.04
-    smooth = fit_profile(measured, 1e-5, 3, smoothing=5e-6)
-    assert smooth.smoothing == 5e-6
+    smooth = fit_profile(measured, 1e-5, 3, smoothing=1e-6)
+    assert smooth.smoothing == 1e-6
     assert smooth.slopes.omega_plus < found.omega_plus
 
 

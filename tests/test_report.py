@@ -178,8 +178,10 @@ def test_a_sawtooth_in_a_file_is_told_what_its_samples_leave_open(tmp_path):
     errors = errors_of(fx.friction(job.scene))
     assert errors["omega_plus"] > 0.02
     assert set(errors) == set(coefficients_of(LAW)) - {"alpha", "a"}
-    smooth = read_job(None, **fit, smoothing=5e-6)
-    assert any("cut-off 5e-06 m" in line for line in smooth.notes)
+    longer = read_job(None, **fit, smoothing=5e-6)
+    assert any("cut-off 5e-06 m" in line for line in longer.notes)
+    assert any("a shorter smoothing takes off less" in line for line in longer.notes)
+    smooth = read_job(None, **fit | {"harmonics": 16}, smoothing=1e-6)
     assert not any("steepest slopes open" in line for line in smooth.notes)
     with pytest.raises(ValueError, match="smoothing = 1e-06: needs --heights FILE"):
         read_job(None, period=None, harmonics=None, row=None, smoothing=1e-6)
@@ -201,3 +203,16 @@ def test_a_named_bristle_takes_the_place_of_the_scenes():
     assert isinstance(job.scene.profile, fx.profiles.Sine)
     with pytest.raises(ValueError, match="row = 2: needs --heights FILE"):
         read_job(None, **(fit | {"row": 2}))
+
+
+def test_where_a_bristle_pulls_the_sides_of_normal_forces_are_named():
+    surface = fx.profiles.Fourier([0.0, 0.004], [0.02, 0.0])
+    for alpha, right, left in ((2.0, "plus", "minus"), (-2.0, "minus", "plus")):
+        law = fx.friction(surface, fx.bristles.Homothetic(alpha))
+        assert law.rho_plus / law.normal_plus == pytest.approx(
+            float(getattr(law, f"omega_{right}"))
+        )
+        lines = {line.split()[0]: line for line in coefficient_table(law).splitlines()}
+        named = alpha < 0
+        assert lines[f"omega_{right}"].endswith("of a slide to the right") == named
+        assert lines[f"omega_{left}"].endswith("of a slide to the left") == named

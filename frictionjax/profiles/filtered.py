@@ -6,7 +6,11 @@ import numpy as np
 
 from .steepest import Waves, extreme_slopes, series, steepest
 
-_MARGIN = 0.25  # of the error: without, 12% of 92 noisy surfaces were further off than told
+# Of 360 surfaces with noise of 1%, stated errors hold of 96.5% (of 98% at 0.3%); with half
+# this margin of 94.7%. Where noise leaves the waves before the filter open by more than
+# `_KNOWN` they only bound what is said: with a margin there too, a sine with 0.6% of noise
+# was called open in one of ten, now in one of 25.
+_MARGIN, _KNOWN = 0.5, 0.2  # of the error; of the slope
 
 
 def taken_off(waves: Waves, samples: np.ndarray | None = None) -> tuple[float, float]:
@@ -34,4 +38,6 @@ def _taken(waves: Waves, samples: np.ndarray | None) -> float:
     less = before.slope - steepest(waves, smooth).slope
     if not math.isfinite(before.error):
         return max(again, 0.0)
-    return max(0.0, min(max(again, less + _MARGIN * before.error), less + before.error))
+    known = before.error < _KNOWN * before.slope
+    least = less + (_MARGIN if known else -1.0) * before.error
+    return max(0.0, min(max(again, least), less + before.error))

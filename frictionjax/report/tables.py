@@ -152,7 +152,7 @@ def row_table(rows: RowCoefficients) -> str:
             _signed(mean[name]),
             f"{std[name]:.2g}",
             unit.ljust(4),
-            _meaning(name, meaning, mean["alpha"] < 0),
+            _meaning(name, meaning, mean.get("alpha", 0.0) < 0),
         )
         for name, unit, meaning in (*_LAW, _FITTED)
         if name not in _BRISTLE
