@@ -14,9 +14,7 @@ from .potentials import GivenPotential
 from .programs import Program, in_chunks
 
 _PLACES = 256  # of a period, off the grid of round phases
-_STRETCHES = (
-    16  # of a period, the worst decides: a jump or a narrow bump fills half of none
-)
+_STRETCHES = 16  # of a period: a jump or a narrow bump fills half of none
 _INSIDE = 1e-7  # of a period, before the seam
 _STEP = 2.0**-20  # between neighbours: 64 harmonics bend by 1e-13 of themselves there
 # Fourth differences of noise are sqrt(70) times as large; of smooth functions next to none.

@@ -118,5 +118,5 @@ class Fourier(AbstractSampled):
     ) -> "tuple[Fourier, SlopeErrors]":
         """A series in periods with the errors that measured waves leave to its slopes."""
         errors = of_waves(extreme_slopes(cos - 1j * sin), waves)
-        taken = errors[4:] if any(errors[4:]) else None
-        return cls(cos, sin, errors[2:4], taken), errors
+        taken = as_real(errors[4:]) if any(errors[4:]) else None
+        return cls(as_real(cos), as_real(sin), as_real(errors[2:4]), taken), errors
