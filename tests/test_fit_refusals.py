@@ -61,7 +61,7 @@ def test_slopes_no_bristle_follows_are_told_from_too_few_harmonics():
     """rho_minus below its limit at any number of harmonics; a ratio that more meet."""
     beyond = fx.fit_profile(fx.Target(STEEP, 0.12, -0.7), starts=1)
     assert beyond.status is ProfileStatus.INADMISSIBLE
-    assert "rho_minus > -0.652648 N" in beyond.message
+    assert "rho_minus > -0.652647 N" in beyond.message
     assert "asked for" not in beyond.message  # no slope gives it
     uneven = fx.Target(STEEP, 5.0, -0.01)
     few = fx.fit_profile(uneven, starts=1)
