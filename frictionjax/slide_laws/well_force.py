@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .second_tops import with_second_tops
+
 _RELIABLE = 1e-11  # of the force's range: what is smaller is rounding of W'
 _NONE = 1e-14  # of the range: no gap
 _DECADE = 10.0  # of distances from the top, over which its flatness is measured
@@ -45,7 +47,8 @@ def well_force(
     place = sign * (phase - phase[top])
     place = place - np.floor(place + 0.5)
     order = np.argsort(place)
-    place, gap = place[order], held[top] - held[order]
+    place, others = with_second_tops(place[order], held[order])
+    gap = held[top] - others
     width = float(gap.max())
     gap = np.maximum(gap, _NONE * width)  # of a second top of the same height
     left, right = (_side(sign * place, gap, width) for sign in (-1, 1))
