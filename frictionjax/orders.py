@@ -4,7 +4,7 @@ import enum
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import fdtr  # scipy.stats takes 0.2 s to import
+from scipy.special import fdtr, stdtrit  # scipy.stats takes 0.2 s to import
 
 from .arguments import require
 from .asymptotes import Asymptote, asymptote
@@ -28,15 +28,18 @@ class Verdict(enum.IntEnum):
     UNDECIDED = 2
     TOO_FEW_POINTS = 3
     NO_POWER = 4
+    NOT_YET_SEEN = 5  # errors follow their law, but not yet its power of eps -> 0
 
 
 class Fit(NamedTuple):
     """Order of `error ~ eps^order` as eps -> 0, its 95% interval and its window.
 
-    `constant`: error/eps^order in the middle of the window. `preasymptotic`, `floor`,
-    `failed`: how many cells were left out because eps was too large, the error too near
-    the solver's own, or the cell failed. `misfit`: the largest factor by which the fitted
-    line misses a point of its window; beyond 3 the verdict is that it is no power.
+    `constant`: error/eps^order in the middle of the window, with `constant_low`,
+    `constant_high` those of `constant_range`. `preasymptotic`, `floor`, `failed`: how many
+    cells were left out because eps was too large, the error too near the solver's own, or
+    the cell failed. `misfit`: the largest factor by which the fitted line misses a point of
+    its window; beyond 3 the verdict is that it is no power. `seen`: slope of the window's
+    errors by plain regression, which is no statement on eps -> 0.
     """
 
     order: float
@@ -51,6 +54,9 @@ class Fit(NamedTuple):
     failed: int
     verdict: Verdict
     misfit: float
+    seen: float
+    constant_low: float
+    constant_high: float
 
 
 def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> Fit:
@@ -90,6 +96,7 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
     window = eps[usable][start:]
     middle = y[start:].mean() - found.slope * x[start:].mean()
     misfit = float(np.exp(np.abs(y - middle - found.slope * x)[start:].max()))
+    ends = constant_range(window, errors[usable][start:], found.low, found.high)
     return Fit(
         order=found.slope,
         low=found.low,
@@ -101,6 +108,9 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
         preasymptotic=start,
         verdict=verdict_of(found.low, found.high, misfit),
         misfit=misfit,
+        seen=plain_slope(window, errors[usable][start:]),
+        constant_low=min(ends[0], float(np.exp(middle))),
+        constant_high=max(ends[1], float(np.exp(middle))),
         **counts,
     )
 
@@ -108,7 +118,32 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
 def _no_fit(points: int, floor: int, failed: int) -> Fit:
     nan = float("nan")
     verdict = Verdict.TOO_FEW_POINTS
-    return Fit(nan, nan, nan, nan, nan, nan, points, 0, floor, failed, verdict, nan)
+    counts = points, 0, floor, failed, verdict
+    return Fit(nan, nan, nan, nan, nan, nan, *counts, nan, nan, nan, nan)
+
+
+def plain_slope(eps: np.ndarray, errors: np.ndarray) -> float:
+    """Slope of log error over log eps by least squares, all points alike."""
+    x, y = np.log(eps), np.log(errors)
+    return float((x - x.mean()) @ y / np.sum((x - x.mean()) ** 2))
+
+
+def constant_range(
+    eps: np.ndarray, errors: np.ndarray, low: float, high: float
+) -> tuple[float, float]:
+    """Constants of the powers of orders `low` to `high` through the errors of small eps.
+
+    Through the middle of the smaller half of the eps (n,), n >= 4, and with what the
+    scatter about a line leaves of it (95%): it holds a constant together with its order.
+    (Through the middle of all: errors that bend put it off by what they bend.)
+    """
+    x, y = np.log(eps), np.log(errors)
+    small = x <= np.median(x)
+    left = y - y.mean() - plain_slope(eps, errors) * (x - x.mean())
+    scatter = np.sqrt(np.sum(left**2) / (x.size - 2) / np.sum(small))
+    margin = float(stdtrit(x.size - 2, 0.975) * scatter)
+    ends = y[small].mean() - np.array([low, high]) * x[small].mean()
+    return float(np.exp(ends.min() - margin)), float(np.exp(ends.max() + margin))
 
 
 def verdict_of(low: float, high: float, misfit: float) -> Verdict:

@@ -41,11 +41,13 @@ def study(dataset: xr.Dataset) -> Study:
 
     `.orders` holds, for each gamma: `order, order_low, order_high` of `sup_error` (95%
     interval for eps -> 0), the window `eps_min, eps_max, points` it rests on, how many
-    cells were left out as pre-asymptotic, near the solver's floor or failed, `constant`,
-    `misfit`, `verdict` (CF flags); the same with `dissipation_` in front, and with `strip_`
-    of sup dist(z_eps, strip); `beta = min(1, gamma)` of Lemmas 7 to 9; the measured
-    constants `C0` of Lemma 7 and `C` of Lemma 9, the latter a lower bound from the times in
-    the data set.
+    cells were left out as pre-asymptotic, near the solver's floor or failed, `constant` of
+    the power for eps -> 0 with its 95% interval `constant_low, constant_high` (jointly with
+    that of the order), `order_seen` (slope of the errors in the window, by plain
+    regression), `misfit` of the fitted curve, `verdict` (CF flags); the same with
+    `dissipation_` in front, and with `strip_` of sup dist(z_eps, strip);
+    `beta = min(1, gamma)` of Lemmas 7 to 9; the measured constants `C0` of Lemma 7 and `C`
+    of Lemma 9, the latter a lower bound from the times in the data set.
 
     `order_predicted`, `constant_predicted`: what the laws of a slide say for eps -> 0, NaN
     where they say nothing: `min(1, gamma p/(p - 1))` for the sup error, with p the flatness
@@ -54,7 +56,11 @@ def study(dataset: xr.Dataset) -> Study:
     (at the threshold), or "free": errors that do not follow the prediction, or have none,
     are fitted freely, and their interval is that of `orders.fit_order`. Where a law is
     used, order and interval are those of the ratio of errors to prediction, see
-    `law_orders.fit_with_law`. (The paper proves no rate for the sup error.)
+    `law_orders.fit_with_law`. They are for eps -> 0: where the verdict is `not_yet_seen`
+    the law's own curve has not come to this power at the smallest eps, so that order and
+    constant are theory's, confirmed through the law; what the data alone show is
+    `order_seen` and, where a law is used, `.curves`. (The paper proves no rate for the sup
+    error.)
 
     Cells that failed are left out, and a warning (`FailedCells`) names them.
 
@@ -109,7 +115,7 @@ _ERRORS = (
     _Error("dissipation_error", "dissipation_", ENERGY),
     _Error("strip_excess", "strip_", STATE),
 )
-_FIELDS = {"order": "order", "low": "order_low", "high": "order_high"}
+_FIELDS = {"low": "order_low", "high": "order_high", "seen": "order_seen"}
 
 
 def _predictions(dataset: xr.Dataset) -> dict[str, Prediction]:
@@ -207,6 +213,7 @@ _MEANING = {
     "order": ("1", "order of convergence"),
     "order_low": ("1", "lower end of its 95% interval"),
     "order_high": ("1", "upper end of its 95% interval"),
+    "order_seen": ("1", "slope of log error over log eps in the window"),
     "eps_min": ("m", "smallest eps of the window"),
     "eps_max": ("m", "largest eps of the window"),
     "points": ("1", "cells in the window"),
@@ -216,19 +223,39 @@ _MEANING = {
     "beta": ("1", "exponent min(1, gamma) of Lemmas 7 to 9"),
     "C0": (None, "smallest C0 of Lemma 7 in these cells, in m^(1-beta)"),
     "C": (None, "smallest C of Lemma 9 in these cells"),
-    "constant": (None, "error over eps^order"),
-    "misfit": ("1", "largest factor by which the fit misses a point of its window"),
+    "constant": (None, "error over eps^order for eps -> 0"),
+    "constant_low": (None, "lower end of its 95% interval, jointly with the order's"),
+    "constant_high": (None, "upper end of its 95% interval, jointly with the order's"),
+    "misfit": ("1", "largest factor by which the fitted curve misses a point"),
     "law": (None, "law that the order rests on"),
     "order_predicted": ("1", "order that the law has for eps -> 0"),
     "constant_predicted": (None, "error over eps^order that the law has for eps -> 0"),
     "verdict": (None, "what the interval says"),
+}
+_COMMENTS = {
+    "constant": (
+        "Of the leading power, by the law where one is used. Errors of the data set are "
+        "those of .curves, not constant eps^order, where the verdict is not_yet_seen."
+    ),
+    "misfit": (
+        "In the window, of what was fitted: the law's curve times a power where a law is "
+        "used, see .curves, constant eps^order where the law is free."
+    ),
+    "order": "For eps -> 0; what the errors of the window show alone is order_seen.",
+    "verdict": (
+        "not_yet_seen: errors follow the law, but not yet its power of eps -> 0; order "
+        "and constant are theory's, confirmed through the law."
+    ),
 }
 
 
 def _described(orders: xr.Dataset) -> xr.Dataset:
     for name in map(str, orders.data_vars):
         error = next(e for e in reversed(_ERRORS) if name.startswith(e.prefix))
-        units, meaning = _MEANING[name.removeprefix(error.prefix)]
+        bare = name.removeprefix(error.prefix)
+        units, meaning = _MEANING[bare]
+        if bare in _COMMENTS:
+            orders[name].attrs["comment"] = _COMMENTS[bare]
         of = error.name
         lemma = name in ("beta", "C0", "C")
         orders[name].attrs["long_name"] = meaning if lemma else f"{meaning} ({of})"

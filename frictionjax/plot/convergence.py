@@ -27,7 +27,12 @@ _PANELS = (
     ),
 )
 
+_NUMBERS = (
+    *("order", "order_low", "order_high", "order_seen"),
+    *("eps_min", "eps_max", "constant", "misfit"),
+)
 _MANY_DECADES = 3
+_DIFFERS = 0.05  # of orders: what the points show is said too
 _KEY = (
     "filled: in the window of the fit; hollow: left out; "
     "dashed: predicted by the law; dotted: slope of the lemmas"
@@ -77,8 +82,7 @@ def _fewer_ticks(axes: Any) -> None:
 
 
 def _fit(orders: xr.Dataset, prefix: str) -> dict[str, Any]:
-    names = ("order", "order_low", "order_high", "eps_min", "eps_max", "constant", "misfit")
-    numbers = {name: float(orders.get(prefix + name, np.nan)) for name in names}
+    numbers = {name: float(orders.get(prefix + name, np.nan)) for name in _NUMBERS}
     verdict = int(orders.get(f"{prefix}verdict", Verdict.TOO_FEW_POINTS))
     law = orders[f"{prefix}law"].item() if f"{prefix}law" in orders else "free"
     return numbers | {"law": str(law), "verdict": verdict}
@@ -128,9 +132,22 @@ def _legend(gamma: float, fit: dict[str, Any]) -> str:
         return f"{name} too few points for an order"
     if fit["verdict"] == Verdict.NO_POWER:
         return f"{name} no power of $\\epsilon$, points {fit['misfit']:.2g} times off"
-    low, high = fit["order_low"], fit["order_high"]
+    return f"{name} {_order(fit)}"
+
+
+def _order(fit: dict[str, Any]) -> str:
+    """Order for eps -> 0, after that of the points themselves where it is another."""
+    interval = f"95% [{fit['order_low']:.2f}, {fit['order_high']:.2f}]"
     law = "" if fit["law"] == "free" else f", law: {fit['law']}"
-    return f"{name} order {fit['order']:.2f}, 95% [{low:.2f}, {high:.2f}]{law}"
+    text = f"{fit['order']:.2f}, {interval}{law}"
+    # Written so that an order which is not known says nothing.
+    if not abs(fit["order_seen"] - fit["order"]) > _DIFFERS:
+        return f"order {text}"
+    unseen = ", not yet seen" if fit["verdict"] == Verdict.NOT_YET_SEEN else ""
+    return (
+        f"order {fit['order_seen']:.2f} at these $\\epsilon$;\n"
+        f"for $\\epsilon \\to 0$: {text}{unseen}"
+    )
 
 
 def _failures(axes: Any, cells: xr.Dataset, index: int) -> None:

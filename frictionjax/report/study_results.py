@@ -23,7 +23,10 @@ _COVERS = (
     "law has at each eps, added to its order. averaged: wells are passed without a rest;\n"
     "slips: tips rest before each; between: at the threshold. free: of a power, with\n"
     "scatter, corrections 1 + c eps^q, q >= 0.2 (up to 5% where scatter hides them), and\n"
-    "logarithms that the errors show; slower or larger hidden ones are not in them."
+    "logarithms that the errors show; slower or larger hidden ones are not in them.\n"
+    "Constants are those of eps^order for eps -> 0, jointly with the order. seen: slope\n"
+    "of the errors in the window, all that they show alone. not yet seen: errors follow\n"
+    "the law, not yet its power; order and constant are theory's, confirmed through it."
 )
 
 

@@ -210,7 +210,10 @@ _ERRORS = (("", "state"), ("dissipation_", "dissipation"), ("strip_", "from the 
 
 
 def order_table(orders: xr.Dataset) -> str:
-    """One line for each error and gamma: order, what the law predicts, window, verdict."""
+    """One line for each error and gamma: order, what the law predicts, window, verdict.
+
+    `order` and `constant` are for eps -> 0, `seen` is the slope of the errors themselves.
+    """
     rows = [
         (name, f"{gamma:.4g}", *_order_cells(orders, orders.sel(gamma=gamma), prefix))
         for prefix, name in _ERRORS
@@ -223,7 +226,8 @@ def order_table(orders: xr.Dataset) -> str:
         "order [95%]",
         "predicted",
         "law",
-        "constant",
+        "seen",
+        "constant [95%]",
         "predicted",
         "eps window/m",
         "points",
@@ -237,7 +241,8 @@ def _order_cells(orders: xr.Dataset, line: xr.Dataset, prefix: str) -> tuple[str
         _interval(line, prefix),
         _plain(_value(line, f"{prefix}order_predicted")),
         str(line[f"{prefix}law"].item()),
-        number(float(line[f"{prefix}constant"])),
+        _slope(_value(line, f"{prefix}order_seen")),
+        _constant(line, prefix),
         number(_value(line, f"{prefix}constant_predicted")),
         _window(line, prefix),
         f"{int(line[f'{prefix}points'])}",
@@ -297,6 +302,16 @@ def _interval(line: xr.Dataset, prefix: str) -> str:
         return "-"
     low, high = (_value(line, f"{prefix}order_{end}") for end in ("low", "high"))
     return f"{order:.3f} [{low:.3f}, {high:.3f}]"
+
+
+def _constant(line: xr.Dataset, prefix: str) -> str:
+    names = (f"{prefix}constant", f"{prefix}constant_low", f"{prefix}constant_high")
+    constant, low, high = (number(_value(line, name)) for name in names)
+    return constant if low == "-" else f"{constant} [{low}, {high}]"
+
+
+def _slope(order: float) -> str:
+    return f"{order:.3f}" if np.isfinite(order) else "-"
 
 
 def _window(line: xr.Dataset, prefix: str) -> str:

@@ -9,6 +9,7 @@ from .well_force import WellForce
 
 FREE, AVERAGED, SLIPS, BETWEEN = "free", "averaged", "slips", "between"
 _SAME = 1e-9  # gamma at the threshold
+_HIGH = 1e-6  # gap, of the force's range, that is none
 _SMALL = 1e-6  # drop of the force in a well, of its range: far enough down
 # Drop and drag, of the range, of a tip that rests and then leaves its fold before the force
 # has dropped: drop/drag^2 is large, drop^2/drag small.
@@ -47,11 +48,10 @@ def limit_orbit(
         orbit = periodic_orbit(well, stiffness * eps, speed * eps**gamma)
         scaled = (values / eps + well.shift for values in orbit)
         return LimitOrbit(Orbit(*scaled), 1.0, BETWEEN)
-    # A slip ends on the next rising flank: one well on, less by what is flat of it.
-    way = 1.0 - _flat_share(well)
+    ways = _slips(well)
     top = well.shift + 0.0 * stiffness
-    falling = Orbit(top, top - way * stiffness, top - 0.5 * way**2 * stiffness)
-    return LimitOrbit(falling, 1.0, SLIPS)
+    mean = top - 0.5 * np.sum(ways**2) * stiffness
+    return LimitOrbit(Orbit(top, top - ways.max() * stiffness, mean), 1.0, SLIPS)
 
 
 def averaged_force(well: WellForce, drag: np.ndarray) -> np.ndarray:
@@ -90,9 +90,12 @@ def fold_force(
     return found * (stiffness * speed / (drop * drag)) ** power, (1 + gamma) * power
 
 
-def _flat_share(well: WellForce) -> float:
-    """Share of a period on which W' is at its extreme."""
-    if np.isfinite(well.flatness):
-        return 0.0
-    near = well.gap < 1e-6 * well.range
-    return float(np.sum(np.diff(well.place)[near[1:] | near[:-1]]))
+def _slips(well: WellForce) -> np.ndarray:
+    """Ways of the slips of a period, in periods: from each highest place to the next.
+
+    One well, less by what is flat of it; shorter where there are two tops of one height.
+    """
+    # The period ends at its top or on a flank: the last way goes on to the first top.
+    high = np.flatnonzero(well.gap < _HIGH * well.range)
+    ways = np.diff(np.append(well.place[high], well.place[high[0]] + 1.0))
+    return ways[np.diff(np.append(high, high[0] + well.place.size - 1)) > 1]
