@@ -114,6 +114,44 @@ def test_the_preasymptotic_part_is_left_out():
     assert everything > 1.2  # what a plain regression says
 
 
+@pytest.mark.parametrize(
+    ("law", "points"),
+    [
+        (lambda eps: 7 * eps**0.7, 6),
+        (lambda eps: 7 * eps**-0.4, 12),
+        (lambda eps: 7 * eps * (1 + 3 * eps**0.5), 16),
+        (lambda eps: 7 * eps * (1 - 0.5 * eps**0.2), 16),
+    ],
+)
+def test_intervals_of_constants_hold_the_constant(law, points):
+    rng = np.random.default_rng(6)
+    eps, held = np.geomspace(1e-1, 1e-6, points), []
+    for _ in range(40):
+        found = fit(eps, law(eps) * np.exp(0.03 * rng.standard_normal(points)))
+        held.append(found.constant_low <= 7 <= found.constant_high)
+        assert found.constant_low <= found.constant <= found.constant_high
+    assert np.mean(held) >= 0.92
+
+
+def test_constants_do_not_depend_on_the_side_of_one_on_which_eps_lie():
+    eps, noise = np.geomspace(1e-1, 1e-4, 9), np.exp(0.05 * np.sin(7.0 * np.arange(9)))
+    small, large = fit(eps, eps**0.8 * noise), fit(1e6 * eps, eps**0.8 * noise)
+    assert large.order == pytest.approx(small.order)
+    for found in (small, large):
+        assert 0 < found.constant_low < found.constant < found.constant_high
+    assert large.constant_low < 1e6**-0.8 < large.constant_high
+
+
+def test_what_is_seen_is_a_plain_slope_of_the_window():
+    eps = np.geomspace(1e-1, 1e-5, 12)
+    errors = eps * (1 + 3 * eps**0.2)
+    found = fit(eps, errors)
+    window = (eps >= found.eps_min) & (eps <= found.eps_max)
+    slope = np.polyfit(np.log(eps[window]), np.log(errors[window]), 1)[0]
+    assert found.seen == pytest.approx(slope)
+    assert abs(found.order - 1) < abs(found.seen - 1)
+
+
 def test_order_of_the_input_does_not_matter():
     eps = np.geomspace(1e-1, 1e-3, 12)
     errors = eps * (1 + 30 * eps)
@@ -152,6 +190,7 @@ def test_failures_and_too_few_points():
     found = fit(eps, errors)
     assert found.verdict is Verdict.TOO_FEW_POINTS
     assert np.isnan(found.order)
+    assert np.isnan([found.seen, found.constant_low, found.constant_high]).all()
     assert found.failed == 3
 
 

@@ -8,6 +8,7 @@ import pytest
 from sweep_like import EPS, sweep_like
 
 import frictionjax as fx
+from frictionjax.orders import Verdict
 
 LAW = fx.friction(fx.profiles.Sine(0.1), fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0))
 SPRING = fx.supports.Spring(2.0)
@@ -72,6 +73,17 @@ def test_points_outside_the_window_are_hollow():
     hollow = [p for p in axes.lines if p.get_markerfacecolor() == "white"]
     assert data(hollow[0])[0] == pytest.approx(EPS[EPS > 0.05])
     assert data(hollow[1])[0].size == 0
+
+
+def test_legends_say_what_the_points_show_where_it_is_another_order():
+    found = sweep_like(failed=False)
+    orders = fx.study(found).orders
+    orders["order_seen"] = ("gamma", [0.52, 1.45])
+    orders["verdict"] = ("gamma", np.array([0, Verdict.NOT_YET_SEEN], dtype=np.int8))
+    same, other = labels(drawn(fx.plot.draw_convergence(found, orders))[0])
+    assert "at these" not in same
+    assert "order 1.45 at these $\\epsilon$" in other
+    assert "for $\\epsilon \\to 0$: 1.00, 95% [1.00, 1.00], not yet seen" in other
 
 
 def test_minor_ticks_where_decades_are_few():

@@ -82,6 +82,7 @@ def test_order_table():
     ]
     assert lines[1].split()[1:3] == ["0.5", "0.500"]
     assert lines[1].split()[5:7] == ["-", "free"]  # nothing is known of its wells
+    assert lines[1].split()[7:11] == ["0.500", "1", "[1,", "1]"]  # seen, constant
     assert lines[1].endswith("converges")
     assert "0.01 to 0.1" in lines[1]
 

@@ -10,6 +10,7 @@ from scipy.special import ai_zeros
 import frictionjax as fx
 from frictionjax.coefficients import coefficients_jit
 from frictionjax.law_orders import ENERGY, STATE, fit_with_law
+from frictionjax.orders import Verdict
 from frictionjax.slide_laws import NO_LAW, Law, SlideData, predict_errors, slide_data
 from frictionjax.slide_laws.averaged_motion import steady_force
 from frictionjax.slide_laws.exponents import averaged_force, fold_force, limit_orbit
@@ -48,6 +49,69 @@ def flat(y):
 def straight(y):
     """Flanks of 0.1 and -0.1 of 0.3 of a period each, C^1 between."""
     return RHO * np.clip(1.7 * np.cos(2 * np.pi * y), -1, 1)
+
+
+COARSE = np.unique(
+    np.concatenate([np.arange(1024) / 1024, (0.3331 + PLACES[PLACES < 0.07]) % 1])
+)
+
+
+def several(count, sign=1):
+    """Tops of one height, the first at 0.3331; the table is dense beside that one only."""
+    return well_force(
+        COARSE,
+        sign * RHO * np.cos(2 * np.pi * count * (COARSE - 0.3331)),
+        0.0 * COARSE,
+        sign,
+    )
+
+
+@pytest.mark.parametrize(("drop", "drag"), [(1e-3, 1e-2), (1e-5, 1e-4), (1e-9, 1e-7)])
+@pytest.mark.parametrize("count", [2, 3])
+def test_wells_of_several_equal_tops_are_shorter_wells(count, drop, drag):
+    shorter = periodic_orbit(wells(sine), np.array(drop / count), np.array(drag))
+    found = periodic_orbit(several(count), np.array(drop), np.array(drag))
+    size = max(float(shorter.largest), -float(shorter.smallest))
+    for value, exact in zip(found, shorter, strict=True):
+        assert value == pytest.approx(exact, abs=0.02 * size)
+    assert found.largest == pytest.approx(shorter.largest, rel=0.03)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("count", [2, 3])
+def test_limits_of_several_equal_tops_are_those_of_shorter_wells(count, sign):
+    well, one = several(count, sign), np.ones(1)
+    assert averaged_force(well, 1e-4 * one) == pytest.approx(
+        averaged_force(wells(sine), 1e-4 * one), rel=0.02
+    )
+    found = limit_orbit(well, one, one, 1.0).force
+    assert found.smallest == pytest.approx(-1 / count, abs=1e-3)
+    assert found.mean == pytest.approx(-0.5 / count, abs=1e-3)
+    delay, order = fold_force(well, one, one, 1.0)
+    assert delay == pytest.approx(
+        fold_force(wells(sine), one, one / count, 1.0)[0], rel=0.03
+    )
+    assert order == pytest.approx(4 / 3)
+
+
+@pytest.mark.parametrize("lower", [1e-6, 1e-4, 1e-2, 0.3])
+@pytest.mark.parametrize(("drop", "drag"), [(1e-4, 1e-3), (1e-6, 1e-5)])
+def test_a_lower_top_is_as_well_known_as_from_a_dense_table(lower, drop, drag):
+    def force(y):
+        turn = 2 * np.pi * (y - 0.3331)
+        return RHO * (np.cos(2 * turn) + 0.5 * lower * np.cos(turn))
+
+    dense = np.unique(
+        np.concatenate([PLACES, (PLACES + 0.3331) % 1, np.arange(2048) / 2048])
+    )
+    found, truth = (
+        periodic_orbit(
+            well_force(at, force(at), 0.0 * at, 1), np.array(drop), np.array(drag)
+        )
+        for at in (COARSE, np.unique(np.concatenate([dense, (0.3331 + 0.5 + dense) % 1])))
+    )
+    assert found.largest == pytest.approx(truth.largest, rel=0.02)
+    assert found.smallest == pytest.approx(truth.smallest, rel=0.02)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -312,6 +376,62 @@ def test_errors_that_do_not_follow_the_law_are_fitted_freely(errors):
     assert found.law.order == 1.0  # said all the same
     slope = np.polyfit(np.log(eps), np.log(errors(eps)), 1)[0]
     assert found.fit.order == pytest.approx(slope, abs=0.05)
+
+
+def by_law(predicted, law, scatter=0.02, seed=1):
+    eps = np.geomspace(3e-2, 1e-5, 10)
+    noise = np.exp(scatter * np.random.default_rng(seed).standard_normal(eps.size))
+    errors = predicted(eps) * noise
+    return eps, errors, fit_with_law(eps, errors, 1e-9 * eps, predicted(eps), law, STATE)
+
+
+@pytest.mark.parametrize(
+    ("predicted", "law", "seen"),
+    [
+        (lambda eps: 3.6e-4 * eps + 0.3 * eps**1.45, Law(1.0, 3.6e-4, "x"), 1.42),
+        (lambda eps: eps - 0.55 * eps**1.067, Law(1.0, 1.0, "x"), None),
+        (lambda eps: np.hypot(0.1, 2 * eps**0.25) - 0.1, Law(0.5, 20.0, "x"), 0.35),
+        (lambda eps: eps / (1 + 1e4 * eps), Law(1.0, 1.0, "x"), 0.2),
+    ],
+)
+def test_a_power_that_these_eps_do_not_show_is_not_called_seen(predicted, law, seen):
+    eps, errors, found = by_law(predicted, law)
+    plain = np.polyfit(np.log(eps), np.log(errors), 1)[0]
+    assert found.law.name == "x"
+    late = predicted(eps)[-1] / (law.constant * eps[-1] ** law.order)
+    far = not 2 / 3 < late < 1.5
+    assert (found.fit.verdict is Verdict.NOT_YET_SEEN) == far
+    assert found.fit.points == 10
+    assert found.fit.seen == pytest.approx(plain)
+    if seen is not None:
+        assert found.fit.seen == pytest.approx(seen, abs=0.1)
+    assert found.fit.low <= law.order <= found.fit.high
+    assert found.fit.constant_low <= law.constant <= found.fit.constant_high
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 1.5])
+def test_a_power_that_the_errors_show_is_seen(order):
+    _, _, found = by_law(lambda eps: 2 * eps**order, Law(order, 2.0, "x"))
+    assert found.fit.verdict is Verdict.CONVERGES
+    assert found.fit.seen == pytest.approx(found.fit.order, abs=0.01)
+
+
+def test_a_ratio_that_is_not_settled_widens_its_interval():
+    """Like the dissipation of two sums: within a factor of its law, and drifting."""
+    eps = np.geomspace(5e-2, 5e-6, 10)
+    ratio = np.array([1.01, 1.03, 1.06, 1.03, 1.09, 1.09, 1.12, 1.23, 1.29, 1.07])
+    found = fit_with_law(eps, ratio * eps, 1e-9 * eps, eps, Law(1.0, 1.0, "x"), ENERGY)
+    assert found.law.name == "x"
+    assert found.fit.low <= 1.0 <= found.fit.high
+    assert found.fit.constant_low <= 1.0 <= found.fit.constant_high
+    assert found.fit.high - found.fit.low < 0.3
+
+
+@pytest.mark.parametrize("scatter", [0.01, 0.05, 0.1])
+def test_intervals_by_a_law_hold_the_constant(scatter):
+    fits = [by_law(lambda e: 2 * e, Law(1.0, 2.0, "x"), scatter, s)[2] for s in range(40)]
+    held = [f.fit.constant_low <= 2.0 <= f.fit.constant_high for f in fits]
+    assert np.mean(held) >= 0.95
 
 
 def test_energies_may_differ_more_from_their_law():

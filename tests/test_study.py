@@ -41,6 +41,20 @@ def test_orders_constants_and_exponents():
     assert np.all(orders.order <= orders.order_high)
 
 
+@pytest.mark.parametrize("prefix", ["", "dissipation_", "strip_"])
+def test_every_error_has_what_is_seen_and_the_interval_of_its_constant(prefix):
+    orders = fx.study(synthetic(noise=0.02)).orders
+    constant, low, high = (
+        orders[f"{prefix}constant{end}"].values for end in ("", "_low", "_high")
+    )
+    assert np.all((low <= constant) & (constant <= high))
+    seen = orders[f"{prefix}order_seen"].values
+    assert seen == pytest.approx(orders[f"{prefix}order"].values, abs=0.1)
+    assert ".curves" in orders[f"{prefix}constant"].attrs["comment"]
+    assert ".curves" in orders[f"{prefix}misfit"].attrs["comment"]
+    assert "not_yet_seen" in orders[f"{prefix}verdict"].attrs["flag_meanings"].split()
+
+
 def test_local_orders_keep_their_sign():
     local = fx.study(synthetic(order=-0.5)).local_orders
     assert local.order.sel(gamma=1.0).values == pytest.approx(-0.5)

@@ -32,6 +32,7 @@ _NUMBERS = (
     *("eps_min", "eps_max", "constant", "misfit"),
 )
 _MANY_DECADES = 3
+_LINE = 0.17  # inches
 _DIFFERS = 0.05  # of orders: what the points show is said too
 _KEY = (
     "filled: in the window of the fit; hollow: left out; "
@@ -69,8 +70,16 @@ def draw(
             _guides(axes, dataset)
         _fewer_ticks(axes)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
+    _make_room(figure)
     figure.supxlabel(_KEY, fontsize=9, color="#666666")
     return figure
+
+
+def _make_room(figure: Figure) -> None:
+    """For second lines of legends, which would be taken from the axes."""
+    texts = [axes.get_legend().get_texts() for axes in figure.axes]
+    lines = max(sum("\n" in one.get_text() for one in some) for some in texts)
+    figure.set_figheight(figure.get_figheight() + _LINE * lines)
 
 
 def _fewer_ticks(axes: Any) -> None:
@@ -139,14 +148,14 @@ def _order(fit: dict[str, Any]) -> str:
     """Order for eps -> 0, after that of the points themselves where it is another."""
     interval = f"95% [{fit['order_low']:.2f}, {fit['order_high']:.2f}]"
     law = "" if fit["law"] == "free" else f", law: {fit['law']}"
-    text = f"{fit['order']:.2f}, {interval}{law}"
+    unseen = ", not yet seen" if fit["verdict"] == Verdict.NOT_YET_SEEN else ""
+    text = f"{fit['order']:.2f}, {interval}{law}{unseen}"
     # Written so that an order which is not known says nothing.
     if not abs(fit["order_seen"] - fit["order"]) > _DIFFERS:
         return f"order {text}"
-    unseen = ", not yet seen" if fit["verdict"] == Verdict.NOT_YET_SEEN else ""
     return (
         f"order {fit['order_seen']:.2f} at these $\\epsilon$;\n"
-        f"for $\\epsilon \\to 0$: {text}{unseen}"
+        f"for $\\epsilon \\to 0$: {text}"
     )
 
 

@@ -7,6 +7,7 @@ _DEGREE = 6
 _WIDTH = 1e-3  # of a period: about the distance of the table's even places
 _CLOSEST, _MORE = 1e-8, 48  # places on each side, at equal ratios down to that distance
 _LOW = 0.5  # of the range: a maximum that lies deeper holds no tip
+_EQUAL = 1e-7  # of the range: heights that a sixth degree does not tell apart
 _ROUND = 1e-9  # of the range, by which it stands out from its neighbours; else it is flat
 
 
@@ -23,7 +24,7 @@ def with_second_tops(place: np.ndarray, held: np.ndarray) -> tuple[np.ndarray, n
     for top in _others(held, width):
         index = top + around
         near = place[index % count] + index // count - place[top]
-        found = _beside(near, held[index % count], width)
+        found = _beside(near, held[index % count], float(held.max()), width)
         if found is not None:
             moved = place[top] + found[0]
             places.append(moved - np.floor(moved + 0.5))
@@ -41,9 +42,13 @@ def _others(held: np.ndarray, width: float) -> np.ndarray:
 
 
 def _beside(
-    near: np.ndarray, values: np.ndarray, width: float
+    near: np.ndarray, values: np.ndarray, highest: float, width: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Places beside the maximum of a polynomial through these values, and its values."""
+    """Places beside the maximum of a polynomial through these values, and its values.
+
+    None where the values are no smooth maximum. What is as high as the highest one within
+    the polynomial's error is of its height: cut off there it would be flat, and held tips.
+    """
     size = float(np.abs(near).max())
     if values[_BESIDE] - max(values[0], values[-1]) < _ROUND * width:
         return None
@@ -58,4 +63,8 @@ def _beside(
         return None
     distance = np.geomspace(_CLOSEST, _WIDTH, _MORE)
     wanted = top + np.concatenate([-distance[::-1], [0.0], distance])
-    return wanted, np.minimum(curve(wanted), curve(top))
+    below = highest - curve(top)
+    if below < -_EQUAL * width:
+        return None
+    height = highest if below < _EQUAL * width else curve(top)
+    return wanted, height - np.maximum(curve(top) - curve(wanted), 0.0)
