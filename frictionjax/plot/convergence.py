@@ -77,7 +77,8 @@ def draw(
 
 def _make_room(figure: Figure) -> None:
     """For second lines of legends, which would be taken from the axes."""
-    texts = [axes.get_legend().get_texts() for axes in figure.axes]
+    legends = [axes.get_legend() for axes in figure.axes]
+    texts = [legend.get_texts() for legend in legends if legend is not None]
     lines = max(sum("\n" in one.get_text() for one in some) for some in texts)
     figure.set_figheight(figure.get_figheight() + _LINE * lines)
 

@@ -95,7 +95,8 @@ def _slips(well: WellForce) -> np.ndarray:
 
     One well, less by what is flat of it; shorter where there are two tops of one height.
     """
-    # The period ends at its top or on a flank: the last way goes on to the first top.
-    high = np.flatnonzero(well.gap < _HIGH * well.range)
-    ways = np.diff(np.append(well.place[high], well.place[high[0]] + 1.0))
-    return ways[np.diff(np.append(high, high[0] + well.place.size - 1)) > 1]
+    places = np.concatenate([well.place[:-1], well.place[:-1] + 1.0])
+    high = np.flatnonzero(well.gap[:-1] < _HIGH * well.range)
+    following = np.append(high[1:], high[0] + well.place.size - 1)
+    apart = following > high + 1
+    return places[following[apart] - 1] - places[high[apart] + 1]
