@@ -74,7 +74,7 @@ def test_wells_of_several_equal_tops_are_shorter_wells(count, drop, drag):
     size = max(float(shorter.largest), -float(shorter.smallest))
     for value, exact in zip(found, shorter, strict=True):
         assert value == pytest.approx(exact, abs=0.02 * size)
-    assert found.largest == pytest.approx(shorter.largest, rel=0.03)
+    assert found.largest == pytest.approx(shorter.largest, rel=0.03, abs=0)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -94,6 +94,38 @@ def test_limits_of_several_equal_tops_are_those_of_shorter_wells(count, sign):
     assert order == pytest.approx(4 / 3)
 
 
+@pytest.mark.parametrize("tilt", [0.1, 0.5, 1.0, 2.0])
+def test_tops_that_are_equal_by_symmetry_delay_a_fall_alike(tilt):
+    """Found by a polynomial the second height is off by its error, which is no plateau."""
+    top = np.arccos(-tilt / 4) / (2 * np.pi)
+
+    def force(y):
+        return -RHO * (tilt * np.cos(2 * np.pi * y) + np.cos(4 * np.pi * y))
+
+    beside = PLACES[(PLACES < 0.07) | (PLACES > 0.93)]
+    table = np.unique(np.concatenate([np.arange(1024) / 1024, (top + beside) % 1]))
+    well, one = well_force(table, force(table), 0.0 * table, 1), np.ones(1)
+    bend = 0.5 * RHO * (2 * np.pi) ** 2 * (4 - tilt**2 / 4)
+    delay, _ = fold_force(well, one, one, 1.0)
+    assert delay == pytest.approx(-ai_zeros(1)[0][0] * bend ** (-1 / 3), rel=0.05)
+    flat = averaged_force(well, 1e-6 * one)
+    assert flat == pytest.approx((2e-6 * np.pi) ** 2 / bend, rel=0.05, abs=0)
+
+
+@pytest.mark.parametrize("fine", [8, 16, 24])
+def test_heights_within_the_error_of_a_polynomial_are_equal(fine):
+    """Two tops of one height with ripples of a few places of the table."""
+
+    def force(y):
+        turn = 2 * np.pi * (y - 0.3331)
+        return RHO * (np.cos(2 * turn) + 0.2 * np.cos(fine * turn))
+
+    well, one = well_force(COARSE, force(COARSE), 0.0 * COARSE, 1), np.ones(1)
+    bend = 0.5 * RHO * (2 * np.pi) ** 2 * (4 + 0.2 * fine**2)
+    flat = averaged_force(well, 1e-6 * one)
+    assert flat == pytest.approx((2e-6 * np.pi) ** 2 / bend, rel=0.05, abs=0)
+
+
 @pytest.mark.parametrize("lower", [1e-6, 1e-4, 1e-2, 0.3])
 @pytest.mark.parametrize(("drop", "drag"), [(1e-4, 1e-3), (1e-6, 1e-5)])
 def test_a_lower_top_is_as_well_known_as_from_a_dense_table(lower, drop, drag):
@@ -110,8 +142,8 @@ def test_a_lower_top_is_as_well_known_as_from_a_dense_table(lower, drop, drag):
         )
         for at in (COARSE, np.unique(np.concatenate([dense, (0.3331 + 0.5 + dense) % 1])))
     )
-    assert found.largest == pytest.approx(truth.largest, rel=0.02)
-    assert found.smallest == pytest.approx(truth.smallest, rel=0.02)
+    assert found.largest == pytest.approx(truth.largest, rel=0.02, abs=0)
+    assert found.smallest == pytest.approx(truth.smallest, rel=0.02, abs=0)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -416,15 +448,22 @@ def test_a_power_that_the_errors_show_is_seen(order):
     assert found.fit.seen == pytest.approx(found.fit.order, abs=0.01)
 
 
-def test_a_ratio_that_is_not_settled_widens_its_interval():
-    """Like the dissipation of two sums: within a factor of its law, and drifting."""
-    eps = np.geomspace(5e-2, 5e-6, 10)
-    ratio = np.array([1.01, 1.03, 1.06, 1.03, 1.09, 1.09, 1.12, 1.23, 1.29, 1.07])
+# Dissipation at gamma = 0.6 and 0.8 over its law, two scenes.
+DRIFTING = (
+    (5e-2, 5e-6, "1.038 1.020 1.069 1.091 1.111 1.035 1.194 1.232 1.239 1.263"),
+    (7e-2, 2.3e-5, "1.140 1.113 1.215 0.917 1.414 1.038 0.959 0.714 0.457"),
+)
+
+
+@pytest.mark.parametrize(("largest", "smallest", "ratio"), DRIFTING)
+def test_a_ratio_that_is_not_settled_widens_its_interval(largest, smallest, ratio):
+    ratio = np.array(ratio.split(), float)
+    eps = np.geomspace(largest, smallest, ratio.size)
     found = fit_with_law(eps, ratio * eps, 1e-9 * eps, eps, Law(1.0, 1.0, "x"), ENERGY)
     assert found.law.name == "x"
     assert found.fit.low <= 1.0 <= found.fit.high
     assert found.fit.constant_low <= 1.0 <= found.fit.constant_high
-    assert found.fit.high - found.fit.low < 0.3
+    assert found.fit.high - found.fit.low < 0.6
 
 
 @pytest.mark.parametrize("scatter", [0.01, 0.05, 0.1])
