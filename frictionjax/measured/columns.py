@@ -5,7 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arguments import require
-from .headings import Headings, Stated, read_headings
+from .axes import axis_of
+from .entries import Size, Stated
+from .headings import Headings, read_headings
 from .samples import Samples
 from .scales import Asked, Scale, completed, require_metres, scale_of
 from .sentinels import without_sentinels
@@ -25,8 +27,8 @@ class _Raw(NamedTuple):
 def read_text(text: str, asked: Asked) -> Samples:
     """Heights of a text file, NaN where one is missing; see `read_heights`."""
     table = read_table(text, asked.decimal)
-    headings = read_headings(table.said, table.block.shape[1], table.dialect)
-    columns = table.block.shape[1]
+    columns, first = table.block.shape[1], int(table.lines[0])
+    headings = read_headings(table.said, columns, table.dialect, first)
     mapped = headings.pixel is not None or bool(headings.sizes)
     if columns == 2 and not (mapped and not _are_positions(table.block[:, 0])):
         raw = _pairs(table, headings, asked)
@@ -43,12 +45,18 @@ def _are_positions(x: np.ndarray) -> bool:
 
 
 def _in_metres(raw: _Raw, headings: Headings, asked: Asked) -> Samples:
-    samples = without_sentinels(raw.samples)
+    samples = without_sentinels(raw.samples, asked.outliers)
     # A factor is for whatever unit the heights have, as the user's is.
-    free = headings.factor is not None or asked.height_scale is not None
+    factor = headings.factor
+    free = factor is not None or asked.height_scale is not None
     stated = [] if free else headings.height
-    value = headings.factor if asked.heights is None else asked.heights
+    value = asked.heights
+    if factor is not None and value is None:
+        needs = "its unit, as 1 nm, or height_unit or height_scale"
+        require(factor.unit is not None, factor.place, factor.text, needs)
+        value = factor.value * (factor.unit or 1.0)
     height, notes = scale_of(value, stated, "height_unit or height_scale")
+    _require_read(raw.length, height, headings.unread)
     along, up, unsaid = completed(raw.length, height, raw.place)
     x, heights = along * samples.x, up * samples.heights
     if unsaid:
@@ -56,25 +64,53 @@ def _in_metres(raw: _Raw, headings: Headings, asked: Asked) -> Samples:
     return samples._replace(x=x, heights=heights, notes=[*samples.notes, *notes, *unsaid])
 
 
+def _require_read(
+    length: Scale | None, height: Scale | None, unread: Stated | None
+) -> None:
+    """Raise where a unit is missing, and a line names one in a way nobody understands."""
+    options = [("length_unit", length), ("height_unit", height)]
+    missing = " and ".join(name for name, scale in options if scale is None)
+    if missing and unread is not None:
+        needs = f"{missing}: its unit is not understood"
+        require(False, unread.place, unread.text[:60], needs)
+
+
 def _pairs(table: Table, headings: Headings, asked: Asked) -> _Raw:
     """A trace: positions and heights."""
     x, line = table.block[:, 0], int(table.lines[0])
     samples = _trace(table, x, table.block[:, 1], column=2)
+    swapped = headings.is_position(1) and headings.is_height(0)
+    said = headings.names[1] if swapped else ""
+    place = f"line {headings.named}, column 2"
+    require(not swapped, place, said, "positions first, then heights")
+    index = headings.index(0)
     unit = asked.length is not None or _are_lengths(headings.length)
-    if _counts(x) and (asked.pixel is not None or not unit):
-        needs = f"pixel, the distance of samples, for a count {_COUNTS}; or length_unit"
-        pixel = asked.pixel_in_metres
-        require(pixel is not None, f"line {line}, column 1", f"{x[0]:g}, {x[1]:g}", needs)
-        assert pixel is not None
-        note = f"line {line}, column 1: counts samples, of {pixel:.6g} m each"
-        samples = samples._replace(x=x * pixel, notes=[note])
-        return _Raw(samples, Scale(1.0, "pixel"), f"line {line}, column 2")
+    if index or (_counts(x) and (asked.pixel is not None or not unit)):
+        return _counted(samples, headings, asked, line)
     needs = "none: the file has a column of positions"
     require(asked.pixel is None, "pixel", asked.pixel, needs)
     _require_positions(x, table.lines, column=1)
     scale, notes = scale_of(asked.length, headings.length, "length_unit")
     samples = samples._replace(notes=notes)
     return _Raw(samples, scale, f"line {line}, columns 1 and 2")
+
+
+def _counted(samples: Samples, headings: Headings, asked: Asked, line: int) -> _Raw:
+    """A trace whose first column counts samples: the pixel says how far they are."""
+    x, place = samples.x, f"line {line}, column 1"
+    pixel = _pixel(headings, asked, x.size)
+    needs = f"pixel, the distance of samples, for a count {_COUNTS}; or length_unit"
+    if headings.index(0):
+        needs = f"pixel, the distance of samples: {headings.names[0]!r} is a count"
+    require(pixel is not None, place, ", ".join(f"{v:g}" for v in x[:2]), needs)
+    assert pixel is not None
+    skips = np.flatnonzero(np.diff(x) != 1) + 1
+    if skips.size:
+        place = f"line {samples.lines[0, skips[0]]}, column 1"
+        require(False, place, float(x[skips[0]]), "counts one after the other")
+    note = f"{place}: counts samples, of {pixel.value:.6g} m each"
+    samples = samples._replace(x=x * pixel.value, notes=[note])
+    return _Raw(samples, Scale(1.0, pixel.said), f"line {line}, column 2")
 
 
 def _are_lengths(stated: list[Stated]) -> bool:
@@ -145,8 +181,8 @@ def _map(table: Table, headings: Headings, asked: Asked) -> _Raw:
         require(False, f"line {line}", "3 columns", needs)
     needs = "the distance of samples in m, or in length_unit"
     require(pixel is not None, "pixel", "nothing", needs)
-    counts = not one and (_counts(block[:, 0]) or _counts(block[0]))
-    require(not counts, place, _COUNTS, "heights: numbers of rows or columns are none")
+    if not one:
+        _require_heights(table, headings)
     assert pixel is not None
     lines, columns = np.broadcast_arrays(
         table.lines[:, None], np.arange(1, block.shape[1] + 1)
@@ -158,11 +194,43 @@ def _map(table: Table, headings: Headings, asked: Asked) -> _Raw:
     return _Raw(samples, Scale(1.0, pixel.said), place)
 
 
+def _require_heights(table: Table, headings: Headings) -> None:
+    """Raise where a row or a column of a map is one of positions, or counts."""
+    block, line = table.block, int(table.lines[0])
+    for column, name in enumerate(headings.names):
+        good = not headings.is_position(column) and not headings.index(column)
+        needs = "columns of heights alone, beside pixel"
+        require(good, f"line {headings.named}, column {column + 1}", name, needs)
+    counts = _counts(block[:, 0]) or _counts(block[0])
+    needs = "heights: numbers of rows or columns are none"
+    require(not counts, f"line {line}, column 1", _COUNTS, needs)
+    axis = axis_of(block)
+    if axis is not None:
+        place = f"line {line}" if axis == 0 else f"column 1, lines {line} on"
+        values = block[0] if axis == 0 else block[:, 0]
+        said = ", ".join(f"{v:g}" for v in values[:4])
+        needs = "heights: these rise evenly, as positions do, unlike all others"
+        require(False, place, f"{said}, ...", needs)
+
+
 def _pixel(headings: Headings, asked: Asked, count: int) -> Scale | None:
     """Distance of samples in m: the user's, the file's, or from its width."""
     pixel = asked.pixel_in_metres
     if pixel is not None:
         return Scale(pixel, "pixel")
     if headings.pixel is not None:
-        return Scale(headings.pixel, "the pixel size")
-    return None if headings.width is None else Scale(headings.width / count, "the width")
+        return Scale(_in_file(headings.pixel, headings, asked), "the pixel size")
+    if headings.width is None:
+        return None
+    return Scale(_in_file(headings.width, headings, asked) / count, "the width")
+
+
+def _in_file(size: Size, headings: Headings, asked: Asked) -> float:
+    """A size in m, by its own unit, or else by that of lengths."""
+    if size.unit is not None:
+        return size.value * size.unit
+    scale, _ = scale_of(asked.length, headings.length, "length_unit")
+    needs = f"its unit, as {size.text} um; or length_unit, or pixel"
+    require(scale is not None, size.place, size.text, needs)
+    assert scale is not None
+    return size.value * scale.value

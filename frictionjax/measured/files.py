@@ -37,6 +37,7 @@ def read_heights(
     length_unit: str | None = None,
     height_unit: str | None = None,
     decimal: str | None = None,
+    outliers: str | None = None,
 ) -> Measured:
     """Read a height trace or map from a file.
 
@@ -51,7 +52,8 @@ def read_heights(
     `length_unit` where that is given. `length_unit`, `height_unit`: units of positions and
     heights, as "um", before those that the file states. `height_scale`: m per unit of the
     heights, in place of `height_unit`. `decimal`: the mark of decimals, "." or ",", where
-    the file can be read both ways.
+    the file can be read both ways. `outliers`: "missing" or "keep", where heights lie
+    alone, further from all others than those from each other.
 
     Numbers without any unit are m where they can be: a trace of at most 1 m with a mean
     slope of at most 3. Missing heights (NaN, BAD, empty cells, masked samples, values as
@@ -62,7 +64,7 @@ def read_heights(
     Raises `ValueError`, one line with file, line and column, for a file that cannot be
     read as one of these, or has a unit of lengths and none of heights.
     """
-    options = pixel, height_scale, length_unit, height_unit, decimal
+    options = pixel, height_scale, length_unit, height_unit, decimal, outliers
     measured = heights_of(path, *options)
     for note in measured.notes:
         warnings.warn(f"{path}: {note}", MeasuredWarning, stacklevel=2)
@@ -76,10 +78,12 @@ def heights_of(
     length_unit: str | None = None,
     height_unit: str | None = None,
     decimal: str | None = None,
+    outliers: str | None = None,
 ) -> Measured:
     """`read_heights` without its warnings: its notes say the same."""
+    options = pixel, height_scale, length_unit, height_unit, decimal, outliers
     try:
-        asked = asked_of(pixel, height_scale, length_unit, height_unit, decimal)
+        asked = asked_of(*options)
         data = Path(path).read_bytes()
         text = None if is_instrument_text(data) else decoded(data)
         if text is None:

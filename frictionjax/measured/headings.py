@@ -1,134 +1,181 @@
-"""What the headings and comments of a text file say: units, sizes, factors."""
+"""What the headings and comments of a text file say: units, sizes, names of columns."""
 
 import re
 from typing import NamedTuple
 
-from ..arguments import require
 from .cells import Dialect
-from .units import ALLOWED, cell_unit, metres
+from .entries import ALONG, UP, Size, Stated, is_entry, read_entries, words_of
+from .units import cell_unit, metres
 
 _COMMENT = re.compile(r"^(?:[#%;!\"]|//)+\s*|\s*\"$")
-_ENTRY = re.compile(r"\s*([^=:]+?)\s*[=:]\s*(.*?)\s*")
-_SIZES = re.compile(r"\b([hw])\s*=\s*(\d+)\b")
-_QUANTITY = re.compile(r"([-+.\deE]+)\s*(\S.*)?")
-_ALONG = {"x", "xy", "lateral", "position", "distance", "horizontal", "length", "spacing"}
-_UP = {"z", "value", "height", "heights", "data", "vertical", "amplitude"}
-_EITHER = {"unit", "units", "axis", "all", "of", "measurement"}
-
-
-class Stated(NamedTuple):
-    """One thing that a file says: where, and what."""
-
-    line: int
-    text: str
-    column: int = 0
-
-    @property
-    def place(self) -> str:
-        return f"line {self.line}" + (f", column {self.column}" if self.column else "")
+_AMOUNT = re.compile(r"[-+]?\d[\d.,eE+-]*\s*[^\W\d_]+")  # `0.3 um` heads no column
+_INDEX = re.compile(
+    r"#|(n|no|nr|nos|number|num|idx|index|i|samples?|points?|pts?|counts?|pixels?|px|rows?"
+    r"|lines?|columns?|col)\.?",
+    re.IGNORECASE,
+)
+# Units that are no other word, and in brackets any.
+_UNIT = re.compile(
+    "(?<![^\\W\\d_])(mm|MM|cm|[\u00b5\u03bcu]m|UM|nm|NM|\u00c5|(?i:microns?|angstroms?|inch|inches"
+    "|(?:centi|milli|micro|nano|pico)met(?:er|re)s?))(?![^\\W_])"
+)
+_IN_BRACKETS = re.compile(r"[(\[{<]\s*([^()\[\]{}<>]*?)\s*[)\]}>]")
+_PARTS = ("_", "-", "/", "(", "[", "{", "<", ",")
 
 
 class Headings(NamedTuple):
     """What headings say of a block of numbers: None, or nothing, where they do not.
 
-    `length`, `height`: units of x and z. `pixel`: distance of samples in m. `width`: of
-    all samples, in m. `factor`: m per unit of the heights. `sizes`: `h`, `w`, rows and
-    columns.
+    `length`, `height`: units of x and z. `pixel`: distance of samples. `width`: of all
+    samples. `factor`: of the heights. `sizes`: `h`, `w`, rows and columns. `names`: cells
+    of the heading of columns, in line `named`. `unread`: the first line with a unit of
+    length that is none of these.
     """
 
     length: list[Stated]
     height: list[Stated]
-    pixel: float | None
-    width: float | None
-    factor: float | None
+    pixel: Size | None
+    width: Size | None
+    factor: Size | None
     sizes: dict[str, int]
+    names: list[str]
+    named: int
+    unread: Stated | None
+
+    def index(self, column: int) -> bool:
+        """Whether a column is headed as a count of samples."""
+        name = self._name(column)
+        return bool(_INDEX.fullmatch(name)) and not _is_length(self.names[column])
+
+    def is_position(self, column: int) -> bool:
+        """Whether a column is headed as positions."""
+        words = words_of(self._name(column))
+        return bool(words & (ALONG | {"pos", "y"})) and not words & UP
+
+    def is_height(self, column: int) -> bool:
+        """Whether a column is headed as heights."""
+        return bool(words_of(self._name(column)) & UP)
+
+    def _name(self, column: int) -> str:
+        """`x` of `X (um)`, `x um`, `x_um`."""
+        cell = self.names[column] if self.names else ""
+        for part in _PARTS:
+            cell = cell.split(part)[0] or cell
+        words = [w for w in cell.strip(" \"'%").split() if metres(w) is None]
+        return " ".join(words)
 
 
-def read_headings(said: list[tuple[int, str]], columns: int, dialect: Dialect) -> Headings:
-    """Entries `key=value` or `key: value`, and units in the headings of columns.
+def _is_length(cell: str) -> bool:
+    unit = cell_unit(cell)
+    return unit is not None and metres(unit) is not None
 
-    Raises `ValueError` for a size or factor that is no number > 0, or in no unit of length.
+
+def read_headings(
+    said: list[tuple[int, str]], columns: int, dialect: Dialect, first: int
+) -> Headings:
+    """Entries `key=value` or `key: value`, and units in the heading of columns.
+
+    `first`: the line of the first numbers; no line below it heads a column. Raises
+    `ValueError` for a size or factor that is no number > 0, or in no unit of length.
     """
-    lines = [(number, _COMMENT.sub("", text)) for number, text in said]
-    sizes = {k: int(v) for _, text in lines for k, v in _SIZES.findall(text)}
-    entries = [(n, m[1], m[2]) for n, text in lines if (m := _ENTRY.fullmatch(text))]
-    length, height = _units_of_columns(lines, columns, dialect)
-    for number, key, value in entries:
-        along, up = _meant(key)
-        length += [Stated(number, value)] if along and value else []
-        height += [Stated(number, value)] if up and value else []
-    found = {
-        name: _size(number, key, value, name)
-        for number, key, value in entries
-        for name in _named(key, value)
-    }
-    get = found.get
-    return Headings(length, height, get("pixel"), get("width"), get("factor"), sizes)
+    lines = [(number, _COMMENT.sub("", text).rstrip(",;\t ")) for number, text in said]
+    entries = read_entries(lines)
+    above = [(number, text) for number, text in lines if number < first]
+    named, cells = _heading(above, columns, dialect)
+    units = [Stated(named, u, i + 1) if (u := cell_unit(c)) else None
+             for i, c in enumerate(cells)]
+    length = [s for s in units[:-1] if s] + entries.length
+    height = [s for s in units[-1:] if s] + entries.height
+    if not any(units):
+        height += _of_all(said, above, columns)
+    sizes = entries.sizes
+    used = {s.line for s in (*length, *height, *sizes.values())}
+    unread = next((Stated(n, t) for n, t in said if n not in used and _has_unit(t)), None)
+    return Headings(
+        length,
+        height,
+        sizes.get("pixel"),
+        sizes.get("width"),
+        sizes.get("factor"),
+        entries.counts,
+        cells,
+        named,
+        unread,
+    )
 
 
-def _meant(key: str) -> tuple[bool, bool]:
-    """Whether `X unit`, `Value units` or `Units` speak of lengths, of heights."""
-    words = set(re.findall(r"[a-z]+", key.lower()))
-    if not words & {"unit", "units"}:
-        return False, False
-    both = words <= _EITHER
-    up = bool(words & _UP)
-    return both or (not up and bool(words & _ALONG)), both or up
+def _has_unit(text: str) -> bool:
+    inside = any(metres(unit) is not None for unit in _IN_BRACKETS.findall(text))
+    return inside or _UNIT.search(text) is not None
 
 
-def _named(key: str, value: str) -> list[str]:
-    """Which size an entry gives: of a pixel, of a map (Gwyddion's `Width: 10 um`)."""
-    lower = key.lower()
-    if lower.startswith("height conversion factor"):
-        return ["factor"]
-    if lower.startswith(("pixel size", "pixel width", "x pixel size")):
-        return ["pixel"]
-    quantity = _QUANTITY.fullmatch(value)
-    return ["width"] if lower == "width" and quantity and quantity[2] else []
+def _heading(
+    above: list[tuple[int, str]], columns: int, dialect: Dialect
+) -> tuple[int, list[str]]:
+    """Line and cells of the heading of columns: the nearest one, or units near it."""
+    plain: tuple[int, list[str]] = 0, []
+    for number, text in reversed(above):
+        cells = _with_units(text, columns, dialect)
+        if cells and (not plain[0] or all(map(_is_length, cells))):
+            return number, cells
+        if cells:
+            break
+        if not plain[0] and _are_names(text, columns, dialect):
+            plain = number, _split(text, columns, dialect)
+    return plain
 
 
-def _size(number: int, key: str, text: str, name: str) -> float:
-    """A size in m; a factor in m per unit, whose key may say `(-> nm)`."""
-    quantity = _QUANTITY.fullmatch(text)
-    try:
-        value = float(quantity[1].replace(",", ".")) if quantity else 0.0
-    except ValueError:
-        value = 0.0
-    place = f"line {number}, {key.lower().split('(')[0].strip()}"
-    require(0 < value < float("inf"), place, text, "a number > 0 in m")
-    arrow = re.search(r"->\s*([^\s)]+)", key)
-    unit = arrow[1] if arrow else (quantity and quantity[2]) or "m"
-    scale = metres(unit)
-    require(scale is not None, place, text, ALLOWED)
-    assert scale is not None
-    return value * scale
+def _split(text: str, columns: int, dialect: Dialect) -> list[str]:
+    own = [text.split(s) for s in (dialect.separator or "\t", "\t", ";")]
+    cells = next((c for c in own if len(c) == columns), text.split())
+    return [c.strip() for c in cells] if len(cells) == columns > 1 else []
 
 
-def _units_of_columns(
-    lines: list[tuple[int, str]], columns: int, dialect: Dialect
-) -> tuple[list[Stated], list[Stated]]:
-    """Units in the heading nearest to the numbers that has one for a column."""
-    for number, text in reversed(lines):
-        cells = _cells_of(text, columns, dialect)
-        units = [cell_unit(cell) for cell in cells]
-        stated = [Stated(number, u, i + 1) if u else None for i, u in enumerate(units)]
-        if len(cells) == 1 and stated[0]:
-            return [], [stated[0]._replace(column=0)]
-        if any(stated):
-            return [s for s in stated[:-1] if s], [s for s in stated[-1:] if s]
-    return [], []
+def _are_names(text: str, columns: int, dialect: Dialect) -> bool:
+    """Whether a line without units names the columns, and is no title of two words."""
+    cells = _split(text, columns, dialect)
+    if not cells or is_entry(text) or any(_AMOUNT.fullmatch(c) for c in cells):
+        return False
+    known = all(words_of(c) & (ALONG | UP) or _INDEX.fullmatch(c) for c in cells)
+    strong = any(separator in text for separator in "\t;")
+    return known or (strong and all(re.search(r"[^\W\d_]|#", c) for c in cells))
 
 
-def _cells_of(text: str, columns: int, dialect: Dialect) -> list[str]:
-    """Cells of a heading with as many as the numbers have, up to three; or one, or none."""
-    if columns in (2, 3):
-        own = [text.split(s) for s in {dialect.separator or "\t", "\t", ";"}]
-        parted = re.split(r"\s{2,}|(?<=[)\]])\s+", text)
-        some = [c for c in own if len(c) == columns and any(map(cell_unit, c))]
-        # `Height, nm` and `distance um` are no two columns.
-        loose = [c for c in (parted, text.split(","), text.split()) if len(c) == columns]
-        whole = [cells for cells in loose if all(map(cell_unit, cells))]
-        return next(iter(some + whole), [])
-    entry = _ENTRY.fullmatch(text)
-    unit = cell_unit(text) if columns == 1 or re.search(r"[)\]]$", text) else None
-    return [text] if not entry and unit and metres(unit) else []
+def _with_units(text: str, columns: int, dialect: Dialect) -> list[str]:
+    """Cells of a heading with as many as the numbers have, and a unit in one or all."""
+    if columns < 2:
+        return []
+    own = [text.split(s) for s in {dialect.separator or "\t", "\t", ";"}]
+    parted = re.split(r"\s{2,}|(?<=[)\]])\s+", text)
+    some = [c for c in own if len(c) == columns and _heads(c)]
+    # `Height, nm` and `distance um` are no two columns.
+    ways = (parted, text.split(","), text.split(" / "), text.split())
+    loose = [c for c in ways if len(c) == columns]
+    whole = [c for c in loose if all(map(cell_unit, c)) and _heads(c)]
+    return [cell.strip() for cell in next(iter(some + whole), [])]
+
+
+def _heads(cells: list[str]) -> bool:
+    """Whether cells with units may head columns: amounts do not, nor does a lone `in`."""
+    stripped = [cell.strip() for cell in cells]
+    if any(_AMOUNT.fullmatch(cell) for cell in stripped):
+        return False
+    units = [cell_unit(cell) for cell in stripped]
+    bare = any(metres(cell) is not None for cell in stripped)
+    return all(units) if bare else any(units)
+
+
+def _of_all(
+    said: list[tuple[int, str]], above: list[tuple[int, str]], columns: int
+) -> list[Stated]:
+    """The unit of a map, or of one column: `Height [nm]`, directly above or so named."""
+    marks = {number: _COMMENT.match(text) for number, text in said}
+    for number, text in reversed(above):
+        bracket = columns == 1 or re.search(r"[)\]]$", text)
+        unit = None if is_entry(text) or not bracket else cell_unit(text)
+        if unit and metres(unit) is not None:
+            words = words_of(text) - {unit.lower()}
+            direct = number == above[-1][0] and not marks[number]
+            if direct or not words or words & (UP | {"topography"}):
+                return [Stated(number, unit)]
+    return []

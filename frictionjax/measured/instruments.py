@@ -75,7 +75,9 @@ def _samples(reader: Any, suffix: str, asked: Asked) -> Samples:
         notes.append(
             f"{place}: {heights.shape[0]} rows of {x.size}, the last index along x"
         )
-    found = without_sentinels(Samples(x, heights, notes, _NOWHERE, _NOWHERE))
+    found = without_sentinels(
+        Samples(x, heights, notes, _NOWHERE, _NOWHERE), asked.outliers
+    )
     along, up, unsaid = completed(lengths_by, heights_by, place)
     x, heights = along * x, up * found.heights
     if unsaid:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arguments import require
-from .headings import Stated
+from .entries import Stated
 from .units import ALLOWED, metres, require_unit
 
 # What has no unit is read as m where it could be: a trace of at most 1 m, whose mean
@@ -22,6 +22,7 @@ class Asked(NamedTuple):
     length: float | None
     height: float | None
     decimal: str | None
+    outliers: str | None = None
 
     @property
     def pixel_in_metres(self) -> float | None:
@@ -39,8 +40,11 @@ def asked_of(
     length_unit: str | None,
     height_unit: str | None,
     decimal: str | None,
+    outliers: str | None = None,
 ) -> Asked:
     """Options of `read_heights`, checked."""
+    known = outliers in (None, "missing", "keep")
+    require(known, "outliers", outliers, '"missing" or "keep"')
     for name, given in (("pixel", pixel), ("height_scale", height_scale)):
         good = given is None or (math.isfinite(given) and given > 0)
         require(good, name, given, f"{name} > 0")
@@ -48,7 +52,7 @@ def asked_of(
     require(not both, "height_unit", height_unit, "none beside height_scale")
     length = require_unit("length_unit", length_unit)
     height = require_unit("height_unit", height_unit)
-    return Asked(pixel, height_scale, length, height, decimal)
+    return Asked(pixel, height_scale, length, height, decimal, outliers)
 
 
 class Scale(NamedTuple):

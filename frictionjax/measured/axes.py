@@ -1,0 +1,44 @@
+"""Rows or columns of a map that are positions, as tables of offices have them."""
+
+import numpy as np
+
+# Of the step. Positions written with two digits are even to 5%; of eight heights or more
+# no flank is, unless its neighbour is as straight.
+_EVEN, _EXACT, _MANY = 0.05, 1e-6, 8
+
+
+def axis_of(block: np.ndarray) -> int | None:
+    """0 where the first row is one of positions, 1 where the first column is, or None."""
+    for axis, rows in ((0, block), (1, block.T)):
+        if len(rows) > 1 and (_unlike(rows) or _unlike(rows[:, 1:])):
+            return axis
+    return None
+
+
+def _unlike(rows: np.ndarray) -> bool:
+    """Whether the first row rises evenly, and the next one does not as it does."""
+    first, second, count = rows[0], rows[1], rows.shape[1]
+    if count < 3:
+        return False
+    if count >= _MANY:
+        return _step(first, _EVEN) > 0 and not _alike(first, second)
+    if not _step(first, _EXACT) or _alike(first, second):
+        return False
+    # So few heights may rise evenly by chance, but then as their neighbours nearly do.
+    apart = np.std(np.diff(rows, axis=0), axis=1)
+    others = apart[1:][np.isfinite(apart[1:])]
+    return bool(others.size and apart[0] > 2 * others.max())
+
+
+def _step(values: np.ndarray, tolerance: float) -> float:
+    """The step of values that rise evenly, or 0."""
+    steps = np.diff(values)
+    step = float(steps.mean()) if np.isfinite(steps).all() else 0.0
+    line = values[0] + step * np.arange(values.size)
+    even = step > 0 and np.max(np.abs(values - line)) <= tolerance * step
+    return step if even else 0.0
+
+
+def _alike(first: np.ndarray, second: np.ndarray) -> bool:
+    step, other = _step(first, _EVEN), _step(second, 2 * _EVEN)
+    return 0.5 * step < other < 2 * step
