@@ -156,7 +156,8 @@ def _rounded(value: float, digits: int, rounding: str) -> str:
 def require(condition: Any, name: str, value: Any, allowed: str) -> None:
     """Raise `ValueError` naming the argument, its value and what is allowed."""
     if not bool(condition):
-        raise ValueError(f"{name} = {as_text(value)}: needs {allowed}")
+        masked = ", none of them masked" if is_masked(value) else ""
+        raise ValueError(f"{name} = {as_text(value)}: needs {allowed}{masked}")
 
 
 def is_concrete(*trees: Any) -> bool:

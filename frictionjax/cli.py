@@ -93,6 +93,11 @@ _surface = _options(
     ),
     click.option("--decimal", help="Mark of decimals: . or , [as the file shows]"),
     click.option(
+        "--outliers",
+        type=click.Choice(["missing", "keep"]),
+        help="What heights are that lie alone, far from all others. [asked]",
+    ),
+    click.option(
         "--row",
         type=click.IntRange(0),
         help="Row of a map. [mean over the rows, moved into phase]",

@@ -27,7 +27,8 @@ _PARTS = {
 }
 _TOP = ("duration", "z0")
 _STUDY = ("eps", "gamma", "accuracy")
-_READING = ("pixel", "height_scale")
+_TEXTS = ("length_unit", "height_unit", "decimal", "outliers")
+_READING = ("pixel", "height_scale", *_TEXTS)
 _WHOLE = ("harmonics", "row")
 _FIT = ("period", "smoothing", *_WHOLE)
 
@@ -137,10 +138,17 @@ def _measured_profile(given: dict[str, Any], folder: Path) -> profiles.Fourier:
     _need(text, f"[profile] heights = {name!r}", "the name of a file")
     options = {key: _option(key, given[key]) for key in given if key != "heights"}
     reading = {key: options.pop(key) for key in _READING if key in options}
-    return fit_profile(read_heights(folder / name, **reading), **options).profile
+    measured = read_heights(folder / name, **reading)
+    try:
+        return fit_profile(measured, **options).profile
+    except ValueError as error:
+        raise ValueError(f"{folder / name}: {error}") from None
 
 
 def _option(key: str, value: Any) -> Any:
+    if key in _TEXTS:
+        _need(isinstance(value, str), f"[profile] {key} = {value!r}", "a text")
+        return value
     whole = isinstance(value, int) and not isinstance(value, bool)
     said = f"[profile] {key} = {value!r}"
     _need(whole or key not in _WHOLE, said, "a whole number")

@@ -25,6 +25,12 @@ _MARKS = (
 _COMMENTS = ("#", "%", "//")
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eEdD][-+]?\d+)?$")
 _BLANK = " "
+_GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(?:(,\d{3})+(\.\d*)?|(\.\d{3})+(,\d*)?)")
+_GROUPS = (
+    'decimal="," where commas mark decimals, decimal="." where they part thousands: '
+    "three digits stand behind each"
+)
+_EMPTY = "an empty cell"
 _POINTS = {".": "point", ",": "comma"}
 # Names between blanks, each with the unit in brackets behind it.
 _WORDS = re.compile(r"[^\s(\[]+(?:\s*[(\[][^)\]]*[)\]])?|[(\[][^)\]]*[)\]]")
@@ -37,6 +43,7 @@ class Table(NamedTuple):
     numbers: np.ndarray
     lines: list[int]
     heading_line: int
+    comments: list[tuple[int, str]] = []
 
     def place(self, row: int, column: int) -> str:
         """Where a number stands in the file."""
@@ -90,27 +97,38 @@ def _decoded(data: bytes, encoding: str) -> str:
         raise ValueError(f"{place}: needs text in {encoding.upper()}") from None
 
 
-def read_table(data: bytes) -> Table:
+def read_table(data: bytes, decimal: str | None = None) -> Table:
     """A line of headings, perhaps one of units below it, and lines of numbers.
+
+    `decimal`: the mark of decimals, "." or ",", where the file can be read both ways.
 
     Raises `ValueError` that names line and column: for no such lines, a row of another
     length, a cell that is empty or no finite number, two columns of one name.
     """
-    rows = _rows(decoded(data))
+    good = decimal in (None, ".", ",")
+    require(good, "decimal", decimal, 'a point "." or a comma ","')
+    text = decoded(data)
+    rows = _rows(text)
     require(len(rows) > 1, "lines", len(rows), "a line of names and lines of numbers")
     first, *rest = rows
     name = f"line {first.line}"
-    text = " ".join(first.cells)
-    require(not _numeric(first), name, text, "names of the columns above numbers")
+    said = " ".join(first.cells)
+    require(not _numeric(first), name, said, "names of the columns above numbers")
     headings = [heading_of(cell) for cell in first.cells]
     if any(map(is_unit, rest[0].cells)):
         headings = _with_units(first, headings, rest.pop(0))
     _require_names(first, headings)
     require(bool(rest), "lines", "names alone", "lines of numbers below them")
     for row in rest:
-        _require_length(row, len(headings))
-    numbers = _numbers(headings, rest)
-    return Table(headings, numbers, [row.line for row in rest], first.line)
+        _require_length(row, len(headings), headings)
+    numbers = _numbers(headings, rest, decimal)
+    comments = [(i, line.strip()) for i, line in _comments(text) if i != first.line]
+    return Table(headings, numbers, [row.line for row in rest], first.line, comments)
+
+
+def _comments(text: str) -> list[tuple[int, str]]:
+    lines = enumerate(text.splitlines(), start=1)
+    return [(i, line) for i, line in lines if line.lstrip().startswith(_COMMENTS)]
 
 
 def _numeric(row: _Row) -> bool:
@@ -173,20 +191,25 @@ def _require_names(first: _Row, headings: list[Heading]) -> None:
         require(before == column, place, first.cells[column], needs)
 
 
-def _require_length(row: _Row, count: int) -> None:
+def _require_length(row: _Row, count: int, headings: list[Heading] | None = None) -> None:
     size, needs = len(row.cells), f"{count}, one for each name"
     # An empty last cell was taken for the end of the line.
-    last = place_of(row.line, size)
-    require(size != count - 1, last, "nothing", f"a number: {needs}")
+    last = place_of(row.line, size, headings[-1].name if headings else "")
+    require(size != count - 1, last, _EMPTY, "a number" if headings else "a unit, or -")
     require(size == count, f"line {row.line}", f"{size} fields", needs)
 
 
-def _numbers(headings: list[Heading], rows: list[_Row]) -> np.ndarray:
+def _numbers(headings: list[Heading], rows: list[_Row], decimal: str | None) -> np.ndarray:
     found = np.empty((len(rows), len(headings)))
-    points = ""
+    if decimal is None:
+        _require_decimals(headings, rows)
+    points = decimal or ""
     for index, row in enumerate(rows):
         for column, cell in enumerate(row.cells):
             place = place_of(row.line, column, headings[column].name)
+            require(cell, place, _EMPTY, "a number")
+            if decimal is not None and _GROUPED.fullmatch(cell):
+                cell = _ungrouped(cell, "," if decimal == "." else ".")
             require(_NUMBER.match(cell), place, cell, "a finite number")
             for point in ".,":
                 if point in cell:
@@ -196,3 +219,24 @@ def _numbers(headings: list[Heading], rows: list[_Row]) -> np.ndarray:
             plain = cell.replace(",", ".").replace("d", "e").replace("D", "e")
             found[index, column] = float(plain)
     return found
+
+
+def _ungrouped(cell: str, mark: str) -> str:
+    """A number without the marks that part its thousands, where three digits follow."""
+    parts = cell.split(mark)
+    return "".join(parts) if all(re.match(r"\d{3}", p) for p in parts[1:]) else cell
+
+
+def _require_decimals(headings: list[Heading], rows: list[_Row]) -> None:
+    """Raise where all commas stand as those of thousands do: `25,875`."""
+    marked = [
+        (row.line, column, cell)
+        for row in rows
+        for column, cell in enumerate(row.cells)
+        if "," in cell
+    ]
+    points = any("." in cell for row in rows for cell in row.cells)
+    if points or not marked or not all(_GROUPED.fullmatch(c) for _, _, c in marked):
+        return
+    line, column, cell = marked[0]
+    require(False, place_of(line, column, headings[column].name), cell, _GROUPS)

@@ -18,6 +18,7 @@ _WRITTEN = (
     re.compile(r"^(?P<name>[^(\[]*)[(\[](?P<unit>[^)\]]*)[)\]]$"),  # force (mN), force [mN]
     re.compile(r"^(?P<name>[^/]*)/(?P<unit>[^/]*)$"),  # force/mN
 )
+_LOOSE = re.compile(r"^(?P<name>.*[^\s,])[\s,]+(?P<unit>\S+)$")  # force, mN; force mN
 _JOINED = re.compile(r"^(?P<name>.+)_(?P<unit>[^_]+)$")  # force_mN
 
 
@@ -29,22 +30,34 @@ class Heading(NamedTuple):
 
 
 def heading_of(text: str) -> Heading:
-    """Name and unit of `force (mN)`, `force [mN]`, `force/mN`, `force_mN` or `force`."""
+    """Name and unit of `force (mN)`, `force [mN]`, `force/mN`, `force_mN`, `force, mN`,
+    `force mN` or `force`."""
     plain = text.strip().translate(_MICRO)
     for pattern in _WRITTEN:
         found = pattern.match(plain)
         if found:
             return Heading(found["name"].strip().lower(), found["unit"].strip())
-    found = _JOINED.match(plain)
-    if found and is_unit(found["unit"]):
+    for pattern in (_JOINED, _LOOSE):
+        found = pattern.match(plain)
+        if not found or not is_unit(found["unit"]):
+            continue
         return Heading(found["name"].strip().lower(), found["unit"])
     return Heading(plain.lower(), "")
 
 
 def is_unit(text: str) -> bool:
     """Whether a text is a unit that is known, of any dimension."""
-    unit = text.strip().strip("()[]").strip().translate(_MICRO)
-    return any(unit in known for known in UNITS.values())
+    return any(plain_unit(text) in known for known in UNITS.values())
+
+
+def plain_unit(text: str) -> str:
+    """A unit as `UNITS` has it, without brackets."""
+    return text.strip().strip("()[]").strip().translate(_MICRO)
+
+
+def size_of(unit: str, dimension: str) -> float | None:
+    """Factor from a unit to s, N or m; None where it is none of that dimension."""
+    return UNITS.get(dimension, {}).get(unit)
 
 
 def factor_of(label: str, heading: Heading, dimension: str) -> float:

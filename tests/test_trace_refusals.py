@@ -61,8 +61,11 @@ def test_files_of_other_programs(data, tmp_path):
         ("t,force\n", "lines = 1: needs a line of names and lines of numbers"),
         ("t,force,force\n0,1,2\n", "line 1, column 3 = 'force': needs another name than"),
         ("t,time,force\n0,1,2\n", "line 1, column 2 = 't': needs one column of times"),
-        ("t,force\n0,1\n1,\n", "line 3, column 2 = 'nothing': needs a number"),
-        ("t;force;uncertainty\n0;1;0,1\n1;;0,1\n", r"line 3, column 2 \(force\) = ''"),
+        ("t,force\n0,1\n1,\n", r"line 3, column 2 .* = 'an empty cell': needs a number"),
+        (
+            "t;force;uncertainty\n0;1;0,1\n1;;0,1\n",
+            r"line 3, column 2 \(force\) = 'an empty cell'",
+        ),
         ("t,force\n0,a\n", r"line 2, column 2 \(force\) = 'a': needs a finite number"),
         ("t,force\n0,1\n0.2,nan\n", r"line 3, column 2 \(force\) = 'nan'"),
         ("t,force\n0,1\n2,1\n1,1\n", r"line 4, column 1 \(t\) = 1: needs increasing"),

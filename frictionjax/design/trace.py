@@ -43,7 +43,9 @@ class Trace:
         (ts, values, uncertainty), self.masked = without_masked(ts, values, uncertainty)
         self.ts = numbers_of("trace.ts", ts)
         good = self.ts.ndim == 1 and self.ts.size >= 4
-        require(good, "trace.ts", self.ts.shape, "4 or more times, shape (n,)")
+        said = f"{self.ts.size} times, {self.masked} masked" if self.masked else None
+        allowed = "4 or more times, shape (n,)"
+        require(good, "trace.ts", said or self.ts.shape, allowed)
         require(np.all(np.isfinite(self.ts)), "trace.ts", self.ts, "finite times")
         require(np.all(np.diff(self.ts) > 0), "trace.ts", self.ts, "increasing times")
         require(self.ts[0] >= 0, "trace.ts", self.ts[0], "times from 0 on")
@@ -57,10 +59,11 @@ class Trace:
             self.uncertainty = _deviations(uncertainty, self.ts.shape)
 
     @classmethod
-    def from_csv(cls, path: Any) -> "Trace":
+    def from_csv(cls, path: Any, decimal: str | None = None) -> "Trace":
         """Read a file with a line of names, `t`, one of `force` and `z`, and, where it is
         known, `uncertainty`, in s, N and m or in the units that the names carry: `t (ms)`,
-        `force [mN]`, `z/um`. A column called `index` is skipped.
+        `force [mN]`, `z/um`, or comments: `# force in mN`. A column `index` is skipped.
+        `decimal`: the mark of decimals, "." or ",", where the file can be read both ways.
 
         UTF-8 or UTF-16; separated by commas, semicolons, tabs or blanks; decimal commas
         where columns are not separated by them; lines that begin with # are comments.
@@ -69,7 +72,7 @@ class Trace:
         table.
         """
         try:
-            columns = trace_columns(Path(path))
+            columns = trace_columns(Path(path), decimal)
             times, uncertainty = columns.pop("t"), columns.pop("uncertainty", None)
             measured: Any = columns
             return cls(times, **measured, uncertainty=uncertainty)

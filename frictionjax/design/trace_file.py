@@ -8,33 +8,42 @@ import numpy as np
 from ..arguments import require
 from ..text_tables import Table, read_table
 from ..text_units import factor_of
+from .trace_comments import with_comments
 
 QUANTITIES = ("force", "z")
 _DIMENSIONS = {"t": "time", "force": "force", "z": "length"}
-_SAME = {"time": "t"}  # other names of columns
+_SAME = {  # other names of columns
+    "time": "t",
+    "friction force": "force",
+    "lateral force": "force",
+    "tangential force": "force",
+}
+_CALLED = {"t": "times"}
 _SKIPPED = ("index", "#", "no", "no.", "sample")
 _KNOWN = "t, force or z, uncertainty, or index, which is skipped"
 
 
-def trace_columns(path: Path) -> dict[str, np.ndarray]:
+def trace_columns(path: Path, decimal: str | None = None) -> dict[str, np.ndarray]:
     """Columns of a file by name: `t`, `force` or `z`, `uncertainty`; in s, N and m.
 
     Raises `ValueError` that names line and column of what is not one of these.
     """
-    table = read_table(path.read_bytes())
+    table = read_table(path.read_bytes(), decimal)
     names = [_SAME.get(heading.name, heading.name) for heading in table.headings]
     listed = ", ".join(names)
-    require("t" in names, "columns", listed, "t among them")
+    columns = f"line {table.heading_line}, columns"
+    require("t" in names, columns, listed, "t among them")
     measured = [name for name in QUANTITIES if name in names]
-    require(bool(measured), "columns", listed, "force or z among them")
-    require(len(measured) == 1, "columns", listed, "one of force and z")
+    require(bool(measured), columns, listed, "force or z among them")
+    require(len(measured) == 1, columns, listed, "one of force and z")
+    table = table._replace(headings=with_comments(table, names, _DIMENSIONS))
     found: dict[str, np.ndarray] = {}
     for column, name in enumerate(names):
         if name in _SKIPPED:
             continue
         place = table.heading_place(column)
         require(name in (*_DIMENSIONS, "uncertainty"), place, name, _KNOWN)
-        require(name not in found, place, name, "one column of times")
+        require(name not in found, place, name, f"one column of {_CALLED.get(name, name)}")
         found[name] = _in_si(table, column, name, measured[0], names)
     _require_times(table, names.index("t"))
     if "uncertainty" in names:

@@ -83,7 +83,7 @@ def _pairs(table: Table, headings: Headings, asked: Asked) -> _Raw:
     said = headings.names[1] if swapped else ""
     place = f"line {headings.named}, column 2"
     require(not swapped, place, said, "positions first, then heights")
-    index = headings.index(0)
+    index = headings.is_index(0)
     unit = asked.length is not None or _are_lengths(headings.length)
     if index or (_counts(x) and (asked.pixel is not None or not unit)):
         return _counted(samples, headings, asked, line)
@@ -100,7 +100,7 @@ def _counted(samples: Samples, headings: Headings, asked: Asked, line: int) -> _
     x, place = samples.x, f"line {line}, column 1"
     pixel = _pixel(headings, asked, x.size)
     needs = f"pixel, the distance of samples, for a count {_COUNTS}; or length_unit"
-    if headings.index(0):
+    if headings.is_index(0):
         needs = f"pixel, the distance of samples: {headings.names[0]!r} is a count"
     require(pixel is not None, place, ", ".join(f"{v:g}" for v in x[:2]), needs)
     assert pixel is not None
@@ -198,7 +198,7 @@ def _require_heights(table: Table, headings: Headings) -> None:
     """Raise where a row or a column of a map is one of positions, or counts."""
     block, line = table.block, int(table.lines[0])
     for column, name in enumerate(headings.names):
-        good = not headings.is_position(column) and not headings.index(column)
+        good = not headings.is_position(column) and not headings.is_index(column)
         needs = "columns of heights alone, beside pixel"
         require(good, f"line {headings.named}, column {column + 1}", name, needs)
     counts = _counts(block[:, 0]) or _counts(block[0])

@@ -42,7 +42,7 @@ class Headings(NamedTuple):
     named: int
     unread: Stated | None
 
-    def index(self, column: int) -> bool:
+    def is_index(self, column: int) -> bool:
         """Whether a column is headed as a count of samples."""
         name = self._name(column)
         return bool(_INDEX.fullmatch(name)) and not _is_length(self.names[column])
@@ -82,8 +82,10 @@ def read_headings(
     entries = read_entries(lines)
     above = [(number, text) for number, text in lines if number < first]
     named, cells = _heading(above, columns, dialect)
-    units = [Stated(named, u, i + 1) if (u := cell_unit(c)) else None
-             for i, c in enumerate(cells)]
+    units = [
+        Stated(named, u, i + 1) if (u := cell_unit(c)) else None
+        for i, c in enumerate(cells)
+    ]
     length = [s for s in units[:-1] if s] + entries.length
     height = [s for s in units[-1:] if s] + entries.height
     if not any(units):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import require
+from .axes import axis_of
 from .samples import Samples
 from .scales import Asked, Scale, completed, require_metres
 from .sentinels import without_sentinels
@@ -57,13 +58,17 @@ def _samples(reader: Any, suffix: str, asked: Asked) -> Samples:
     require(not guessed, "file", "binary", "a format that SurfaceTopography knows")
     channel, notes = _channel(reader)
     sizes = channel.physical_sizes
-    known = {} if sizes is not None else {"physical_sizes": channel.nb_grid_pts}
+    uneven = channel.is_uniform is False  # a trace with positions has no sizes
+    known = {} if sizes is not None or uneven else {"physical_sizes": channel.nb_grid_pts}
     surface = reader.topography(channel_index=channel.index, **known)
     x, heights = _arrays(surface, form in _BARE)
     pixel = asked.pixel_in_metres
     place = f"format {form}, channel {channel.name}"
     needs = "the distance of samples in m, or in length_unit: the file has none"
-    require(sizes is not None or pixel is not None, "pixel", "nothing", needs)
+    placed = sizes is not None or pixel is not None or uneven
+    require(placed, "pixel", "nothing", needs)
+    rising = bool(np.all(np.diff(x) > 0))
+    require(rising, place, "positions that fall back", "increasing positions")
     unit = surface.unit
     value = None if unit is None else metres(unit)
     require(unit is None or value is not None, place, unit, ALLOWED)
@@ -75,6 +80,10 @@ def _samples(reader: Any, suffix: str, asked: Asked) -> Samples:
         notes.append(
             f"{place}: {heights.shape[0]} rows of {x.size}, the last index along x"
         )
+        axis = axis_of(heights)
+        values = heights[:, 0] if axis == 1 else heights[0]
+        needs = "heights: these rise evenly, as positions do, unlike all others"
+        require(axis is None, ("first row", "first column")[axis or 0], values, needs)
     found = without_sentinels(
         Samples(x, heights, notes, _NOWHERE, _NOWHERE), asked.outliers
     )

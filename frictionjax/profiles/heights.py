@@ -120,7 +120,10 @@ def fit_heights(
     """Fit trend and harmonics of `period` to a trace; see `Fourier.from_heights`."""
     (x, heights), masked = without_masked(x, heights)
     x, heights = (numbers_of(name, v) for name, v in (("x", x), ("heights", heights)))
-    require(x.ndim == 1 and x.size >= 8, "x", x.shape, "8 or more positions, shape (n,)")
+    if masked:
+        require_left("heights", masked, x.size)
+    said = f"{x.size} positions" if x.ndim == 1 else x.shape
+    require(x.ndim == 1 and x.size >= 8, "x", said, "8 or more positions, shape (n,)")
     require(heights.shape == x.shape, "heights", heights.shape, f"the shape {x.shape} of x")
     require(np.all(np.isfinite(x)), "x", x, "finite positions")
     require(np.all(np.isfinite(heights)), "heights", heights, "finite heights")
@@ -175,6 +178,12 @@ def _waves(x: np.ndarray, heights: np.ndarray, period: float, harmonics: int) ->
     rounding = _ROUNDING * float(np.ptp(heights))
     noise = max(np.sqrt(left / free), rounding) * np.sqrt(2 / x.size) / period
     return Waves(_complex(solution) / period, np.full(harmonics, noise), np.ones(harmonics))
+
+
+def require_left(name: str, masked: int, left: int) -> None:
+    """Raise where masks leave too few samples of a trace."""
+    said = f"{masked} of {masked + left} masked"
+    require(left >= 8, name, said, "8 or more samples that are not")
 
 
 def _require_covered(phases: np.ndarray, harmonics: int, masked: int) -> None:

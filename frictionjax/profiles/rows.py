@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import is_masked, known_numbers, numbers_of, require, require_whole
-from .heights import SeriesFit, find_period, fit_heights
+from .heights import SeriesFit, find_period, fit_heights, require_left
 from .steepest import Waves
 
 _BLOCKS = 10  # of neighbouring rows, which are not independent of each other
@@ -42,6 +42,10 @@ def fit_rows(
     rows = heights if is_masked(heights) else numbers_of("heights", heights)
     good = np.ndim(rows) == 2 and np.size(rows) > 0
     require(good, "heights", np.shape(rows), "heights of a map, shape (rows, n)")
+    if is_masked(rows):
+        hidden = np.ma.getmaskarray(rows).sum(axis=1)
+        for row, count in enumerate(hidden):
+            require_left(f"heights, row {row}", int(count), rows.shape[1] - int(count))
     if period is None and len(rows) > 1:
         period = _common_period(known_numbers(x), _whole_rows(rows), harmonics)
     return [fit_heights(x, row, period, harmonics, smoothing) for row in rows]

@@ -68,8 +68,8 @@ class Spline(AbstractSampled):
 
         Raises `ValueError` as `Spline`, and for a length that is not in (0, 2.5].
         """
+        _require_heights(heights)
         known = known_numbers(heights).astype(float)
-        _require_heights(known)
         gain = gaussian_gain(length, 1.0, known.size // 2)
         spectrum = np.fft.rfft(known) * np.append(1.0, gain)
         smooth = np.fft.irfft(spectrum, known.size)

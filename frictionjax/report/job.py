@@ -111,12 +111,15 @@ def _read_job(
         return Job(exchanged(known.scene, known.scene.profile, chosen), study, warned, None)
     measured = heights_of(heights, **file)
     harmonics = 8 if harmonics is None else harmonics
-    found = fit_profile(measured, period, harmonics, row, smoothing)
-    scene = exchanged(known.scene, found.profile, chosen)
+    try:
+        found = fit_profile(measured, period, harmonics, row, smoothing)
+        scene = exchanged(known.scene, found.profile, chosen)
+        rows = None
+        if measured.heights.shape[0] > 1:
+            rows = row_coefficients(measured, chosen, harmonics, found.period, smoothing)
+    except ValueError as error:
+        raise ValueError(f"{heights}: {error}") from None
     notes = warned + _notes(heights, measured, found, row)
-    rows = None
-    if measured.heights.shape[0] > 1:
-        rows = row_coefficients(measured, chosen, harmonics, found.period, smoothing)
     return Job(scene, study, notes, rows, row)
 
 
