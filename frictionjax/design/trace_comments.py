@@ -8,6 +8,8 @@ from ..text_units import Heading, is_unit, plain_unit, size_of
 
 _TOKENS = re.compile(r"[^\s,;:=()\[\]/]+")
 _FILLERS = {"in", "is", "are", "unit", "units", "given", "measured", "column"}
+_OTHERS = {"lbf", "ozf", "gf", "kgf", "dyn", "V", "mV"}  # named where they are refused
+_SAME = {"time": "t", "times": "t", "forces": "force"}
 _WORDS = {"min", "h", "s", "m", "N"}  # other things in a sentence
 _NEEDS = "its unit in the heading, as force (mN): this comment is not understood"
 
@@ -39,7 +41,7 @@ def _stated(text: str) -> list[tuple[str, str]]:
     """Words of a comment and the units behind them, "" for a unit behind none."""
     tokens, found = _TOKENS.findall(text), []
     for i, token in enumerate(tokens):
-        if not is_unit(token):
+        if not is_unit(token) and token not in _OTHERS:
             continue
         before = [t for t in tokens[:i] if t.lower() not in _FILLERS]
         word = before[-1] if before else ""
@@ -49,7 +51,8 @@ def _stated(text: str) -> list[tuple[str, str]]:
 
 
 def _is_meant(word: str, name: str, heading: Heading) -> bool:
-    return bool(word) and (word == name or word in heading.name.split())
+    meant = _SAME.get(word, word)
+    return bool(word) and (meant == name or word in heading.name.split())
 
 
 def _require_no_other(

@@ -78,7 +78,7 @@ def read_headings(
     `first`: the line of the first numbers; no line below it heads a column. Raises
     `ValueError` for a size or factor that is no number > 0, or in no unit of length.
     """
-    lines = [(number, _COMMENT.sub("", text).rstrip(",;\t ")) for number, text in said]
+    lines = [(number, _without_mark(text)) for number, text in said]
     entries = read_entries(lines)
     above = [(number, text) for number, text in lines if number < first]
     named, cells = _heading(above, columns, dialect)
@@ -91,7 +91,7 @@ def read_headings(
     if not any(units):
         height += _of_all(said, above, columns)
     sizes = entries.sizes
-    used = {s.line for s in (*length, *height, *sizes.values())}
+    used = {s.line for s in (*length, *height)} | {s.line for s in sizes.values()}
     unread = next((Stated(n, t) for n, t in said if n not in used and _has_unit(t)), None)
     return Headings(
         length,
@@ -104,6 +104,12 @@ def read_headings(
         named,
         unread,
     )
+
+
+def _without_mark(text: str) -> str:
+    """A line without its comment mark; `#` in a cell of its own is a column's name."""
+    cell = re.match(r"#\s*[;,\t]", text)
+    return (text if cell else _COMMENT.sub("", text)).rstrip(",;\t ")
 
 
 def _has_unit(text: str) -> bool:
