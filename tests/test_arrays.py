@@ -87,6 +87,48 @@ def test_a_mask_is_never_dropped_without_a_word(call):
         call()
 
 
+ALL = np.ones(400, bool)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: fx.profiles.Spline(MASKED), "4 or more heights, .*, none of them masked"),
+        (
+            lambda: fx.profiles.Spline.smoothed(MASKED, 0.5),
+            r"\(1 of 5 masked\).*none of them",
+        ),
+        (
+            lambda: fx.profiles.Polyline(np.arange(5.0) / 5, MASKED, 0.01),
+            r"of x, none of them masked",
+        ),
+        (lambda: fx.loads.PiecewiseLinear(np.arange(5.0), MASKED), "none of them masked"),
+        (lambda: fx.profiles.Fourier(np.zeros(5), MASKED), "none of them masked"),
+        (
+            lambda: fx.profiles.Fourier.from_heights(X, masked(HEIGHTS, ALL)),
+            "heights = '400 of 400 masked': needs 8 or more samples that are not",
+        ),
+        (
+            lambda: fx.profiles.Fourier.from_heights(
+                X, np.ma.array([HEIGHTS] * 2, mask=[~ALL, ALL])
+            ),
+            "heights, row 1 = '400 of 400 masked': needs 8 or more",
+        ),
+        (
+            lambda: fx.Trace(X, force=masked(HEIGHTS, ALL)),
+            "trace.ts = '0 times, 400 masked': needs 4 or more times",
+        ),
+        (
+            lambda: fx.profiles.Fourier.from_heights(X[:5], HEIGHTS[:5]),
+            "x = '5 positions': needs 8 or more",
+        ),
+    ],
+)
+def test_what_is_missing_is_said(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
 def test_masks_that_hide_nothing_are_arrays():
     values = np.ma.array([0.0, 0.01, 0.0, -0.01])
     assert known_numbers(values).tolist() == values.tolist()

@@ -83,6 +83,30 @@ def test_arrays_without_units_ask_for_them(shape, tmp_path):
     assert measured.x[-1] == pytest.approx(PIXEL * (COUNT - 1))
 
 
+@pytest.mark.parametrize("unit", ["nm", "\u00b5m", "mm"])
+def test_positions_of_an_uneven_trace_are_read(unit, tmp_path):
+    from SurfaceTopography import NonuniformLineScan
+
+    size = {"nm": 1e9, "\u00b5m": 1e6, "mm": 1e3}[unit]
+    x, z = (np.delete(v, [7, 91]) for v in (PIXEL * np.arange(COUNT), heights(1)[0]))
+    NonuniformLineScan(size * x, size * z, unit=unit).to_netcdf(tmp_path / "n.nc")
+    measured = read(tmp_path / "n.nc")
+    assert measured.x == pytest.approx(x)
+    assert measured.heights == pytest.approx(z[None], abs=1e-15)
+    assert fit_profile(measured, harmonics=2).period == pytest.approx(PERIOD, rel=1e-4)
+    with pytest.raises(ValueError, match="pixel = 1e-06: needs none: the file has posit"):
+        read_heights(tmp_path / "n.nc", pixel=1e-6)
+
+
+def test_positions_in_an_array_are_no_heights(tmp_path):
+    axes = np.vstack(
+        [np.r_[0, PIXEL * np.arange(COUNT)], np.c_[np.arange(ROWS), heights()]]
+    )
+    np.save(tmp_path / "axes.npy", axes)
+    with pytest.raises(ValueError, match=r"axes.npy: first row = .*needs heights"):
+        read_heights(tmp_path / "axes.npy", pixel=PIXEL)
+
+
 def test_units_of_the_file_are_not_said_twice(tmp_path):
     FORMATS["os3d"](tmp_path / "um.os3d", heights())
     for options in ({"height_unit": "nm"}, {"height_scale": 1e-9}, {"length_unit": "m"}):

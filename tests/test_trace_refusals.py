@@ -92,6 +92,69 @@ def test_bad_files_are_named_by_line_and_column(text, message, encoding, tmp_pat
     assert "\n" not in str(error.value)
 
 
+ROWS = "0;1000\n0.1;2000\n0.3;3000\n0.4;4000\n"
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "# force in mN\nt;force\n",
+        "# a loop\n# Force [mN], time in s\nt;force\n",
+        "% units of force: mN\n# load 5 uN for 3 min\nt;force\n",
+        "t;force, mN\n",
+        "t;force mN\n",
+        "time (s);Friction force (mN)\n",
+        "t, s;lateral force, mN\n",
+    ],
+)
+def test_units_in_comments_and_behind_names(header, tmp_path):
+    path = tmp_path / "loop.txt"
+    path.write_text(header + ROWS)
+    np.testing.assert_allclose(fx.Trace.from_csv(path).values, [1, 2, 3, 4], rtol=1e-15)
+    *comments, names = header.splitlines()
+    path.write_text(f"{names}\n{ROWS}" + "\n".join(comments))
+    np.testing.assert_allclose(fx.Trace.from_csv(path).values, [1, 2, 3, 4], rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("# all in mN\nt;force\n" + ROWS, "line 1 = '# all in mN': needs its unit in the"),
+        ("t;force\n" + ROWS + "# units: s, mN\n", "line 6 = '# units: s, mN': needs its"),
+        (
+            "# force in N\nt;force (mN)\n" + ROWS,
+            "line 1 = '# force in N': needs mN, as lin",
+        ),
+        ("# force in lbf\nt;force\n" + ROWS, "line 2, column 2 = 'lbf': needs a unit of"),
+        (
+            "t;force;friction force\n0;1;1\n",
+            "column 3 = 'force': needs one column of force",
+        ),
+        ("t;normal force\n0;1\n", "line 1, columns = 't, normal force': needs force or z"),
+        ("t (us);force (uN)\n1290000;25,875\n", r"line 2, column 2 \(force\) = '25,875'"),
+        ("t;force\n1,000;2,500\n1,250;2,125\n", 'needs decimal="," where commas mark d'),
+    ],
+)
+def test_units_and_commas_that_are_not_clear_are_asked_about(text, message, tmp_path):
+    path = tmp_path / "trace.csv"
+    path.write_text(text)
+    with pytest.raises(ValueError, match=f"trace.csv: .*{message}") as error:
+        fx.Trace.from_csv(path)
+    assert "\n" not in str(error.value)
+
+
+def test_the_mark_of_decimals_of_a_trace_can_be_said(tmp_path):
+    path = tmp_path / "trace.csv"
+    path.write_text("t;force (uN)\n1;25,875\n2;1,125,875\n3;1,000\n4;900.5\n")
+    whole = fx.Trace.from_csv(path, decimal=".").values
+    np.testing.assert_allclose(whole, [25875e-6, 1125875e-6, 1e-3, 900.5e-6], rtol=1e-15)
+    path.write_text("t;force\n1;25,875\n2;1.125,875\n3;1,000\n4;900,500\n")
+    marked = fx.Trace.from_csv(path, decimal=",").values
+    np.testing.assert_allclose(marked, [25.875, 1125.875, 1.0, 900.5], rtol=1e-15)
+    with pytest.raises(ValueError, match="decimal = ';': needs a point"):
+        fx.Trace.from_csv(path, decimal=";")
+
+
 FOUR = [0.0, 1.0, 2.0, 3.0]
 
 
