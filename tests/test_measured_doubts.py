@@ -10,8 +10,6 @@ from instrument_files import COUNT, PERIOD, PIXEL, X, heights
 from frictionjax.measured import MeasuredWarning, fit_profile, read_heights
 from frictionjax.measured.axes import axis_of
 from frictionjax.measured.cells import find_dialect
-from frictionjax.measured.samples import Samples
-from frictionjax.measured.sentinels import without_sentinels
 
 UM, NM = 1e6 * X, 1e9 * heights(1)[0]
 
@@ -260,85 +258,6 @@ def test_units_however_they_are_stated(header, tmp_path):
 def test_units_that_nobody_understands_are_shown(line, options, message, tmp_path):
     small = lines(1e-3 * UM, 1e-3 * NM, form="%.9f")
     refused(tmp_path, line + "\n" + small, message, **options)
-
-
-EMPTY = np.empty((0, 0), int)
-
-
-def sorted_out(values, outliers=None):
-    rows = np.atleast_2d(values)
-    samples = Samples(np.arange(rows.shape[1]), rows, [], EMPTY, EMPTY)
-    return without_sentinels(samples, outliers)
-
-
-BASE = 300 * np.sin(np.arange(400) / 6)
-PLACES = ([50], [50, 51, 120, 200])
-
-
-@pytest.mark.parametrize("places", PLACES)
-@pytest.mark.parametrize(
-    ("mark", "level"),
-    [(0, 5000), (-1, 5000), (-99, 5000), (-1e4, 0), (1e6, 0), (1e10, 0), (2000, 0)],
-)
-def test_heights_that_lie_alone_are_asked_about(mark, level, places):
-    values = BASE + level
-    values[places] = mark
-    with pytest.raises(ValueError, match=f"row 0, sample 50 = .*: {len(places)} in all"):
-        sorted_out(values)
-    assert (
-        np.flatnonzero(np.isnan(sorted_out(values, "missing").heights)).tolist() == places
-    )
-    assert np.array_equal(sorted_out(values, "keep").heights[0], values)
-
-
-@pytest.mark.parametrize("places", PLACES)
-@pytest.mark.parametrize(
-    ("mark", "scale"),
-    [
-        (-999, 1),
-        (9999.999, 1),
-        (2147483.648, 1),
-        (-32.768, 0.06),
-        (-32768, 60),
-        (999999, 1),
-    ],
-)
-def test_well_known_marks_are_missing(mark, scale, places):
-    values = scale * BASE
-    values[places] = mark
-    found = sorted_out(values)
-    assert np.flatnonzero(np.isnan(found.heights)).tolist() == places
-    assert f"as are {len(places)} in all" in found.notes[0]
-
-
-def steep(shape):
-    """A surface with something tall on it."""
-    rng = np.random.default_rng(2)
-    values, rows = BASE.copy(), rng.normal(size=(100, 400))
-    if shape == "map":
-        rows[50, 50:53], rows[51, 51] = (5, 60, 7), 50
-        return rows
-    if shape == "levels":
-        return np.where(np.arange(400) % 40 < 20, 0, 1000.0) + rng.normal(size=400)
-    bumps = {"scratch": [-400, -2000, -5000, -2200, -300], "particle": [3000, 9000, 4000]}
-    bumps["clipped"] = [700, 9000, 9000, 9000, 650]
-    bump = np.array(bumps[shape])
-    values[100 : 100 + bump.size] += bump
-    return values
-
-
-@pytest.mark.parametrize("shape", ["scratch", "particle", "clipped", "map", "levels"])
-def test_scratches_and_particles_are_heights(shape):
-    found = sorted_out(steep(shape))
-    assert not np.isnan(found.heights).any()
-    assert found.notes == []
-
-
-def test_what_lies_alone_on_both_sides():
-    values = BASE.copy()
-    values[[7, 90]] = -1e4, 1e4
-    with pytest.raises(ValueError, match=r"sample 7 = .*2 in all lie alone, all others in"):
-        sorted_out(values)
 
 
 def test_the_shell_asks_and_names_the_file(tmp_path):

@@ -220,6 +220,10 @@ def test_a_measured_trace_is_a_profile(tmp_path):
         ("period = [1.0]", r"\[profile\] period = \[1.0\]: needs a number"),
         ("cos = [1.0]", r"\[profile\] cos is unknown: needs one of heights, period"),
         ("pixel = 1e-6", "pixel = 1e-06: needs none"),
+        ("period = 1e-5\nharmonics = 300", "trace.txt: harmonics = 300: needs"),
+        ('length_unit = "furlong"', "trace.txt: length_unit = 'furlong': needs a unit"),
+        ('outliers = "drop"', "trace.txt: outliers = 'drop': needs"),
+        ("decimal = 1", r"\[profile\] decimal = 1: needs a text"),
     ],
 )
 def test_mistakes_about_a_measured_trace(options, message, tmp_path):
