@@ -14,6 +14,7 @@ import numpy as np
 
 from .arguments import require
 from .text_units import Heading, heading_of, is_unit
+from .thousands import BOTH_WAYS, is_grouped, ungrouped
 
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
@@ -25,11 +26,7 @@ _MARKS = (
 _COMMENTS = ("#", "%", "//")
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eEdD][-+]?\d+)?$")
 _BLANK = " "
-_GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(?:(,\d{3})+(\.\d*)?|(\.\d{3})+(,\d*)?)")
-_GROUPS = (
-    'decimal="," where commas mark decimals, decimal="." where they part thousands: '
-    "three digits stand behind each"
-)
+_GROUPS = BOTH_WAYS.format(option="in the call")
 _EMPTY = "an empty cell"
 _POINTS = {".": "point", ",": "comma"}
 # Names between blanks, each with the unit in brackets behind it.
@@ -208,8 +205,8 @@ def _numbers(headings: list[Heading], rows: list[_Row], decimal: str | None) -> 
         for column, cell in enumerate(row.cells):
             place = place_of(row.line, column, headings[column].name)
             require(cell, place, _EMPTY, "a number")
-            if decimal is not None and _GROUPED.fullmatch(cell):
-                cell = _ungrouped(cell, "," if decimal == "." else ".")
+            if decimal is not None:
+                cell = ungrouped(cell, "," if decimal == "." else ".")
             require(_NUMBER.match(cell), place, cell, "a finite number")
             for point in ".,":
                 if point in cell:
@@ -221,12 +218,6 @@ def _numbers(headings: list[Heading], rows: list[_Row], decimal: str | None) -> 
     return found
 
 
-def _ungrouped(cell: str, mark: str) -> str:
-    """A number without the marks that part its thousands, where three digits follow."""
-    parts = cell.split(mark)
-    return "".join(parts) if all(re.match(r"\d{3}", p) for p in parts[1:]) else cell
-
-
 def _require_decimals(headings: list[Heading], rows: list[_Row]) -> None:
     """Raise where all commas stand as those of thousands do: `25,875`."""
     marked = [
@@ -236,7 +227,7 @@ def _require_decimals(headings: list[Heading], rows: list[_Row]) -> None:
         if "," in cell
     ]
     points = any("." in cell for row in rows for cell in row.cells)
-    if points or not marked or not all(_GROUPED.fullmatch(c) for _, _, c in marked):
+    if points or not marked or not all(is_grouped(c) for _, _, c in marked):
         return
     line, column, cell = marked[0]
     require(False, place_of(line, column, headings[column].name), cell, _GROUPS)

@@ -14,7 +14,7 @@ ROOT = Path(frictionjax.__file__).parent
 FLOORS = [
     {"surroundings"},
     {"arguments", "progress", "asymptotes"},
-    {"grids", "viscosity", "parts", "text_units"},
+    {"grids", "viscosity", "parts", "text_units", "thousands"},
     {"text_tables"},
     {"kept_programs"},
     {"outcomes", "compilation", "programs"},

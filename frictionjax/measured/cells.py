@@ -6,6 +6,7 @@ import re
 from typing import NamedTuple
 
 from ..arguments import require
+from ..thousands import BOTH_WAYS, is_grouped, ungrouped
 from .units import cell_unit
 
 _MISSING = re.compile(
@@ -17,7 +18,6 @@ _WORD = re.compile(r"bad|nan|n/?a|null|void|invalid|missing|masked", re.IGNORECA
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eEdD][-+]?\d+)?")
 _DATE = re.compile(r"\d[-.]\d+[-.]\d")
 _PAIRS = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?(,[-+]?\d+,\d+([eE][-+]?\d+)?)*")
-_GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}((,\d{3})+(\.\d*)?|(\.\d{3})+(,\d*)?)")
 _NUMERIC = re.compile(r'[\d\s+\-.,;eEdD"]*\d[\d\s+\-.,;eEdD"]*')
 _EITHER = (
     'decimal="." where commas part columns, decimal="," where they mark decimals: '
@@ -27,12 +27,7 @@ _BOTH = (
     'decimal="." where commas part whole numbers; where they mark decimals, '
     '";" or a tab between columns'
 )
-
-
-_GROUPS = (
-    'decimal="," where commas mark decimals, decimal="." where they part thousands '
-    "(--decimal): three digits stand behind each"
-)
+_GROUPS = BOTH_WAYS.format(option="(--decimal)")
 
 
 class Dialect(NamedTuple):
@@ -73,16 +68,10 @@ class Dialect(NamedTuple):
             return math.nan
         text = cell.replace("\u2212", "-")
         other = "," if self.decimal == "." else "."
-        if _GROUPED.fullmatch(text) and _groups(text, other):
-            text = text.replace(other, "")
+        text = ungrouped(text, other)
         if not _NUMBER.fullmatch(text) or other in text:
             return None
         return float(text.replace(",", ".").upper().replace("D", "E"))
-
-
-def _groups(text: str, mark: str) -> bool:
-    """Whether each of these marks parts thousands, where the other one ends wholes."""
-    return mark in text and all(re.match(r"\d{3}", p) for p in text.split(mark)[1:])
 
 
 def only_marks(cells: list[str]) -> bool:
@@ -105,7 +94,7 @@ def _require_decimals(lines: list[tuple[int, str]], dialect: Dialect) -> None:
     """Raise where all commas stand as those of thousands do: `20,292`."""
     rows = [(n, line) for n, line in lines if _is_numeric(line) and "," in line]
     cells = [cell for _, line in rows for cell in dialect.cells(line) if "," in cell]
-    grouped = bool(cells) and all(_GROUPED.fullmatch(cell) for cell in cells)
+    grouped = bool(cells) and all(map(is_grouped, cells))
     if grouped:
         number, text = rows[0]
         require(False, f"line {number}", text.strip()[:40], _GROUPS)
@@ -127,7 +116,7 @@ def _dialect_of(lines: list[tuple[int, str]], decimal: str | None) -> Dialect:
     if tabs and not any(re.search(r",\s|\s,", text) for text in texts):
         return Dialect("\t", decimal or _mark(rows))
     words = [word for text in texts for word in text.split() if "," in word]
-    if decimal and spaced and all(_GROUPED.fullmatch(word) for word in words):
+    if decimal and spaced and all(map(is_grouped, words)):
         return Dialect(None, decimal)
     return Dialect(",", ".") if decimal else _of_commas(rows, _heading(lines, rows))
 
