@@ -160,6 +160,8 @@ ROWS = lines(*AXES[1:].T)
             SIZE + lines(10 + np.arange(5), *np.tile(NM, (5, 1)).T),
             "column 1, lines 3 on = '10, 1",
         ),
+        (SIZE + lines(*np.vstack([np.round(UM, 1), NM, NM]).T), "line 3 = '0, 0.2, 0.5"),
+        (SIZE + lines(*np.c_[np.arange(5)[::-1], AXES[1:, 1:]].T), "column 1, lines 3 on"),
     ],
 )
 def test_positions_in_a_map_are_no_heights(text, message, tmp_path):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-# Of the step. Positions written with two digits are even to 5%; of eight heights or more
-# no flank is, unless its neighbour is as straight.
+# Of the step, or the last digit written. Of eight heights or more no flank is as even,
+# unless its neighbour is as straight.
 _EVEN, _EXACT, _MANY = 0.05, 1e-6, 8
 
 
@@ -16,12 +16,12 @@ def axis_of(block: np.ndarray) -> int | None:
 
 
 def _unlike(rows: np.ndarray) -> bool:
-    """Whether the first row rises evenly, and the next one does not as it does."""
+    """Whether the first row rises or falls evenly, and the next one not as it does."""
     first, second, count = rows[0], rows[1], rows.shape[1]
     if count < 3:
         return False
     if count >= _MANY:
-        return _step(first, _EVEN) > 0 and not _alike(first, second)
+        return _step(first, _EVEN) != 0 and not _alike(first, second)
     if not _step(first, _EXACT) or _alike(first, second):
         return False
     # So few heights may rise evenly by chance, but then as their neighbours nearly do.
@@ -31,14 +31,26 @@ def _unlike(rows: np.ndarray) -> bool:
 
 
 def _step(values: np.ndarray, tolerance: float) -> float:
-    """The step of values that rise evenly, or 0."""
+    """The step of values that rise or fall evenly, or 0."""
     steps = np.diff(values)
     step = float(steps.mean()) if np.isfinite(steps).all() else 0.0
     line = values[0] + step * np.arange(values.size)
-    even = step > 0 and np.max(np.abs(values - line)) <= tolerance * step
+    allowed = max(tolerance * abs(step), _rounding(values, abs(step)))
+    even = step != 0 and np.max(np.abs(values - line)) <= allowed
     return step if even else 0.0
+
+
+def _rounding(values: np.ndarray, step: float) -> float:
+    """How far values lie off a line for the digits that they are written with."""
+    if values.size < _MANY:
+        return 0.0
+    for digits in range(10):
+        last = 10.0**-digits
+        if np.max(np.abs(values - np.round(values, digits))) < 1e-6 * last:
+            return last if last < 0.5 * step else 0.0  # both ends are rounded too
+    return 0.0
 
 
 def _alike(first: np.ndarray, second: np.ndarray) -> bool:
     step, other = _step(first, _EVEN), _step(second, 2 * _EVEN)
-    return 0.5 * step < other < 2 * step
+    return 0.5 < other / step < 2 if step else False
