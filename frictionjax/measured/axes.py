@@ -52,5 +52,6 @@ def _rounding(values: np.ndarray, step: float) -> float:
 
 
 def _alike(first: np.ndarray, second: np.ndarray) -> bool:
-    step, other = _step(first, _EVEN), _step(second, 2 * _EVEN)
+    """Whether both climb as one tilted surface does, the second one less evenly."""
+    step, other = _step(first, _EVEN), _step(second, 1.0)
     return 0.5 < other / step < 2 if step else False

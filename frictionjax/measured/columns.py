@@ -209,7 +209,7 @@ def _require_heights(table: Table, headings: Headings) -> None:
         place = f"line {line}" if axis == 0 else f"column 1, lines {line} on"
         values = block[0] if axis == 0 else block[:, 0]
         said = ", ".join(f"{v:g}" for v in values[:4])
-        needs = "heights: these go evenly, as positions do, unlike all others"
+        needs = "heights: these go evenly, as positions do, unlike others; take them out"
         require(False, place, f"{said}, ...", needs)
 
 

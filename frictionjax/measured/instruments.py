@@ -82,7 +82,7 @@ def _samples(reader: Any, suffix: str, asked: Asked) -> Samples:
         )
         axis = axis_of(heights)
         values = heights[:, 0] if axis == 1 else heights[0]
-        needs = "heights: these go evenly, as positions do, unlike all others"
+        needs = "heights: these go evenly, as positions do, unlike others; take them out"
         require(axis is None, ("first row", "first column")[axis or 0], values, needs)
     found = without_sentinels(
         Samples(x, heights, notes, _NOWHERE, _NOWHERE), asked.outliers
