@@ -2,6 +2,7 @@
 
 from .enclosure import Enclosure as Enclosure
 from .enclosure import NoRuleError as NoRuleError
+from .enclosure import TooMuchWorkError as TooMuchWorkError
 from .enclosure import enclosure_of as enclosure_of
 from .interval import Interval as Interval
 from .jet import Jet as Jet

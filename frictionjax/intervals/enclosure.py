@@ -12,9 +12,10 @@ from .functions import ELEMENTARY, cos, integer_power, sin
 from .interval import Interval
 from .jet import Jet
 from .logic import LOGIC, select
+from .program import Program
+from .program import TooMuchWorkError as TooMuchWorkError
 from .shapes import SHAPES, NoRuleError, stack
 
-_LARGEST = 2**15  # numbers in one array, which stay in the cache
 _LONGEST = 1000  # steps of a loop that are followed
 _CALLS = {
     "jit": "jaxpr",
@@ -33,30 +34,25 @@ class Enclosure:
     """`f`, `f'` and `f''` over intervals of t, by the rules of interval arithmetic.
 
     Values are those of the real function that the program stands for, with 64-bit
-    constants, up to underflow; roundings are inside the bounds. `numbers`: in all steps
-    of the program, for one interval.
+    constants, up to underflow; roundings are inside the bounds.
     """
 
     def __init__(self, closed: Any):
-        self._closed = closed
-        sizes = [v.aval.size for v in _outputs(closed.jaxpr)]
-        self._largest, self.numbers = max([1, *sizes]), max(1, sum(sizes))
+        with np.errstate(all="ignore"):
+            self._program = Program(closed, _results, _inlined)
 
     def __call__(self, lo: np.ndarray, hi: np.ndarray) -> Jet:
-        """Bounds over each [lo, hi], shapes (N,)."""
-        room = max(_LARGEST // self._largest, 1)
+        """Bounds over each [lo, hi], shapes (N,), increasing for speed.
+
+        Raises `TooMuchWorkError` where more was computed than `allow` allows.
+        """
         with np.errstate(all="ignore"):
-            parts = [
-                self._of(lo[at : at + room], hi[at : at + room])
-                for at in range(0, max(lo.size, 1), room)
-            ]
+            parts = self._program(lo, hi)
         return parts[0] if len(parts) == 1 else _joined(parts)
 
-    def _of(self, lo: np.ndarray, hi: np.ndarray) -> Jet:
-        closed = self._closed
-        constants = [jets.number(np.asarray(c)) for c in closed.consts]
-        (found,) = run(closed.jaxpr, constants, [jets.variable(lo, hi)])
-        return found.mapped(lambda a: np.broadcast_to(a, lo.shape))
+    def allow(self, numbers: float) -> None:
+        """Let so many numbers be computed from now on, in all steps of the program."""
+        self._program.most = self._program.spent + numbers
 
 
 def _joined(parts: list[Jet]) -> Jet:
@@ -70,22 +66,13 @@ def enclosure_of(fn: Callable) -> Enclosure:
     """That of a function of one number; raises `NoRuleError`."""
     with jax.ensure_compile_time_eval():
         closed = jax.make_jaxpr(lambda t: jax.numpy.asarray(fn(t), float))(0.5)
-    found = Enclosure(closed)
     try:
+        found = Enclosure(closed)
         found(np.zeros(2), np.ones(2))  # what has no rule says so now
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         # Programs of another version of JAX may be written otherwise.
         raise NoRuleError("this program") from error
     return found
-
-
-def _outputs(jaxpr: Any):
-    for eqn in jaxpr.eqns:
-        yield from eqn.outvars
-        inner = _CALLS.get(eqn.primitive.name)
-        if inner and inner in eqn.params:
-            called = eqn.params[inner]
-            yield from _outputs(getattr(called, "jaxpr", called))
 
 
 def run(jaxpr: Any, constants: list[Jet], arguments: list[Jet]) -> list[Jet]:
@@ -153,9 +140,24 @@ def _is_short(aval: Any) -> bool:
     return kind not in "biuf" or (kind == "f" and aval.dtype.itemsize < 8)
 
 
+def _inlined(eqn: Any) -> Any:
+    """The program that an equation calls; None where it is none, or bounded as a whole."""
+    called = eqn.params.get(_CALLS.get(eqn.primitive.name))
+    return None if called is None or _is_known(called) else called
+
+
+def _is_known(called: Any) -> bool:
+    source = _source(called)
+    return source.startswith(("sin_cos at", "searchsorted at"))
+
+
+def _source(called: Any) -> str:
+    return str(getattr(called, "jaxpr", called).debug_info.func_src_info)
+
+
 def _known_call(called: Any, operands: list[Jet]) -> list[Jet] | None:
     """Results of functions that their programs do not bound well, by their sources."""
-    source = str(getattr(called, "jaxpr", called).debug_info.func_src_info)
+    source = _source(called)
     if source.startswith("sin_cos at") and "trigonometry.py" in source:
         turns = jets.mul(operands[-1], jets.number(np.asarray(2 * np.pi)))
         return [sin(turns), cos(turns)]

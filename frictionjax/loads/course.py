@@ -5,25 +5,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arguments import Real, require
-from ..intervals import Enclosure, NoRuleError, enclosure_of
+from ..arguments import Real
+from ..intervals import Enclosure, NoRuleError, TooMuchWorkError, enclosure_of
 from .cells import (
-    KINK,
+    MOST_NUMBERS,
+    STEEPEST_SHARE,
     Cells,
     Kind,
     Point,
-    affordable,
     by_bounds,
     halves,
     needle,
     proved_cells,
 )
-from .sampled_cells import CELLS, by_samples, sampled_cells
+from .needles import kinks_of, require_numbers_inside
+from .sampled_cells import Samples, sampled_cells
 
-_JUMP = 1e-6  # of max |l|: what a load may change by within a few spacings of floats
-# A change of slope that is a kink: of the slopes beside it. What l'' may do there is less.
-_KINK = 1e-6
-_ASIDE = 8  # shortest cells: from a place that is not smooth to what is beside it
 _TOGETHER = 1e-12  # of the duration: turning points that are one
 _MOST_LOOKS = 60
 _STEEPEST = 1.02
@@ -63,54 +60,50 @@ def course_of(fn: Callable[[Real], Real], duration: float) -> Course:
         bounds = enclosure_of(fn)
     except NoRuleError as missing:
         return _sampled_course(fn, duration, f"{missing} has no bounds")
+    try:
+        return _proved_course(fn, bounds, duration)
+    except TooMuchWorkError:
+        return _sampled_course(fn, duration, "bounds over short stretches are wide")
+
+
+def _proved_course(fn: Callable, bounds: Enclosure, duration: float) -> Course:
+    """By bounds alone; raises `TooMuchWorkError`."""
     cells, at = proved_cells(bounds, duration), by_bounds(bounds)
     if np.any(cells.kind == Kind.OPEN):
-        return _sampled_course(fn, duration, "bounds over short stretches are wide")
+        raise TooMuchWorkError
+    require_numbers_inside(fn, bounds, cells)
     turns, kinks = _events(cells, at, duration)
     steepest = _steepest(bounds, at, duration)
+    bounds.allow(np.inf)
     return Course(turns, kinks, steepest, "", 0.0, cells.size, at)
 
 
 def _sampled_course(fn: Callable, duration: float, why: str) -> Course:
-    at, edges = by_samples(fn), np.linspace(0.0, duration, CELLS + 1)
-    cells = sampled_cells(at, edges[:-1], edges[1:], duration)
-    turns, kinks = _events(cells, at, duration)
+    samples = Samples(fn)
+    cells = sampled_cells(samples, duration)
+    turns, kinks = _events(cells, samples, duration)
     middles = 0.5 * (cells.lo + cells.hi)
-    steepest = float(middles[np.argmax(np.abs(at(middles)[1]))])
-    return Course(turns, kinks, steepest, why, duration / CELLS, cells.size, at)
+    steepest = float(middles[np.argmax(np.abs(samples(middles)[1]))])
+    hidden = duration / samples.cells
+    return Course(turns, kinks, steepest, why, hidden, cells.size, samples)
 
 
 def _events(cells: Cells, at: Point, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """Turning points, and kinks at which the load does not turn."""
-    kinks = _kinks(cells, at, duration)
+    kinks = kinks_of(cells, at, duration)
     cells = _unbent(cells, at)
     turns = _turns(cells, kinks, at)
-    near = np.abs(kinks[:, None] - turns) <= _TOGETHER * duration
-    others = kinks[~near.any(axis=1)]
+    others = kinks[_gaps(kinks, turns) > _TOGETHER * duration]
     first, last = _TOGETHER * duration, (1 - _TOGETHER) * duration
     inside = (others > first) & (others < last)
     return turns[(turns > first) & (turns < last)], others[inside]
 
 
-def _kinks(cells: Cells, at: Point, duration: float) -> np.ndarray:
-    """Where l' jumps: times on the piece to the right. Raises where l itself does."""
-    sharp = np.flatnonzero(cells.kind == Kind.NEEDLE)
-    if sharp.size == 0:
-        return np.zeros(0)
-    aside = _ASIDE * needle(duration)
-    starts = np.concatenate([[True], np.diff(cells.lo[sharp]) > aside])
-    ends = np.append(starts[1:], True)
-    lo, hi = cells.lo[sharp[starts]], cells.hi[sharp[ends]]
-    before, after = np.maximum(lo - aside, 0.0), np.minimum(hi + aside, duration)
-    (value0, slope0), (value1, slope1) = at(before), at(after)
-    change = np.abs(value1 - value0)
-    size = cells.size + 1e-300
-    jump = int(np.argmax(change))
-    known = f"jumps by {change[jump]:.6g} at t = {hi[jump]:.6g}"
-    require(change[jump] <= _JUMP * size, "load.fn", known, "a continuous function")
-    least = KINK * size / duration + _KINK * np.maximum(np.abs(slope0), np.abs(slope1))
-    kink = ~(np.abs(slope1 - slope0) <= least)
-    return hi[kink]
+def _gaps(times: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """From each time to the nearest of the others, which increase."""
+    edges = np.concatenate([[-np.inf], others, [np.inf]])
+    right = np.searchsorted(edges, times)
+    return np.minimum(edges[right] - times, times - edges[right - 1])
 
 
 def _unbent(cells: Cells, at: Point) -> Cells:
@@ -177,42 +170,39 @@ def _turns(cells: Cells, kinks: np.ndarray, at: Point) -> np.ndarray:
     sign = cells.kind[moving]
     change = np.flatnonzero(sign[1:] != sign[:-1])
     ends, begins = cells.hi[moving[change]], cells.lo[moving[change + 1]]
-    rests = np.array(
-        [
-            np.any(cells.kind[a + 1 : b] == Kind.FLAT)
-            for a, b in zip(moving[change], moving[change + 1], strict=True)
-        ],
-        dtype=bool,
-    )
+    flat = np.append(0, np.cumsum(cells.kind == Kind.FLAT))
+    rests = flat[moving[change + 1]] > flat[moving[change]]
     found = ends.copy()
     # Where nothing moves by more than its rounding, l' says where it turns.
     unsure = np.flatnonzero((begins > ends) & ~rests)
     if unsure.size:
         found[unsure] = _roots(at, ends[unsure], begins[unsure])
-    for k, (end, begin) in enumerate(zip(ends, begins, strict=True)):
-        held = kinks[(kinks >= end) & (kinks <= begin)]
-        if held.size:
-            found[k] = held[0]
-    return found
+    if kinks.size == 0:
+        return found
+    kinks = np.sort(kinks)
+    first = kinks[np.minimum(np.searchsorted(kinks, ends), kinks.size - 1)]
+    return np.where((first >= ends) & (first <= begins), first, found)
 
 
 def _steepest(bounds: Enclosure, at: Point, duration: float) -> float:
     """A time at which |l'| is within 2% of its largest, by bounds of it."""
     edges = np.linspace(0.0, duration, 65)
     lo, hi, place, best = edges[:-1], edges[1:], 0.5 * duration, 0.0
-    left = affordable(bounds) // 8
-    while 0 < lo.size <= left:
+    bounds.allow(STEEPEST_SHARE * MOST_NUMBERS)
+    while lo.size:
+        try:
+            whole = bounds(lo, hi)
+            sizes = np.abs(at(0.5 * (lo + hi))[1])
+        except TooMuchWorkError:
+            break
         middles = 0.5 * (lo + hi)
-        sizes = np.abs(at(middles)[1])
         k = int(np.argmax(sizes))
         if sizes[k] > best:
             place, best = float(middles[k]), float(sizes[k])
-        whole = bounds(lo, hi)
         away = 0.5 * (hi - lo) * whole.bend.size
         with np.errstate(invalid="ignore"):
             from_middle = np.where(whole.seam, np.inf, sizes + away)
         most = np.fmin(whole.slope.size, from_middle)
         open_ = (most > _STEEPEST * best) & (hi - lo > needle(duration))
         lo, hi = halves(lo[open_], hi[open_])
-        left -= lo.size
     return place

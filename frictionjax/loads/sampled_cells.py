@@ -6,34 +6,58 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.extend.core import jaxprs_in_params
 
 from ..arguments import Real, require
-from .cells import Cells, Kind, Point, halves, needle
+from .cells import Cells, Kind, halves, needle
 
 # Cells of which each is looked at from its ends and at two places inside. A pulse that
 # lasts longer than one is seen; of shorter ones, one in the share of its cell.
-CELLS = 2**16
+_CELLS, _FEWEST = 2**16, 2**8
 _CHUNK = 2**14  # times of one compiled call
 _MOST = 2**20  # cells
+# Of all samples, in all steps of the function, which take 5 to 10 s; and of a call.
+_MOST_NUMBERS, _MOST_AT_ONCE = 2**27, 2**23
+_UNKNOWN_LOOP = 16  # times that a loop of unknown length is taken to run
+# Of the range of l: what it may go off its way between samples at the end.
+_UNSEEN = 1e-6
 _PLACES = (0.38, 0.71)  # inside a cell: not where multiples of T/2^n are
 # How well a cubic through the ends foretells values inside, of max |l|, and slopes, of the
 # largest there and of the mean one. (By values alone kinks passed in cells that are short.)
 _FORETOLD, _FORETOLD_SLOPE = 1e-7, 1e-5
 
 
-def by_samples(fn: Callable[[Real], Real]) -> Point:
-    """Values and slopes of the function itself, compiled once."""
+class Samples:
+    """Values and slopes of the function itself, compiled once.
 
-    @jax.jit
-    def rates(times: Any) -> Any:
-        one = jnp.ones_like(times)
-        return jax.jvp(jax.vmap(lambda t: jnp.asarray(fn(t), float)), (times,), (one,))
+    `cells`: how many are looked at first, fewer of a long program. Raises `ValueError`
+    for one that is too long for as many as are needed.
+    """
 
-    def at(times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        padded = -(-times.size // _CHUNK) * _CHUNK
+    def __init__(self, fn: Callable[[Real], Real]):
+        with jax.ensure_compile_time_eval():
+            closed = jax.make_jaxpr(lambda t: jnp.asarray(fn(t), float))(0.5)
+        self.numbers = max(1, _numbers(closed.jaxpr))
+        room = _MOST_NUMBERS // (8 * self.numbers)
+        known = f"a program of {self.numbers} numbers"
+        allowed = f"at most {_MOST_NUMBERS // (8 * _FEWEST)}, or a PiecewiseLinear load"
+        require(room >= _FEWEST, "load.fn", known, allowed)
+        self.cells = min(_CELLS, 1 << (room.bit_length() - 1))
+        self._chunk = max(64, min(_CHUNK, _MOST_AT_ONCE // self.numbers))
+
+        @jax.jit
+        def rates(times: Any) -> Any:
+            one = jnp.ones_like(times)
+            return jax.jvp(jax.vmap(lambda t: jnp.asarray(fn(t), float)), (times,), (one,))
+
+        self._rates = rates
+
+    def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        chunk = self._chunk
+        padded = -(-times.size // chunk) * chunk
         whole = np.append(times, np.full(padded - times.size, times[-1:].sum()))
         with jax.ensure_compile_time_eval():
-            parts = [rates(whole[k : k + _CHUNK]) for k in range(0, padded, _CHUNK)]
+            parts = [self._rates(whole[k : k + chunk]) for k in range(0, padded, chunk)]
         columns = zip(*parts, strict=True)
         value, slope = (np.concatenate(c)[: times.size] for c in columns)
         good = np.isfinite(value)
@@ -42,24 +66,42 @@ def by_samples(fn: Callable[[Real], Real]) -> Point:
             require(False, "load.fn", at, "finite values on [0, duration]")
         return value, slope
 
-    return at
+
+def _numbers(jaxpr: Any) -> int:
+    """In all steps of a program, those of loops as often as they run."""
+    total = 0
+    for eqn in jaxpr.eqns:
+        total += sum(getattr(var.aval, "size", 1) for var in eqn.outvars)
+        inner = sum(_numbers(called) for called in jaxprs_in_params(eqn.params))
+        unknown = _UNKNOWN_LOOP if eqn.primitive.name == "while" else 1
+        total += inner * eqn.params.get("length", unknown)
+    return total
 
 
-def sampled_cells(at: Point, lo: np.ndarray, hi: np.ndarray, duration: float) -> Cells:
-    """Cells in [lo, hi] (n,), each foretold by the values and slopes at its ends.
+def sampled_cells(at: Samples, duration: float) -> Cells:
+    """Cells of [0, duration], each foretold by the values and slopes at its ends.
 
-    Cut where they do not foretell what is inside, down to the spacing of floats.
+    Cut where they do not foretell what is inside, down to the spacing of floats. Raises
+    `ValueError` where that is not affordable, and it still moves otherwise there.
     """
-    size, seen, done = 0.0, 0, []
+    edges = np.linspace(0.0, duration, at.cells + 1)
+    lo, hi, size, done = edges[:-1], edges[1:], 0.0, []
+    left = min(_MOST + at.cells, _MOST_NUMBERS // (4 * at.numbers))
+    least, most = np.inf, -np.inf
     while lo.size:
         values, slopes = _seen(at, lo, hi)
-        if not seen:
+        if not done:
             _require_slopes(lo, slopes)
         size = max(size, float(np.max(np.abs(values), initial=0.0)))
+        least, most = min(least, np.min(values)), max(most, np.max(values))
         kinds = _kinds(values, slopes, hi - lo, size, duration)
-        again, seen = kinds == Kind.OPEN, seen + lo.size
-        if seen > _MOST + CELLS:
-            kinds, again = np.where(again, Kind.SMALL, kinds), np.zeros_like(again)
+        again, left = kinds == Kind.OPEN, left - lo.size
+        if 2 * np.sum(again) > left:
+            unseen = _UNSEEN * (most - least) + 1e-12 * size
+            kinds[again] = _left_open(
+                values[:, again], slopes[:, again], lo[again], hi[again], unseen
+            )
+            again = np.zeros_like(again)
         done.append((lo[~again], hi[~again], kinds[~again]))
         lo, hi = halves(lo[again], hi[again])
     lo, hi, kind = (np.concatenate(column) for column in zip(*done, strict=True))
@@ -67,15 +109,35 @@ def sampled_cells(at: Point, lo: np.ndarray, hi: np.ndarray, duration: float) ->
     return Cells(lo[order], hi[order], kind[order], size)
 
 
+def _left_open(values, slopes, lo: np.ndarray, hi: np.ndarray, unseen: float) -> np.ndarray:
+    """Kinds of cells too many to cut; raises where they may hide more than `unseen`.
+
+    A sine of 1 MHz passed for a load that rests, of which the limit was 0.13 m off.
+    """
+    off, _ = _surprises(values, slopes * (hi - lo))
+    s = np.array(_PLACES)[:, None]
+    rise = values[3] - values[0]
+    straight = np.max(np.abs(values[0] + rise * s - values[1:3]), axis=0)
+    off = np.fmin(off, straight)
+    k = int(np.argmax(off))
+    often = f"turns more often than once in {hi[k] - lo[k]:.3g} s at t = {lo[k]:.6g}"
+    allowed = "turning points few enough to be found: a slower load, a shorter duration"
+    require(off[k] <= unseen, "load.fn", often, allowed)
+    return np.where(np.abs(rise) > unseen, np.sign(rise).astype(int), int(Kind.SMALL))
+
+
 def _require_slopes(times: np.ndarray, slopes: np.ndarray) -> None:
     """As 1/cosh far out, where JAX multiplies 0 by infinity."""
     none = np.all(np.isnan(slopes), axis=0)
     if none.any():
-        at = f"no finite slope at t = {times[none][0]:.9g}"
-        require(False, "load.fn", at, "a derivative that JAX can take on [0, duration]")
+        when = f"t = {times[none][0]:.9g}"
+        at = f"no finite slope at {when}, where jax.jvp overflows"
+        allowed = "a derivative that JAX can take on [0, duration], as that of "
+        allowed += "2 exp(-|x|)/(1 + exp(-2 |x|)) for 1/cosh(x)"
+        require(False, "load.fn", at, allowed)
 
 
-def _seen(at: Point, lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _seen(at: Samples, lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Values and slopes at both ends of each cell and at places inside, (4, n)."""
     share = np.array([0.0, *_PLACES, 1.0])[:, None]
     times = lo + (hi - lo) * share
@@ -103,12 +165,17 @@ def _kinds(values, slopes, length: np.ndarray, size: float, duration: float) -> 
 
 def _is_foretold(values, ways, length: np.ndarray, size: float, duration: float):
     """Whether the cubic through the ends of each cell is near what is inside."""
+    off, off_way = _surprises(values, ways)
+    largest = np.max(np.abs(ways), axis=0) + size * length / duration
+    return (off <= _FORETOLD * size) & (off_way <= _FORETOLD_SLOPE * largest)
+
+
+def _surprises(values, ways) -> tuple[np.ndarray, np.ndarray]:
+    """How far values inside, and slopes times lengths, are from the cubic of the ends."""
     s = np.array(_PLACES)[:, None]
     rise = values[3] - values[0]
     first, last = ways[0] - rise, ways[3] - rise
     value = values[0] + rise * s + s * (1 - s) * (first * (1 - s) - last * s)
     way = rise + first * (1 - s) * (1 - 3 * s) + last * s * (3 * s - 2)
     off = np.max(np.abs(value - values[1:3]), axis=0)
-    off_way = np.max(np.abs(way - ways[1:3]), axis=0)
-    largest = np.max(np.abs(ways), axis=0) + size * length / duration
-    return (off <= _FORETOLD * size) & (off_way <= _FORETOLD_SLOPE * largest)
+    return off, np.max(np.abs(way - ways[1:3]), axis=0)

@@ -1,0 +1,90 @@
+"""Places where a load is not smooth: kinks and cusps pass, jumps and poles do not."""
+
+from collections.abc import Callable
+
+import jax
+import numpy as np
+
+from ..arguments import Real, require
+from ..intervals import Enclosure
+from .cells import KINK, Cells, Kind, Point, halves, needle
+
+_JUMP = 1e-6  # of max |l|: what a load may change by within a few spacings of floats
+# Changes that the slopes on either side explain: one of them holds at least half way.
+_EXPLAINED = 1.5
+# A change of slope that is a kink: of the slopes beside it. What l'' may do there is less.
+_KINK = 1e-6
+_ASIDE = 8  # shortest cells: from a place that is not smooth to what is beside it
+# Closer and closer by 8: a power |t|^p rises by 8^-p of the step before, a logarithm by 1.
+_NEARER, _GROWS, _RISEN = np.array([512, 64, 8, 1]), 0.95, 1e-9
+_MOST_LOOKS = 4096
+_SLOW = "a continuous function, slow enough to tell from one that jumps"
+
+
+def kinks_of(cells: Cells, at: Point, duration: float) -> np.ndarray:
+    """Where l' jumps: times on the piece to the right. Raises where l itself does."""
+    sharp = np.flatnonzero(cells.kind == Kind.NEEDLE)
+    if sharp.size == 0:
+        return np.zeros(0)
+    aside = _ASIDE * needle(duration)
+    starts = np.concatenate([[True], np.diff(cells.lo[sharp]) > aside])
+    ends = np.append(starts[1:], True)
+    lo, hi = cells.lo[sharp[starts]], cells.hi[sharp[ends]]
+    before, after = np.maximum(lo - aside, 0.0), np.minimum(hi + aside, duration)
+    (value0, slope0), (value1, slope1) = at(before), at(after)
+    size, steepest = cells.size + 1e-300, np.fmax(np.abs(slope0), np.abs(slope1))
+    _require_bounded(lo, hi, at, size, duration)
+    length, change = after - before, np.abs(value1 - value0)
+    unsure = change - np.maximum(_JUMP * size, _EXPLAINED * steepest * length)
+    jump = int(np.argmax(np.where(np.isnan(unsure), np.inf, unsure)))
+    where = f"at t = {hi[jump]:.6g}, or changes so within {length[jump]:.2g} s"
+    require(unsure[jump] <= 0, "load.fn", f"jumps by {change[jump]:.6g} {where}", _SLOW)
+    least = KINK * size / duration + _KINK * steepest
+    kink = ~(np.abs(slope1 - slope0) <= least)
+    return hi[kink]
+
+
+def _require_bounded(
+    lo: np.ndarray, hi: np.ndarray, at: Point, size: float, duration: float
+) -> None:
+    """Check that values do not go on growing towards places, however close."""
+    away = _NEARER[:, None] * (_ASIDE * needle(duration))
+    for side in (lo - away, hi + away):
+        times = np.clip(side, 0.0, duration)
+        values = at(times.ravel())[0].reshape(times.shape)
+        with np.errstate(invalid="ignore"):
+            steps = np.abs(np.diff(values, axis=0))
+            grows = np.all(steps[1:] >= _GROWS * steps[:-1], axis=0)
+            pole = grows & np.all(steps > _RISEN * size, axis=0)
+        known = f"grows without bound at t = {lo[np.argmax(pole)]:.9g}"
+        require(not pole.any(), "load.fn", known, "finite values on [0, duration]")
+
+
+def require_numbers_inside(
+    fn: Callable[[Real], Real], bounds: Enclosure, cells: Cells
+) -> None:
+    """Check places of which bounds do not exclude that they are no number, float by float.
+
+    As that of 0/0, or of a branch for one time alone.
+    """
+    sharp = cells.kind == Kind.NEEDLE
+    lo, hi = cells.lo[sharp], cells.hi[sharp]
+    looked = 0
+    while lo.size and looked < _MOST_LOOKS:
+        looked += lo.size
+        wide = ~np.isfinite(bounds(lo, hi).value.width)
+        lo, hi = lo[wide], hi[wide]
+        for end in np.union1d(lo, hi):
+            _require_number(fn, bounds, float(end))
+        short = hi - lo <= np.spacing(lo)
+        lo, hi = halves(lo[~short], hi[~short])
+
+
+def _require_number(fn: Callable[[Real], Real], bounds: Enclosure, time: float) -> None:
+    at = np.array([time])
+    if np.isfinite(bounds(at, at).value.width).all():
+        return
+    with jax.ensure_compile_time_eval():
+        value = float(jax.numpy.asarray(fn(jax.numpy.asarray(time))))
+    known = f"no finite number at t = {time:.9g}"
+    require(np.isfinite(value), "load.fn", known, "finite values on [0, duration]")
