@@ -222,12 +222,23 @@ def require_flags(**flags: Any) -> None:
 def require_function(name: str, fn: Any, what: str) -> None:
     """Check that `fn` takes one number to one number."""
     require(callable(fn), name, fn, what)
-    number = jax.ShapeDtypeStruct((), float)
+    number, given = jax.ShapeDtypeStruct((), float), []
+
+    def value(x: Real) -> Array:
+        given.append(fn(x))
+        return jnp.asarray(given[0])
+
+    one = f"{what}, one real number for one"
     try:
-        shape = jax.eval_shape(lambda x: jnp.asarray(fn(x)), number).shape
+        found = jax.eval_shape(value, number)
     except jax.errors.JAXTypeError:
         require(False, name, fn, f"{what}, written with jax.numpy")
-    require(shape == (), name, f"values of shape {shape}", f"{what}, one number for one")
+    except (TypeError, ValueError):
+        require(not given, name, f"values that are {given[:1]}", one)
+        raise
+    require(found.shape == (), name, f"values of shape {found.shape}", one)
+    real = not jnp.issubdtype(found.dtype, jnp.complexfloating)
+    require(real, name, f"values of dtype {found.dtype}", one)
 
 
 def require_x64(*trees: Any) -> None:

@@ -16,8 +16,8 @@ from .shapes import SHAPES
 _STEP = 256  # numbers that take as long as the overhead of a step
 _LARGEST = 2**15  # numbers in one array, which stay in the cache
 _MANY = 32  # terms of a sum among which those that move are looked for
-_PARTS, _FEW = 8, 16
-_LEAF = 2**14  # numbers in one array for which looking for terms that rest saves nothing
+_PARTS, _FEW = 4, 16
+_LEAF = 2**13  # numbers in one array for which looking for terms that rest saves nothing
 # Of the largest term: widths of values below rounding; slopes and bends that move nothing.
 # (Slopes below 1e-16 still decide the sign between pulses far apart.)
 _KNOWN, _RESTS = 1e-15, 1e-24
@@ -176,7 +176,7 @@ class Program:
             for place, var in zip(step.write, step.eqn.outvars, strict=True):
                 if place in wanted:
                     some = wanted[place]
-                    sizes.append(var.aval.size if some is None else some.size)
+                    sizes.append(int(var.aval.size if some is None else some.size))
         return max([1, *sizes])
 
 
@@ -231,8 +231,8 @@ def _moves(terms: Jet) -> np.ndarray:
 
 
 def _ask(wanted: dict[int, np.ndarray | None], place: int, some: np.ndarray | None) -> None:
-    old = wanted.get(place)
-    if place in wanted and (old is None or some is None):
-        wanted[place] = None
-    else:
-        wanted[place] = some if old is None else np.union1d(old, some)
+    if place not in wanted:
+        wanted[place] = some
+        return
+    old = wanted[place]
+    wanted[place] = None if old is None or some is None else np.union1d(old, some)

@@ -15,9 +15,9 @@ from ..intervals import interval as iv
 # are decided by the next cut.
 _FIRST, _CUTS, _MANY = 256, 8, 2000
 _NEEDLE = 8  # spacings of floats at T: cells are not cut below this
-# Looked at; and numbers in all steps of the function there, which take 4 to 8 s; of
+# Looked at; and numbers in all steps of the function there, which take 3 to 8 s; of
 # these, for the steepest place.
-_MOST_CELLS, MOST_NUMBERS, STEEPEST_SHARE = 2**20, 2**24, 0.25
+_MOST_CELLS, MOST_NUMBERS, STEEPEST_SHARE = 2**20, 2**25, 0.25
 # Of the load's mean slope `max |l| / T`: slopes that move nothing over all of [0, T], and
 # kinks that are none. Of max |l|: changes below its rounding, and what no jump is below.
 _FLAT, KINK = 1e-12, 1e-9

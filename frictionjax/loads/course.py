@@ -71,6 +71,7 @@ def _proved_course(fn: Callable, bounds: Enclosure, duration: float) -> Course:
     cells, at = proved_cells(bounds, duration), by_bounds(bounds)
     if np.any(cells.kind == Kind.OPEN):
         raise TooMuchWorkError
+    bounds.allow(MOST_NUMBERS)
     require_numbers_inside(fn, bounds, cells)
     turns, kinks = _events(cells, at, duration)
     steepest = _steepest(bounds, at, duration)

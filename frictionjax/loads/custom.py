@@ -42,9 +42,10 @@ class Custom(AbstractLoad):
     Interval arithmetic on the program of `fn` bounds l, l' and l'' over stretches that are
     cut until the bounds prove that the load rises, falls or rests there: no pulse hides,
     however short, down to 64 spacings of floats at `duration`. Where `fn` uses what has no
-    bounds (`lax.while_loop`, callbacks) or needs too many stretches, 65536 stretches of
-    [0, duration] are looked at in four places each, and closer where they surprise; then
-    an `UnprovedLoad` warning says how short a pulse may have gone unseen.
+    bounds (`lax.while_loop`; callbacks, to which `jax.custom_jvp` gives a derivative) or
+    needs too many stretches, 65536 stretches of [0, duration] (fewer where `fn` takes
+    long) are looked at in four places each, and closer where they surprise; then an
+    `UnprovedLoad` warning says how short a pulse may have gone unseen.
 
     Where numbers of `fn` are traced, nothing can be found: list the turning points. A load
     that turns elsewhere, as 4096 samples see it, has the status TOO_MANY_TURNS then; and
@@ -52,26 +53,29 @@ class Custom(AbstractLoad):
     Derivatives by numbers of `fn` hold its turning points where they are, which is right
     where l' = 0 there.
 
-    Raises `ValueError` for times that are not finite and increasing. A scene raises one
-    for a load that jumps or is not finite, and where turning points are listed but some
-    that were found are not among them; listed times at which it does not turn do no harm.
+    Raises `ValueError` for times that are not finite and increasing, and for `fn` without
+    a derivative by `jax.jvp`. A scene raises one for a load that jumps or is not finite,
+    for one that turns more often than can be looked at (listed or not), and where turning
+    points are listed but some that were found are not among them; listed times at which
+    it does not turn do no harm.
     """
 
     _stored: ClassVar = {"turning_points": "listed"}
 
     fn: Callable[[Real], Real]
     listed: Float[Array, " n"] = eqx.field(converter=as_real)
-    found: Float[Array, " m"] | None
-    steepest: Real | None
-    until: Real | None
+    found: Float[Array, " m"] | None = eqx.field(init=False)
+    steepest: Real | None = eqx.field(init=False)
+    until: Real | None = eqx.field(init=False)
 
-    def __init__(self, fn: Callable[[Real], Real], turning_points=()):
+    def __init__(self, fn: Callable[[Real], Real], turning_points=None, *, listed=()):
         self.fn = fn
-        self.listed = turning_points
+        self.listed = listed if turning_points is None else turning_points
         self.found = self.steepest = self.until = None
 
     def __check_init__(self):
         require_function("load.fn", self.fn, "a function of t")
+        _require_slope(self.fn)
         if not is_known(self.listed):
             return
         times = known_numbers(self.listed)
@@ -117,6 +121,20 @@ class Custom(AbstractLoad):
         _require_complete(course, inside)
         apart = np.abs(course.kinks[:, None] - inside) > _SAME * duration
         return np.union1d(listed, course.kinks[apart.all(axis=1)])
+
+
+def _require_slope(fn: Callable[[Real], Real]) -> None:
+    """Callbacks and functions with `jax.custom_vjp` have none."""
+
+    def rate(t: Real) -> tuple[Real, Real]:
+        return jax.jvp(lambda t: jnp.asarray(fn(t), float), (t,), (jnp.ones_like(t),))
+
+    try:
+        jax.eval_shape(rate, jax.ShapeDtypeStruct((), float))
+    except (TypeError, ValueError, NotImplementedError) as error:
+        known = f"without jax.jvp, as {str(error).splitlines()[0]}"
+        mend = "a function of t that jax.jvp can differentiate"
+        require(False, "load.fn", known, f"{mend}; jax.custom_jvp gives a callback a slope")
 
 
 def _unknown(load: Custom) -> tuple:

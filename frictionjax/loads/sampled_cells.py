@@ -19,6 +19,7 @@ _MOST = 2**20  # cells
 # Of all samples, in all steps of the function, which take 5 to 10 s; and of a call.
 _MOST_NUMBERS, _MOST_AT_ONCE = 2**27, 2**23
 _UNKNOWN_LOOP = 16  # times that a loop of unknown length is taken to run
+_CALLBACK = 2000  # numbers that take as long as a call of Python
 # Of the range of l: what it may go off its way between samples at the end.
 _UNSEEN = 1e-6
 _PLACES = (0.38, 0.71)  # inside a cell: not where multiples of T/2^n are
@@ -72,6 +73,7 @@ def _numbers(jaxpr: Any) -> int:
     total = 0
     for eqn in jaxpr.eqns:
         total += sum(getattr(var.aval, "size", 1) for var in eqn.outvars)
+        total += _CALLBACK * ("callback" in eqn.primitive.name)
         inner = sum(_numbers(called) for called in jaxprs_in_params(eqn.params))
         unknown = _UNKNOWN_LOOP if eqn.primitive.name == "while" else 1
         total += inner * eqn.params.get("length", unknown)
@@ -85,7 +87,8 @@ def sampled_cells(at: Samples, duration: float) -> Cells:
     `ValueError` where that is not affordable, and it still moves otherwise there.
     """
     edges = np.linspace(0.0, duration, at.cells + 1)
-    lo, hi, size, done = edges[:-1], edges[1:], 0.0, []
+    lo, hi, size = edges[:-1], edges[1:], 0.0
+    done: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     left = min(_MOST + at.cells, _MOST_NUMBERS // (4 * at.numbers))
     least, most = np.inf, -np.inf
     while lo.size:
