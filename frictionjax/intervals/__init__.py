@@ -6,3 +6,4 @@ from .enclosure import TooMuchWorkError as TooMuchWorkError
 from .enclosure import enclosure_of as enclosure_of
 from .interval import Interval as Interval
 from .jet import Jet as Jet
+from .program import work_of as work_of

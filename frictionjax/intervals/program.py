@@ -5,7 +5,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from jax.extend.core import Literal
+from jax.extend.core import Literal, jaxprs_in_params
 
 from . import jet as jets
 from .functions import ELEMENTARY
@@ -13,6 +13,8 @@ from .jet import Jet
 from .logic import LOGIC
 from .shapes import SHAPES
 
+_UNKNOWN_LOOP = 16  # times that a loop of unknown length is taken to run
+_CALLBACK = 2000  # numbers that take as long as a call of Python
 _STEP = 256  # numbers that take as long as the overhead of a step
 _LARGEST = 2**15  # numbers in one array, which stay in the cache
 _MANY = 32  # terms of a sum among which those that move are looked for
@@ -32,11 +34,16 @@ class TooMuchWorkError(Exception):
 
 
 class Step(NamedTuple):
-    """An equation; `reads` known numbers, or places of results."""
+    """An equation; `reads` known numbers, or places of results.
+
+    `numbers`, `steps`: computed inside it for one time, as in loops.
+    """
 
     eqn: Any
     reads: tuple[Jet | int, ...]
     write: tuple[int, ...]
+    numbers: int
+    steps: int
 
 
 class Plan(NamedTuple):
@@ -88,7 +95,8 @@ class Program:
             return self._flattened(getattr(called, "jaxpr", called), constants, list(reads))
         places = tuple(range(self._count, self._count + len(eqn.outvars)))
         self._count += len(places)
-        self._steps.append(Step(eqn, reads, places))
+        inside = _inside(eqn) if eqn.primitive.name in ("scan", "cond") else (0, 0)
+        self._steps.append(Step(eqn, reads, places, *inside))
         return list(places)
 
     def _whole(self) -> Plan:
@@ -125,6 +133,9 @@ class Program:
         for k, step in enumerate(self._steps):
             if plan.wanted and not any(place in plan.wanted for place in step.write):
                 continue
+            self.spent += lo.size * step.numbers + _STEP * step.steps
+            if self.spent > self.most:
+                raise TooMuchWorkError
             found = self._found(k, step, known, plan)
             known |= dict(zip(step.write, found, strict=True))
             self.spent += _STEP + sum(jet.seam.size for jet in found)
@@ -180,12 +191,32 @@ class Program:
         return max([1, *sizes])
 
 
+def work_of(jaxpr: Any) -> tuple[int, int]:
+    """Numbers and steps of a program, those of loops as often as they run."""
+    numbers = steps = 0
+    for eqn in jaxpr.eqns:
+        numbers += sum(getattr(var.aval, "size", 1) for var in eqn.outvars)
+        numbers += _CALLBACK * ("callback" in eqn.primitive.name)
+        more = _inside(eqn)
+        numbers, steps = numbers + more[0], steps + 1 + more[1]
+    return numbers, steps
+
+
+def _inside(eqn: Any) -> tuple[int, int]:
+    parts = [work_of(called) for called in jaxprs_in_params(eqn.params)]
+    unknown = _UNKNOWN_LOOP if eqn.primitive.name == "while" else 1
+    often = eqn.params.get("length", unknown)
+    return often * sum(n for n, _ in parts), often * sum(k for _, k in parts)
+
+
 def _terms(eqn: Any) -> int:
     """Number of terms of a sum over one axis of one array, or of a product; else 0."""
-    first = eqn.invars[0].aval if eqn.invars else None
+    if eqn.primitive.name not in ("reduce_sum", "dot_general"):
+        return 0
+    first = eqn.invars[0].aval
     if eqn.primitive.name == "reduce_sum" and first.ndim == 1:
         return first.size if first.dtype.kind == "f" else 0
-    if eqn.primitive.name == "dot_general" and not eqn.outvars[0].aval.ndim:
+    if not eqn.outvars[0].aval.ndim:
         axes, _ = eqn.params["dimension_numbers"]
         one = first.ndim == 1 and all(len(side) == 1 for side in axes)
         return first.size if one and eqn.outvars[0].aval.dtype == np.float64 else 0

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from ..arguments import Real, require
@@ -17,7 +18,7 @@ _KINK = 1e-6
 _ASIDE = 8  # shortest cells: from a place that is not smooth to what is beside it
 # Closer and closer by 8: a power |t|^p rises by 8^-p of the step before, a logarithm by 1.
 _NEARER, _GROWS, _RISEN = np.array([512, 64, 8, 1]), 0.95, 1e-9
-_MOST_LOOKS = 4096
+_MOST_LOOKS = 2**15  # stretches
 _SLOW = "a continuous function, slow enough to tell from one that jumps"
 
 
@@ -72,19 +73,25 @@ def require_numbers_inside(
     looked = 0
     while lo.size and looked < _MOST_LOOKS:
         looked += lo.size
-        wide = ~np.isfinite(bounds(lo, hi).value.width)
+        wide = _is_wide(bounds, lo, hi)
         lo, hi = lo[wide], hi[wide]
-        for end in np.union1d(lo, hi):
-            _require_number(fn, bounds, float(end))
+        ends = np.union1d(lo, hi)
+        _require_numbers(fn, ends[_is_wide(bounds, ends, ends)])
         short = hi - lo <= np.spacing(lo)
         lo, hi = halves(lo[~short], hi[~short])
 
 
-def _require_number(fn: Callable[[Real], Real], bounds: Enclosure, time: float) -> None:
-    at = np.array([time])
-    if np.isfinite(bounds(at, at).value.width).all():
+def _require_numbers(fn: Callable[[Real], Real], times: np.ndarray) -> None:
+    if times.size == 0:
         return
     with jax.ensure_compile_time_eval():
-        value = float(jax.numpy.asarray(fn(jax.numpy.asarray(time))))
-    known = f"no finite number at t = {time:.9g}"
-    require(np.isfinite(value), "load.fn", known, "finite values on [0, duration]")
+        values = np.asarray(jax.vmap(lambda t: jnp.asarray(fn(t), float))(times))
+    bad = ~np.isfinite(values)
+    known = f"no finite number at t = {times[np.argmax(bad)]:.9g}"
+    require(not bad.any(), "load.fn", known, "finite values on [0, duration]")
+
+
+def _is_wide(bounds: Enclosure, lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
+    """Where a value may be unbounded, or none."""
+    value = bounds(lo, hi).value
+    return ~(np.isfinite(value.lo) & np.isfinite(value.hi))

@@ -6,9 +6,9 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax.extend.core import jaxprs_in_params
 
 from ..arguments import Real, require
+from ..intervals import work_of
 from .cells import Cells, Kind, halves, needle
 
 # Cells of which each is looked at from its ends and at two places inside. A pulse that
@@ -18,8 +18,6 @@ _CHUNK = 2**14  # times of one compiled call
 _MOST = 2**20  # cells
 # Of all samples, in all steps of the function, which take 5 to 10 s; and of a call.
 _MOST_NUMBERS, _MOST_AT_ONCE = 2**27, 2**23
-_UNKNOWN_LOOP = 16  # times that a loop of unknown length is taken to run
-_CALLBACK = 2000  # numbers that take as long as a call of Python
 # Of the range of l: what it may go off its way between samples at the end.
 _UNSEEN = 1e-6
 _PLACES = (0.38, 0.71)  # inside a cell: not where multiples of T/2^n are
@@ -38,7 +36,7 @@ class Samples:
     def __init__(self, fn: Callable[[Real], Real]):
         with jax.ensure_compile_time_eval():
             closed = jax.make_jaxpr(lambda t: jnp.asarray(fn(t), float))(0.5)
-        self.numbers = max(1, _numbers(closed.jaxpr))
+        self.numbers = max(1, work_of(closed.jaxpr)[0])
         room = _MOST_NUMBERS // (8 * self.numbers)
         known = f"a program of {self.numbers} numbers"
         allowed = f"at most {_MOST_NUMBERS // (8 * _FEWEST)}, or a PiecewiseLinear load"
@@ -66,18 +64,6 @@ class Samples:
             at = f"no finite number at t = {times[~good][0]:.9g}"
             require(False, "load.fn", at, "finite values on [0, duration]")
         return value, slope
-
-
-def _numbers(jaxpr: Any) -> int:
-    """In all steps of a program, those of loops as often as they run."""
-    total = 0
-    for eqn in jaxpr.eqns:
-        total += sum(getattr(var.aval, "size", 1) for var in eqn.outvars)
-        total += _CALLBACK * ("callback" in eqn.primitive.name)
-        inner = sum(_numbers(called) for called in jaxprs_in_params(eqn.params))
-        unknown = _UNKNOWN_LOOP if eqn.primitive.name == "while" else 1
-        total += inner * eqn.params.get("length", unknown)
-    return total
 
 
 def sampled_cells(at: Samples, duration: float) -> Cells:
