@@ -226,6 +226,8 @@ def require_function(name: str, fn: Any, what: str) -> None:
 
     def value(x: Real) -> Array:
         given.append(fn(x))
+        if isinstance(given[0], str):
+            raise TypeError  # JAX may read it as a kind of numbers
         return jnp.asarray(given[0])
 
     one = f"{what}, one real number for one"

@@ -146,8 +146,8 @@ class Program:
 
     def _found(self, k: int, step: Step, known: dict[int, Jet], plan: Plan) -> list[Jet]:
         if k in plan.sums:
-            places, rest = plan.sums[k]
-            return [jets.add(jets.summed(_terms_at(step, known, plan, places), (0,)), rest)]
+            moving, rest = plan.sums[k]
+            return [jets.add(jets.summed(_terms_at(step, known, plan, moving), (0,)), rest)]
         places = plan.wanted.get(step.write[0])
         operands = _picked(step, known, plan, places)
         if places is not None and step.eqn.primitive.name == "broadcast_in_dim":

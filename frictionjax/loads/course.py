@@ -69,10 +69,10 @@ def course_of(fn: Callable[[Real], Real], duration: float) -> Course:
 def _proved_course(fn: Callable, bounds: Enclosure, duration: float) -> Course:
     """By bounds alone; raises `TooMuchWorkError`."""
     cells, at = proved_cells(bounds, duration), by_bounds(bounds)
-    if np.any(cells.kind == Kind.OPEN):
-        raise TooMuchWorkError
     bounds.allow(MOST_NUMBERS)
     require_numbers_inside(fn, bounds, cells)
+    if np.any(cells.kind == Kind.OPEN):
+        raise TooMuchWorkError
     turns, kinks = _events(cells, at, duration)
     steepest = _steepest(bounds, at, duration)
     bounds.allow(np.inf)
