@@ -70,9 +70,9 @@ class Part(eqx.Module):
 def asked_names(kind: type, changes: dict[str, Any]) -> list[str]:
     """Names of a constructor's arguments; raises `ValueError` for a change of no such."""
     parameters = inspect.signature(kind.__init__).parameters
-    # What is asked for by keyword only is how `dataclasses.replace` builds a part.
-    given = [p for p in parameters.values() if p.kind is not p.KEYWORD_ONLY]
-    known = [p.name for p in given if p.name != "self"]
+    # A stored field may be an argument too: so `dataclasses.replace` builds a part.
+    fields = getattr(kind, "_stored", {}).values()
+    known = [name for name in parameters if name != "self" and name not in fields]
     for name, value in changes.items():
         allowed = f"an argument of {kind.__name__}, one of {', '.join(known)}"
         require(name in known, f"{kind.__name__}.replace: {name}", value, allowed)
