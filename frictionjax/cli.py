@@ -1,6 +1,5 @@
 """The command line. Only click is imported here: `--help` must not wait for JAX."""
 
-import errno
 import json
 import math
 import os
@@ -38,9 +37,7 @@ class OneLineErrors(click.Group):
         except click.ClickException as error:
             message = error.format_message()
         except OSError as error:
-            where = f"{error.filename}: " if error.filename else ""
-            message = f"{where}{error.strerror or error}"
-            status = 1 if error.errno in (errno.ENOSPC, errno.EDQUOT) else 2
+            message, status = _of_file(error)
         except ValueError as error:
             message = str(error)
         except RuntimeError as error:
@@ -51,6 +48,20 @@ class OneLineErrors(click.Group):
             message = str(error)
         click.echo(f"Error: {' '.join(message.split())}", err=True)
         sys.exit(status)
+
+
+def _of_file(error: OSError) -> tuple[str, int]:
+    """Message and exit status of a file that cannot be read or written."""
+    from .whole_files import FULL
+
+    status = 1 if error.errno in FULL else 2
+    # Whoever writes a file names it: what is left is what is printed.
+    name = error.filename or ("standard output" if status == 1 else "")
+    if name == "standard output":
+        # Else Python would say so once more, with another status, where it ends.
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
+    where = f"{name}: " if name else ""
+    return f"{where}{error.strerror or error}", status
 
 
 def _options(*options: Callable) -> Callable:
@@ -187,12 +198,16 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
     law = friction_of(job.scene)
     if as_json:
         numbers: dict[str, Any] = coefficients_of(law)
+        if law.alpha is not None:
+            numbers["pulling"] = bool(law.alpha < 0)
         error = errors_of(law, job.error)
         if job.rows is not None or error:
             finite = {name: e if math.isfinite(e) else None for name, e in error.items()}
             numbers["error"] = finite
         if job.rows is not None:
             numbers["rows"] = {"mean": job.rows.mean, "std": job.rows.std}
+        if job.notes:
+            numbers["notes"] = job.notes
         for line in job.notes[1:]:
             click.echo(line, err=True)
         click.echo(json.dumps(numbers, indent=2))

@@ -5,6 +5,7 @@ from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 
 from .arguments import Real, as_text, is_known
 from .bristles.pulling import pulling_text
@@ -60,7 +61,9 @@ class Coefficients(eqx.Module):
         known = [(k, v) for k, v in vars(self).items() if v is not None]
         numbers = ", ".join(f"{k}={as_text(v)}" for k, v in known)
         pulls = "" if self.alpha is None else pulling_text(self.alpha)
-        return f"Coefficients({numbers}{f': {pulls}' if pulls else ''})"
+        shape = np.shape(self.rho_plus)
+        batch = f"batch {shape}: " if shape else ""
+        return f"Coefficients({batch}{numbers}{f': {pulls}' if pulls else ''})"
 
 
 def coefficients(potential: AbstractPotential) -> Coefficients:

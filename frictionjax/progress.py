@@ -1,10 +1,50 @@
-"""A bar on standard error."""
+"""What is under way, on standard error."""
+
+import contextlib
+import threading
+import time
+from collections.abc import Callable, Iterator
 
 from tqdm import tqdm
 
 _FORMAT = "{desc}: {percentage:3.0f}% |{bar}| {elapsed} so far, {remaining} to go"
+_WAITING = "{desc}, {elapsed} so far"
+_PATIENCE, _EVERY = 2.0, 1.0  # s
 
 
 def progress_bar(name: str, shown: bool) -> tqdm:
     """A bar from 0 to 1 for `with`."""
     return tqdm(total=1.0, disable=not shown, bar_format=_FORMAT, desc=name)
+
+
+@contextlib.contextmanager
+def waiting(name: str, shown: bool) -> Iterator[Callable[[str], None]]:
+    """A line for work of unknown length, from two seconds on; gone when it is done.
+
+    Yields a function that is told what is under way. The clock of the line goes on while
+    a program compiles, when nothing is told.
+    """
+    done, told, began = threading.Event(), [""], time.time()
+
+    def show() -> None:
+        if done.wait(_PATIENCE):
+            return
+        with tqdm(bar_format=_WAITING, desc=name, leave=False) as line:
+            line.start_t = began
+            while True:
+                line.set_description_str(f"{name}: {told[0]}" if told[0] else name)
+                if done.wait(_EVERY):
+                    return
+
+    def tell(text: str) -> None:
+        told[0] = text
+
+    shower = threading.Thread(target=show, daemon=True)
+    if shown:
+        shower.start()
+    try:
+        yield tell
+    finally:
+        done.set()
+        if shown:
+            shower.join()

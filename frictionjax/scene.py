@@ -24,6 +24,7 @@ from .arguments import (
     require_x64,
 )
 from .bristles import AbstractBristle
+from .bristles.pulling import pulling_text
 from .loads import AbstractLoad
 from .parts import (
     ByIdentity,
@@ -45,6 +46,7 @@ _TRACED_TURNS = 64  # turning points allowed for where the load's numbers are tr
 # 1 in 100 above.)
 _TOLD_APART = 2.0**-40
 _ANEW = ByIdentity()  # the scene built of one with other leaves
+_ALPHA = ByIdentity()  # the normal force in N that was computed when it was checked
 _ROUNDED = 8  # spacings of floats by which a time may exceed the duration
 _MOST_TURNS = 2**20  # in a scene: 8 MB a copy of their times
 
@@ -130,6 +132,11 @@ class Scene(eqx.Module):
     def __replace__(self, **changes: Any) -> "Scene":
         return self.replace(**changes)
 
+    def __repr__(self) -> str:
+        alpha = _ALPHA.get(self)
+        pulls = "" if alpha is None else pulling_text(alpha)
+        return f"{super().__repr__()}{f': {pulls}' if pulls else ''}"
+
     @property
     def profile(self) -> AbstractProfile | None:
         """The surface profile; None in the abstract setting."""
@@ -198,6 +205,8 @@ def _require_hypotheses(scene: Scene) -> None:
     if not is_concrete(scene) or not in_64_bits():
         return  # traced values cannot be looked at; 32 bits raise at the entry points
     found = admissible_coefficients(scene.potential)
+    if found.alpha is not None:
+        _ALPHA.put(scene, float(found.alpha))
     low, high, start = (float(v) for v in _forces_met(scene))
     finite = np.isfinite(low) and np.isfinite(high)
     require(finite, "load", f"[{low:.6g}, {high:.6g}]", "finite values on [0, duration]")

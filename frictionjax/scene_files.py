@@ -15,6 +15,7 @@ from .arguments import require
 from .measured import fit_profile, read_heights
 from .potentials import BristlePotential
 from .scene import Scene
+from .whole_files import write_whole
 
 _PARTS = {
     "profile": (profiles, ("Sine", "Fourier", "Spline", "Polyline")),
@@ -199,7 +200,7 @@ def save_scene(scene: Scene, path: Any, study: dict[str, Any] | None = None) -> 
     (A spline within a rounding: the file holds its heights, not B-spline coefficients.)
     Raises `ValueError` for parts given as functions, which a file cannot hold.
     """
-    Path(path).write_text(scene_document(scene, study), encoding="utf-8")
+    write_whole(path, scene_document(scene, study))
 
 
 def scene_document(scene: Scene, study: dict[str, Any] | None = None) -> str:

@@ -13,7 +13,7 @@ ROOT = Path(frictionjax.__file__).parent
 # Units on one floor know nothing of each other; a folder is one unit.
 FLOORS = [
     {"surroundings"},
-    {"arguments", "progress", "asymptotes"},
+    {"arguments", "progress", "asymptotes", "whole_files"},
     {"grids", "viscosity", "parts", "text_units", "thousands"},
     {"text_tables"},
     {"kept_programs"},

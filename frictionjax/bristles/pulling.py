@@ -17,10 +17,14 @@ PULLS = "the bristle pulls on the surface"
 def pulling_text(alpha: Any, bristle: AbstractBristle | None = None) -> str:
     """What to say of a normal force in N: nothing unless it is below 0.
 
-    With the bristle, whether its rest length and its height look swapped.
+    Of a batch, how many are. With the bristle, whether its rest length and its height look
+    swapped.
     """
-    if not float(alpha) < 0:
+    below = np.asarray(alpha) < 0
+    if not below.any():
         return ""
+    if below.ndim:
+        return f"alpha < 0 in {np.sum(below)} of {below.size}: {PULLS}"
     parts = [f"alpha = {as_text(alpha)} N < 0: {PULLS}", swapped_text(bristle)]
     return "; ".join(part for part in parts if part)
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import require
+from ..whole_files import write_whole
 
 
 def document_of(source: Any, kind: str, needed: set[str]) -> dict[str, Any]:
@@ -34,7 +35,7 @@ def document_of(source: Any, kind: str, needed: set[str]) -> dict[str, Any]:
 def written(text: str, path: Any) -> str:
     """The text, which is written to `path` where one is given."""
     if path is not None:
-        Path(path).write_text(text, encoding="utf-8")
+        write_whole(path, text)
     return text
 
 

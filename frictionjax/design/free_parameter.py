@@ -19,7 +19,8 @@ from ..bristles import (
 _DECADES = 1e4  # an unbounded number is looked for up to this many times its own size
 _TINY = 1e-12  # of its own size: where a positive number starts if bounds say 0
 _RIGHT = 0.5 * np.pi
-_WRITTEN = 1e-5  # relative: how exactly bounds are written
+_ALIKE = 1e-5  # relative: six digits look the same
+_ROUNDED = 4 * np.finfo(float).eps  # relative: how far a bound may be off its range
 
 _POSITIVE, _ANGLE = "positive", "angle"
 _MODELS: dict[type, dict[str, str]] = {
@@ -206,8 +207,10 @@ def require_bounds(
     low, high = free.own_range
     if is_known(bristle):
         low, high = free.range_of(bristle)
-    # pi/2 as people write it, 1.5708, is within its range.
-    slack = _WRITTEN * np.abs([low, high])
+    # By rounding alone: 1.5708 is beyond pi/2, and so is what a bristle would make of it.
+    slack = _ROUNDED * np.abs([low, high])
     inside = low - slack[0] <= known[0] and known[1] <= high + slack[1]
-    needs = f"a part of ({as_text(low)}, {as_text(high)}), where {free.name} can be"
+    nearly = np.allclose(np.clip(known, low, high), known, rtol=_ALIKE, atol=0)
+    ends = ", ".join(f"{end:.12g}" if nearly else as_text(end) for end in (low, high))
+    needs = f"a part of ({ends}), where {free.name} can be"
     require(inside, label, known, needs)

@@ -1,5 +1,6 @@
 """Heights of a profile as a machine tool follows them."""
 
+import io
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from ..arguments import require_real, require_whole
 from ..profiles import AbstractProfile
+from ..whole_files import write_whole
 
 
 def surface_heights(
@@ -35,4 +37,6 @@ def surface_heights(
 def write_heights(path: Path, profile: AbstractProfile, period: Any, samples: int) -> None:
     """Write `surface_heights` as CSV with the header `x_m,height_m`."""
     rows = surface_heights(profile, period, samples)
-    np.savetxt(path, rows, fmt="%.12e", delimiter=",", header="x_m,height_m", comments="")
+    text = io.StringIO()
+    np.savetxt(text, rows, fmt="%.12e", delimiter=",", header="x_m,height_m", comments="")
+    write_whole(path, text.getvalue())

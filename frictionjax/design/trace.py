@@ -1,6 +1,7 @@
 """A measured friction trace: force or position against time."""
 
 import csv
+import io
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +19,11 @@ from ..arguments import (
 from ..programs import Program
 from ..scene import Scene, known_scene, require_times
 from ..surroundings import with_nan
+from ..whole_files import write_whole
 from ..wiggly.trajectory import solve
 from .trace_file import QUANTITIES, trace_columns
+
+_LARGEST = 1e50  # N, m: squares of squares of it are numbers
 
 
 class Trace:
@@ -54,6 +58,8 @@ class Trace:
         shape = f"the shape {self.ts.shape} of ts"
         require(self.values.shape == self.ts.shape, name, self.values.shape, shape)
         require(np.all(np.isfinite(self.values)), name, self.values, "finite values")
+        most = self.values[np.argmax(np.abs(self.values))]
+        require(abs(most) <= _LARGEST, name, most, f"values up to {_LARGEST:.0e}")
         self.uncertainty = None
         if uncertainty is not None:
             self.uncertainty = _deviations(uncertainty, self.ts.shape)
@@ -86,10 +92,11 @@ class Trace:
         columns = {"t": self.ts, self.quantity: self.values}
         if self.uncertainty is not None:
             columns["uncertainty"] = self.uncertainty
-        with Path(path).open("w", newline="", encoding="utf-8") as file:
-            rows = csv.writer(file)
-            rows.writerow(columns)
-            rows.writerows(zip(*(v.tolist() for v in columns.values()), strict=True))
+        text = io.StringIO(newline="")
+        rows = csv.writer(text)
+        rows.writerow(columns)
+        rows.writerows(zip(*(v.tolist() for v in columns.values()), strict=True))
+        write_whole(path, text.getvalue())
 
     def __repr__(self) -> str:
         times = f"{self.ts.size} times in [{as_text(self.ts[0])}, {as_text(self.ts[-1])}] s"
@@ -104,6 +111,8 @@ def _deviations(uncertainty: Any, shape: tuple) -> np.ndarray:
     require(known.ndim == 0 or known.shape == shape, name, known.shape, allowed)
     good = np.all(np.isfinite(known)) and np.all(known > 0)
     require(good, name, known, "uncertainties > 0")
+    most = np.max(known)
+    require(most <= _LARGEST, name, most, f"uncertainties up to {_LARGEST:.0e}")
     return np.broadcast_to(known, shape).copy()
 
 

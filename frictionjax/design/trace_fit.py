@@ -1,12 +1,13 @@
 """The surface behind a measured friction trace, through the wiggly dynamics."""
 
+import itertools
 from collections.abc import Callable, Iterator
-from itertools import chain, islice
 from typing import Any
 
 import numpy as np
 
-from ..arguments import require, require_real, require_whole
+from ..arguments import require, require_flags, require_real, require_whole
+from ..progress import waiting
 from ..scene import Scene, known_scene
 from ..surroundings import with_nan
 from .trace import Trace
@@ -25,9 +26,10 @@ from .trace_status import TraceStatus
 _STARTS = ((True, 10.0), (True, 1.0), (True, 0.1), (True, 0.01), (False, 0.01))
 _SPREAD = 0.3  # of coefficients, of starts drawn at random
 _TRIES = 10_000  # of which some are admissible
-# Steps of all trajectories, some 20 s: once they were taken no other descent is begun. The
-# fits that needed 6 descents took 1.6e6, failing ones went on to 27e6, three minutes.
-_WORK = 4_000_000
+# Steps of all trajectories, some 10 s: once they were taken no other descent is begun. With
+# three times the steps a trajectory, fits that needed 6 descents took 1.6e6, and failing
+# ones went on to 27e6, three minutes.
+_WORK = 1_500_000
 
 
 @with_nan
@@ -41,7 +43,7 @@ def fit_trace(
     accuracy: Any = 1e-3,
     max_steps: int = 100,
     starts: int = 8,
-    progress: Callable[[Step], None] = lambda step: None,
+    progress: bool | Callable[[Step], None] = True,
 ) -> TraceFit:
     """The surface whose wiggly dynamics give a measured trace.
 
@@ -52,12 +54,15 @@ def fit_trace(
     that. `max_steps`: trajectories of a descent. `starts`: descents at most, until one
     explains the trace: five from starts with weaker and weaker priors, then from the best
     of these with coefficients 30% off at random. Few samples a slip, and all slips at the
-    same phases, need those. None is begun after 4e6 steps in all, some 20 s.
-    `progress(step)`: told every iterate.
+    same phases, need those. None is begun after 1.5e6 steps in all, some 10 s.
+    `progress`: a line on standard error where it takes more than two seconds, or a
+    function that is told every iterate instead.
 
     A trace in another unit, with the other sign, drowned in noise or of another load is
     told from its energy alone, in a moment, and no surface is looked for: a tip that moves
-    on by a well has lost energy on any surface (`.status`, `.message`).
+    on by a well has lost energy on any surface (`.status`, `.message`). So are samples far
+    beyond all others (mask them: `numpy.ma`), a start that is not the scene's z0, as of
+    an offset, and the load itself in place of the force.
 
     While the tip is not in a slip the equation itself shows the wiggle force: a robust
     fit of V_eps'(z) = l - Phi'(z) - eps^gamma z' (eq. 2.7) at the samples is the start.
@@ -75,18 +80,37 @@ def fit_trace(
     require_whole("harmonics", harmonics)
     require_whole("max_steps", max_steps)
     require_whole("starts", starts)
+    if not callable(progress):
+        require_flags(progress=progress)
     for name, value in (("eps", eps), ("gamma", gamma), ("within", within)):
         require_real(name, value, f"{name} > 0", lambda v: v > 0)
     allowed = "1e-8 <= accuracy <= 0.1"
     require_real("accuracy", accuracy, allowed, lambda v: 1e-8 <= v <= 0.1)
     problem = problem_of(trace, scene, float(eps), float(gamma), harmonics, accuracy)
-    odd = oddity_of(trace, problem)
-    if odd is not None:
-        return without_fit(trace, problem, harmonics, *odd)
-    found, left = _descent(trace, problem, starts, max_steps, progress)
-    if found is None:
-        return without_fit(trace, problem, harmonics, TraceStatus.NOT_FINITE)
-    return report(trace, problem, found, float(within), left)
+    with waiting("fit_trace", progress is True) as tell:
+        odd = oddity_of(trace, problem)
+        if odd is not None:
+            return without_fit(trace, problem, harmonics, *odd)
+        tell("the start")
+        heard = _listener(progress, tell)
+        found, left = _descent(trace, problem, starts, max_steps, heard)
+        if found is None:
+            return without_fit(trace, problem, harmonics, TraceStatus.NOT_FINITE)
+        tell("what is determined")
+        return report(trace, problem, found, float(within), left)
+
+
+def _listener(progress: Any, tell: Callable[[str], None]) -> Callable[[Step], None]:
+    """Who is told every iterate: the user's function, or the line on standard error."""
+    if callable(progress):
+        return progress
+    count = itertools.count(1)
+
+    def heard(step: Step) -> None:
+        known = f"{step.used} samples used, {step.disputed} in other wells"
+        tell(f"iterate {next(count)}, {known}")
+
+    return heard
 
 
 def _descent(
@@ -99,7 +123,7 @@ def _descent(
     best: Descent | None = None
     work = _Work(problem)
     known = _starts(problem)
-    every = islice(chain(known, _drawn(problem, known)), starts)
+    every = itertools.islice(itertools.chain(known, _drawn(problem, known)), starts)
     for index, (held, numbers, flow) in enumerate(every):
         if work.steps > _WORK:
             return best, f"tried {index} of {starts} starts, after {work.steps:.1e} steps"

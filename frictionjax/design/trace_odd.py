@@ -7,6 +7,7 @@ import numpy as np
 from ..arguments import as_text
 from .trace import Trace
 from .trace_energy import Seen, seen_as, share_gained
+from .trace_outliers import outliers_of
 from .trace_problem import Problem
 from .trace_status import TraceStatus
 
@@ -18,6 +19,8 @@ _MENDED = 0.02  # gained by a trace in the right unit, noise and all
 _ROUGH, _ROUGHEST = 0.5, 1.5  # eps: scatter of neighbours; two slips a sample reach 1.1
 _BLIND = 0.1  # eps: a known error of z that hides where in its well a tip is
 _DROWNED = 1.5  # times the noise, which the force has to exceed (root mean square)
+_SURE = 6.0  # standard deviations
+_FOLLOWS = 0.5  # correlation of z and force in a well: 1 without noise
 _BEYOND = 3.0  # times the force that the load can build up
 _SMALLER, _LARGER = (1e-3, 1e-6, 1e-9), (1e3, 1e6, 1e9)  # the nearest first
 _GAINS = (
@@ -48,10 +51,62 @@ def oddity_of(trace: Trace, problem: Problem) -> Oddity | None:
         why = Oddity(TraceStatus.IMPOSSIBLE, f"its force reaches {built}")
         return _mended(problem, trace, _SMALLER) or noise or why
     gained = share_gained(own, eps, _EXPLAINED)
-    if noise or gained <= _GAINED:
+    if noise:
         return noise
-    why = Oddity(TraceStatus.IMPOSSIBLE, _GAINS.format(gained))
-    return _mended(problem, trace, (*_LARGER, 1.0)) or why
+    gains = gained > _GAINED
+    mended = _mended(problem, trace, (*_LARGER, 1.0)) if gains else None
+    if mended or (outliers := _outliers(trace)):
+        return mended or outliers
+    if gains:
+        return Oddity(TraceStatus.IMPOSSIBLE, _GAINS.format(gained))
+    return _still(own, eps) or _elsewhere(own, problem)
+
+
+def _outliers(trace: Trace) -> Oddity | None:
+    """Samples far off all others: what they are, and how they are left out."""
+    found = outliers_of(trace.values)
+    if not found.size:
+        return None
+    first, unit = found[0], "N" if trace.quantity == "force" else "m"
+    place = f"{as_text(trace.values[first])} {unit} at t = {as_text(trace.ts[first])} s"
+    more = "" if found.size == 1 else f", the first of {found.size}"
+    told = f"{trace.quantity} = {place}{more}; masked (numpy.ma) they are left out"
+    return Oddity(TraceStatus.OUTLIERS, told)
+
+
+def _still(seen: Seen, eps: float) -> Oddity | None:
+    """A tip that stays where it is, whatever the force.
+
+    In a well the force rises with z. Of the load in place of the force z is noise.
+    """
+    low, high = np.percentile(seen.z, [2, 98])
+    if high - low >= eps:
+        return None
+    z, force = seen.z - np.mean(seen.z), seen.force - np.mean(seen.force)
+    if z @ force > _FOLLOWS * np.linalg.norm(z) * np.linalg.norm(force):
+        return None
+    size = as_text(np.ptp(seen.force))
+    told = f"z is constant while the force changes by {size} N, as if it were the load"
+    return Oddity(TraceStatus.NO_SLIDE, told)
+
+
+def _elsewhere(seen: Seen, problem: Problem) -> Oddity | None:
+    """A first sample too far from z0 for what happens until then, as with an offset."""
+    eps, after, z0 = float(problem.eps), float(problem.ts[0]), float(problem.scene.z0)
+    drag = eps ** float(problem.gamma)
+    size = float(np.percentile(np.abs(seen.force), 98))
+    # Before the first sample, the fastest that this force could have moved the tip.
+    way = min(after * 2 * size / drag, seen.most / seen.stiffness + eps)
+    sd = max(seen.sd, seen.scatter / seen.stiffness)
+    away = float(seen.z[0]) - z0
+    if abs(away) <= way + max(_SURE * sd, _BLIND * eps):
+        return None
+    told = (
+        f"at t = {as_text(after)} s z is {as_text(seen.z[0])} m, where the scene starts at "
+        f"{as_text(z0)} m, as with an offset of {as_text(away * seen.stiffness)} N or "
+        "another z0"
+    )
+    return Oddity(TraceStatus.IMPOSSIBLE, told)
 
 
 def _mended(problem: Problem, trace: Trace, factors: tuple) -> Oddity | None:

@@ -17,3 +17,4 @@ class TraceStatus(Outcome):
     WRONG_SIGN = 8, "the trace looks to have the other sign"
     NOISE = 9, "noise hides what the surface does"
     IMPOSSIBLE = 10, "no surface gives this trace in this scene"
+    OUTLIERS = 11, "some samples contradict all others"

@@ -22,6 +22,7 @@ from ..profiles import AbstractProfile
 from ..scene import Scene
 from ..scene_files import scene_document
 from ..supports import Spring
+from ..whole_files import write_whole
 from .folder import write_figures
 from .job import Job, exchanged, joined
 from .tables import coefficient_table, table
@@ -75,11 +76,11 @@ def run_design(job: Job, folder: Path, asked: Asked) -> str:
         check = check_design(profile, bristle, support=scene.support)
         sections.append(("On the dynamics", repr(check)))
     text = joined(sections)
-    (folder / "design.toml").write_text(scene_document(scene, job.study), encoding="utf-8")
-    (folder / "tables.txt").write_text(text + "\n", encoding="utf-8")
+    write_whole(folder / "design.toml", scene_document(scene, job.study))
+    write_whole(folder / "tables.txt", text + "\n")
     write_heights(folder / "heights.csv", profile, asked.period, asked.samples)
     for name, content in design.files.items():
-        (folder / name).write_text(content + "\n", encoding="utf-8")
+        write_whole(folder / name, content + "\n")
     write_figures(folder, design.pictures)
     return text
 

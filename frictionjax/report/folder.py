@@ -10,6 +10,7 @@ from .. import plot
 from ..coefficients import Coefficients
 from ..scene import Scene
 from ..studies import Study
+from ..whole_files import naming, write_whole
 
 
 def study_figures(
@@ -37,7 +38,8 @@ def write_figures(folder: Path, figures: Iterator[tuple[str, Figure]]) -> list[P
     paths = []
     for name, figure in figures:
         paths.append(folder / f"{name}.png")
-        figure.savefig(paths[-1])
+        with naming(paths[-1]):
+            figure.savefig(paths[-1])
     return paths
 
 
@@ -47,9 +49,9 @@ def write_record(
     """Write data sets by name, scene and tables into `folder`."""
     for name, one in data.items():
         # In memory first: HDF5 ends the process where a disk is full.
-        (folder / f"{name}.nc").write_bytes(one.to_netcdf(None, engine="h5netcdf"))
-    (folder / "tables.txt").write_text(text + "\n", encoding="utf-8")
-    (folder / "scene.toml").write_text(toml, encoding="utf-8")
+        write_whole(folder / f"{name}.nc", one.to_netcdf(None, engine="h5netcdf"))
+    write_whole(folder / "tables.txt", text + "\n")
+    write_whole(folder / "scene.toml", toml)
 
 
 def write_study(

@@ -1,6 +1,5 @@
 """A folder that is filled whole or not at all."""
 
-import errno
 import os
 import shutil
 import tempfile
@@ -10,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..arguments import require
-
-FULL = (errno.ENOSPC, errno.EDQUOT)  # a disk, or what a user may write
+from ..whole_files import FULL
 
 
 def require_folder(path: Any) -> Path:
@@ -37,7 +35,7 @@ def filled(folder: Path) -> Iterator[Path]:
     """A place for files that move into `folder` once all of them are written.
 
     Work that is interrupted or fails leaves nothing behind. A full disk is an `OSError`
-    that names the folder: what is raised where bytes are written names no file.
+    that names the file where it is going to be, or the folder where no file is known.
     """
     place = None
     try:
@@ -50,7 +48,8 @@ def filled(folder: Path) -> Iterator[Path]:
         if error.errno not in FULL:
             raise
         said = f"{os.strerror(error.errno)}, nothing was written"
-        raise OSError(error.errno, said, str(folder)) from None
+        name = Path(error.filename).name if error.filename else ""
+        raise OSError(error.errno, said, str(folder / name)) from None
     finally:
         if place is not None:
             shutil.rmtree(place, ignore_errors=True)

@@ -1,0 +1,28 @@
+"""Samples of a trace that its neighbours contradict."""
+
+import numpy as np
+
+_SCATTERS = 8.0  # of all samples, and of those around: in slips neighbours differ
+_AROUND = 10  # samples to either side
+_BEYOND = 0.5  # of the range of all others, beyond it
+
+
+def outliers_of(values: np.ndarray) -> np.ndarray:
+    """Indices of samples far off all their neighbours and beyond all others, (k,).
+
+    A slip takes the force from one end of its range to the other, so that a single sample
+    inside the range may be right.
+    """
+    low, high = np.percentile(values, [2, 98])
+    beyond = np.maximum(low - values, values - high) > _BEYOND * (high - low)
+    bends = np.abs(np.diff(values, 2, prepend=values[:1], append=values[-1:])) / np.sqrt(
+        6.0
+    )
+    scatter = 1.4826 * float(np.median(bends))
+    found = []
+    for index in np.flatnonzero(beyond):
+        near = slice(max(0, index - _AROUND), index + _AROUND + 1)
+        others = values[near][~beyond[near]]
+        if others.size and np.min(np.abs(others - values[index])) > _SCATTERS * scatter:
+            found.append(index)
+    return np.array(found, dtype=int)
