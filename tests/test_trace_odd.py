@@ -218,7 +218,9 @@ def test_no_descent_is_begun_after_so_many_steps(monkeypatch):
 
     monkeypatch.setattr(trace_fit, "descend", descend)
     monkeypatch.setattr(trace_fit, "explains", lambda *_: False)
-    monkeypatch.setattr(trace_fit, "_starts", lambda _: [(None, i, None) for i in range(5)])
+    monkeypatch.setattr(
+        trace_fit, "_starts", lambda *_: [(None, i, None) for i in range(5)]
+    )
     monkeypatch.setattr(trace_fit, "_drawn", lambda *_: iter(()))
     best, left = trace_fit._descent(None, Problem(), 8, 100, lambda step: None)
     assert begun == [0, 1, 2]

@@ -16,6 +16,7 @@ from .trace_flow import Flow
 from .trace_odd import oddity_of
 from .trace_passage import unbounded
 from .trace_problem import Problem, problem_of
+from .trace_programs import compiled_beside
 from .trace_report import explains, report, without_fit
 from .trace_result import TraceFit
 from .trace_start import start
@@ -91,9 +92,10 @@ def fit_trace(
         odd = oddity_of(trace, problem)
         if odd is not None:
             return without_fit(trace, problem, harmonics, *odd)
-        tell("the start")
+        tell("compiling, and starts")
         heard = _listener(progress, tell)
-        found, left = _descent(trace, problem, starts, max_steps, heard)
+        with compiled_beside(problem) as ready:
+            found, left = _descent(trace, problem, starts, max_steps, heard, ready)
         if found is None:
             return without_fit(trace, problem, harmonics, TraceStatus.NOT_FINITE)
         tell("what is determined")
@@ -114,15 +116,20 @@ def _listener(progress: Any, tell: Callable[[str], None]) -> Callable[[Step], No
 
 
 def _descent(
-    trace: Trace, problem: Problem, starts: int, most: int, progress: Callable
+    trace: Trace,
+    problem: Problem,
+    starts: int,
+    most: int,
+    progress: Callable,
+    ready: Callable[[], object] = lambda: None,
 ) -> tuple[Descent | None, str]:
     """The best of the descents, None where no start has a trajectory, and what was left.
 
-    One after the other, until one explains the trace.
+    One after the other, until one explains the trace. `ready()`: waits for the program.
     """
     best: Descent | None = None
     work = _Work(problem)
-    known = _starts(problem)
+    known = _starts(problem, ready)
     every = itertools.islice(itertools.chain(known, _drawn(problem, known)), starts)
     for index, (held, numbers, flow) in enumerate(every):
         if work.steps > _WORK:
@@ -150,18 +157,21 @@ class _Work:
         return found
 
 
-def _starts(problem: Problem) -> list[tuple]:
+def _starts(problem: Problem, ready: Callable[[], object]) -> list[tuple]:
     """Bounds, coefficients and trajectories of the starts, nearest to the samples first.
 
     The last, without bounds from passages, is for surfaces on which these bend the way.
     """
-    known = []
+    begun, known = [], []
     zero = np.zeros(problem.penalty.size)
     for bounded, factor in _STARTS:
         held = problem.held if bounded else unbounded
         parts = problem.rough, problem.scene, problem.eps
         penalty = factor * problem.penalty
         numbers = start(*parts, zero, penalty, problem.admissible, held)
+        begun.append((bounded, held, numbers))
+    ready()
+    for bounded, held, numbers in begun:
         found = problem.run(numbers)
         off = np.minimum(np.abs(found.z - problem.reading.z), 0.25 * float(problem.eps))
         known.append((not bounded, float(np.mean(off)), held, numbers, found))
