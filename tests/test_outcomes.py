@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.coefficients import Coefficients
 from frictionjax.design.angle_fit import AngleFit
+from frictionjax.design.design_check import DesignCheck
 from frictionjax.design.fit_status import FitStatus
 from frictionjax.design.inverse import Pulled
 from frictionjax.design.steady_slide import SteadySlide
@@ -17,6 +19,7 @@ from frictionjax.outcomes import counted
 from frictionjax.wiggly.status import FailedCells, warn_of_failed
 from frictionjax.wiggly.trajectory import Solution
 
+SINE = fx.profiles.Sine(0.1)
 BAD = int(fx.Status.MAX_STEPS)
 
 
@@ -88,6 +91,53 @@ def test_a_traced_result_shows_itself(kind):
         flags, found = jax.jit(run)(codes)
         assert np.array_equal(flags, codes == 0)
         assert np.array_equal(found == 0, codes == 0)
+
+
+def law(alpha):
+    return fx.friction(SINE, fx.bristles.Homothetic(alpha))
+
+
+def check(codes):
+    shape = jnp.shape(codes)[:-1]
+    one = jnp.ones(shape)
+    return DesignCheck(Coefficients(one, -one, one), slide(codes), one, one)
+
+
+@pytest.mark.parametrize(
+    ("alphas", "said"),
+    [
+        ([1.0, 2.0], "Coefficients(batch (2,): rho_plus=[0.1 0.2], "),
+        ([1.0, -2.0], "alpha < 0 in 1 of 2: the bristle pulls on the surface)"),
+        ([-1.0, -2.0, -3.0], "alpha < 0 in 3 of 3: the bristle pulls on the surface)"),
+        ([], "Coefficients(batch (0,): "),
+    ],
+)
+def test_coefficients_show_themselves_in_a_batch(alphas, said):
+    single = law(1.0)
+    some = jax.tree.map(lambda one: jnp.asarray(alphas) * one, single)
+    text = repr(some)
+    assert said in text
+    assert ("pulls" in text) == any(alpha < 0 for alpha in alphas)
+    pairs = jax.tree.map(lambda one: jnp.ones((2, 2)) * one, single)
+    assert repr(pairs).startswith("Coefficients(batch (2, 2): ")
+
+
+@pytest.mark.parametrize("transform", [jax.vmap, lambda fn: jax.jit(jax.vmap(fn))])
+def test_friction_of_a_batch_shows_itself(transform):
+    def one(alpha):
+        found = law(alpha)
+        assert repr(found)
+        return found
+
+    found = transform(one)(jnp.array([1.0, -1.0]))
+    assert "alpha < 0 in 1 of 2" in repr(found)
+
+
+def test_designs_checked_in_a_batch_show_themselves():
+    assert repr(check(jnp.zeros((1,), int))).startswith("Steady slide, gamma = 1")
+    batch = repr(check(jnp.array([[0, BAD], [0, 0]])))
+    assert batch.startswith("DesignCheck(batch (2,): SteadySlide(")
+    assert "3 of 4 OK, 1 MAX_STEPS" in batch
 
 
 def test_outcomes_are_counted():

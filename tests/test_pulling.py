@@ -1,14 +1,18 @@
 """Bristles press: designs that pull are returned where they are asked for, and named."""
 
+import json
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from command_line import run
 
 import frictionjax as fx
 from frictionjax.bristles.pulling import pulling_note
 from frictionjax.design import slide_fit
 from frictionjax.design.fit_status import FitStatus
+from frictionjax.design.free_parameter import free_parameter, require_bounds
 from frictionjax.design.inverse import Brackets, _pressing_alike
 from frictionjax.design.slide_fit import SlideFit
 from frictionjax.design.steady_slide import SteadySlide
@@ -145,9 +149,20 @@ def test_bounds_of_a_rod_are_within_its_length():
         fx.fit_angle(SINE, rod, ratio=0.9, pulling="no")
 
 
-def test_a_quarter_turn_as_people_write_it_is_a_bound():
-    found = fx.fit_angle(SINE, SLANTED, ratio=1.2, bounds=(-1.5708, 1.5708))
-    assert found.success
+QUARTER = 0.5 * np.pi
+
+
+@pytest.mark.parametrize("bounds", [(-QUARTER, QUARTER), (0, np.nextafter(QUARTER, 2))])
+def test_a_quarter_turn_to_rounding_is_a_bound(bounds):
+    require_bounds(free_parameter(SLANTED, "angle"), SLANTED, bounds)
+
+
+@pytest.mark.parametrize("beyond", [1.5708, 1.570797, QUARTER + 1e-12, -1.5708])
+def test_a_bound_beyond_a_quarter_turn_is_named_with_its_digits(beyond):
+    """1.5708 is not pi/2, and looks like it with six digits."""
+    words = r"needs a part of \(-1.57079632679, 1.57079632679\)"
+    with pytest.raises(ValueError, match=words):
+        fx.fit_angle(SINE, SLANTED, ratio=1.2, bounds=sorted([0.1, beyond]))
 
 
 def test_maps_leave_out_what_pulls_and_say_so():
@@ -255,9 +270,39 @@ def test_lengths_that_look_swapped(bristle, pulls, swapped):
     assert bool(note) == pulls
 
 
+SCENE = fx.Scene(SINE, SWAPPED, fx.supports.Spring(1.0), fx.loads.Sine(1.0, 3.0), 3.0)
+
+
+def test_a_scene_says_that_its_bristle_pulls():
+    said = "): alpha = -1 N < 0: the bristle pulls on the surface"
+    assert repr(SCENE).endswith(said)
+    assert repr(SCENE.replace(duration=1.0)).endswith(said)
+    presses = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
+    for scene in (
+        SCENE.replace(bristle=presses),
+        jax.tree.map(lambda leaf: jnp.stack([leaf]), SCENE),
+    ):
+        assert "pulls" not in repr(scene)
+    with jax.check_tracer_leaks(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(jax, "jit", None)  # nothing is compiled
+        patch.setattr(jax, "grad", None)
+        assert repr(SCENE).endswith(said)
+
+
+def test_json_of_the_shell_says_it_too(tmp_path):
+    fx.save_scene(SCENE, tmp_path / "scene.toml")
+    numbers = json.loads(run("friction", tmp_path / "scene.toml", "--json").stdout)
+    assert numbers["pulling"] is True
+    assert numbers["alpha"] == -1.0
+    assert len(numbers["notes"]) == 1
+    assert numbers["notes"][0].startswith("Note: alpha = -1 N < 0: the bristle pulls")
+    numbers = json.loads(run("friction", "--json").stdout)
+    assert numbers["pulling"] is False
+    assert "notes" not in numbers
+
+
 def test_the_command_line_says_it_before_its_tables(tmp_path):
-    scene = fx.Scene(SINE, SWAPPED, fx.supports.Spring(1.0), fx.loads.Sine(1.0, 3.0), 3.0)
-    fx.save_scene(scene, tmp_path / "scene.toml")
+    fx.save_scene(SCENE, tmp_path / "scene.toml")
     (note,) = read_job(str(tmp_path / "scene.toml")).notes
     assert note.startswith("Note: alpha = -1 N < 0: the bristle pulls")
     assert note.endswith("rest_length = 1 and height = 2 look swapped")

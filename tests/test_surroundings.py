@@ -23,6 +23,7 @@ from frictionjax.programs import Program
 from frictionjax.report import folder as report_folder
 from frictionjax.report.place import filled
 from frictionjax.surroundings import SurroundingsError, with_nan
+from frictionjax.whole_files import naming
 
 SCENE = fx.Scene(
     fx.profiles.Sine(0.1),
@@ -205,7 +206,7 @@ def test_cells_run_where_jax_looks_for_nan():
 FULL = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
-@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EDQUOT])
+@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG])
 def test_a_full_disk_names_the_folder_and_leaves_nothing(code, tmp_path):
     with (
         pytest.raises(OSError, match="nothing was written") as found,
@@ -237,7 +238,58 @@ def test_a_full_disk_is_one_line_of_the_shell(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is full")
+def test_what_does_not_fit_is_named_where_it_was_going_to_be(tmp_path):
+    with (
+        pytest.raises(OSError, match="nothing was written") as found,
+        filled(tmp_path / "a") as place,
+        naming(place / "tables.txt"),
+    ):
+        raise OSError(errno.EFBIG, "File too large")
+    assert found.value.filename == str(tmp_path / "a" / "tables.txt")
+    assert not list(tmp_path.iterdir())
+
+
+needs_full = pytest.mark.skipif(
+    not Path("/dev/full").exists(), reason="no device that is full"
+)
+
+
+@pytest.mark.slow
+@needs_full
+@pytest.mark.parametrize("arguments", [["--help"], ["--version"], ["friction", "--json"]])
+def test_what_is_printed_on_a_full_disk_is_one_line(arguments):
+    with Path("/dev/full").open("w") as full:
+        command = [sys.executable, "-m", "frictionjax", *arguments]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 1
+    assert done.stderr == f"Error: standard output: {FULL.strerror}\n"
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(signal, "SIGXFSZ"), reason="no limits of files here")
+@pytest.mark.parametrize(
+    ("blocks", "name", "arguments"),
+    [
+        (1, "mu_slanted.png", ["figures"]),
+        (1, "tables.txt", ["design", "--ratio", "1.2"]),
+    ],
+)
+def test_a_limit_of_file_sizes_names_the_file(blocks, name, arguments, tmp_path):
+    import resource
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (512 * blocks, 512 * blocks))
+
+    command = [sys.executable, "-m", "frictionjax", *arguments, "--out", tmp_path / "out"]
+    done = subprocess.run(command, capture_output=True, text=True, preexec_fn=limit)
+    assert done.returncode == 1
+    said = f"Error: {tmp_path / 'out' / name}: File too large, nothing was written"
+    assert done.stderr.splitlines()[-1] == said
+    assert "Traceback" not in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+@needs_full
 @pytest.mark.parametrize("name", ["study.nc", "tables.txt", "scene.toml"])
 def test_every_file_of_a_record_may_meet_a_full_disk(name, tmp_path):
     (tmp_path / name).symlink_to("/dev/full")

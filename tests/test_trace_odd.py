@@ -10,8 +10,9 @@ import pytest
 import frictionjax as fx
 from frictionjax.design import trace_fit
 from frictionjax.design.trace_descent import View
-from frictionjax.design.trace_energy import scatter_of, seen_as, share_gained, ways
+from frictionjax.design.trace_energy import scatter_of, seen_as, ways
 from frictionjax.design.trace_odd import oddity_of
+from frictionjax.design.trace_outliers import outliers_of
 from frictionjax.design.trace_problem import problem_of
 from frictionjax.design.trace_report import _counted, _freedom
 from frictionjax.design.trace_status import TraceStatus
@@ -84,6 +85,27 @@ ODD = {
     "nothing": (0 * FORCE, None, TraceStatus.NOISE, "a friction of 0 N"),
     "a constant": (0 * FORCE + 0.1, 1e-3, TraceStatus.IMPOSSIBLE, "gain energy over whole"),
     "an offset": (FORCE + 1.0, 1e-3, TraceStatus.IMPOSSIBLE, "gain energy over whole"),
+    "an outlier": (
+        *(np.where(np.arange(TIMES.size) == 150, 5.0, FORCE), 1e-3, TraceStatus.OUTLIERS),
+        "force = 5 N at t = 3.01 s; masked (numpy.ma) they are left out",
+    ),
+    "two outliers in mN": (
+        *(1e3 * np.where(np.isin(TIMES, TIMES[[50, 90]]), -0.9, FORCE), None),
+        *(TraceStatus.WRONG_SCALE, "as if in mN"),
+    ),
+    "outliers, noisy": (
+        np.where(np.isin(TIMES, TIMES[[0, 1, 180]]), 0.9, FORCE + noise(2e-3)),
+        *(None, TraceStatus.OUTLIERS, "force = 0.9 N at t = 0.01 s, the first of 3"),
+    ),
+    "the load": (load(TIMES), None, TraceStatus.NO_SLIDE, "as if it were the load"),
+    "the load, noisy": (
+        *(load(TIMES) + noise(1e-3), 1e-3, TraceStatus.NO_SLIDE),
+        "z is constant while the force changes by 2.1",
+    ),
+    "the load, with an offset": (
+        *(load(TIMES) + 0.02, None, TraceStatus.NO_SLIDE),
+        "as if it were the load",
+    ),
     "too late": (np.roll(FORCE, 37), 1e-3, TraceStatus.IMPOSSIBLE, "start in time"),
 }
 
@@ -157,13 +179,61 @@ def test_scatter_is_that_of_one_sample():
     assert scatter_of(3.0 + 2.0 * TIMES) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_a_few_samples_that_are_wrong_do_not_make_a_trace_odd():
+def odd(trace):
+    return oddity_of(trace, problem_of(trace, SCENE, EPS, 1.0, 4, 1e-3))
+
+
+def test_a_few_samples_that_are_wrong_hide_no_wrong_sign():
     values = FORCE.copy()
     values[[50, 180]] += 1.0
-    trace = traced(values, 1e-3)
-    problem = problem_of(trace, SCENE, EPS, 1.0, 4, 1e-3)
-    assert oddity_of(trace, problem) is None
-    assert share_gained(seen_as(problem, trace, -1.0), EPS) > 0.5
+    assert odd(traced(values, 1e-3)).status == TraceStatus.OUTLIERS
+    assert odd(traced(-values, 1e-3)).status == TraceStatus.WRONG_SIGN
+    values = np.ma.masked_array(values, np.isin(TIMES, TIMES[[50, 180]]))
+    assert odd(traced(values, 1e-3)) is None
+
+
+def test_outliers_are_far_from_their_neighbours_and_from_all_others():
+    saw = np.tile([0.0, 1.0, 2.0, 3.0], 25)
+    assert outliers_of(saw).size == 0
+    assert outliers_of(np.zeros(9)).size == 0
+    far = saw.copy()
+    far[[10, 11]] = 90.0, -70.0
+    assert outliers_of(far).tolist() == [10, 11]
+    knock = 30 * np.exp(-(((np.arange(100) - 50) / 4) ** 2))  # a peak of many samples
+    assert outliers_of(saw + knock).size == 0
+
+
+FROM_ZERO = np.linspace(0.0, 5.98, 300)
+FORCE_FROM_ZERO = load(FROM_ZERO) - states(FROM_ZERO)
+
+
+@pytest.mark.parametrize("offset", [0.05, -0.05, 0.02, -0.1, 0.004, -0.002])
+@pytest.mark.parametrize("size", [0.0, 1e-3])
+def test_an_offset_is_told_by_where_the_trace_starts(offset, size):
+    """Of whole wells too, which gain no energy."""
+    found = odd(traced(FORCE_FROM_ZERO + offset + noise(size), size or None, FROM_ZERO))
+    if abs(offset) < 0.1 * EPS:
+        assert found is None
+        return
+    assert found.status == TraceStatus.IMPOSSIBLE
+    if "gain" not in found.text:
+        assert "at t = 0 s z is " in found.text
+        assert "where the scene starts at 0 m, as with an offset of " in found.text
+        assert "or another z0" in found.text
+
+
+def test_another_start_is_told_by_its_position():
+    trace = traced(states(FROM_ZERO), None, FROM_ZERO, "z")
+    assert odd(trace) is None
+    problem = problem_of(trace, SCENE.replace(z0=0.05), EPS, 1.0, 4, 1e-3)
+    assert "z is 0 m, where the scene starts at 0.05 m" in oddity_of(trace, problem).text
+
+
+def test_a_tip_that_follows_the_force_in_its_well_is_not_odd():
+    """The load stays below what a slide takes."""
+    z = EPS * np.arcsin(load(TIMES) / 2) / (2 * np.pi)
+    assert odd(traced(load(TIMES) - z, 1e-3)) is None
+    assert odd(traced(load(TIMES) - z + noise(1e-3), 1e-3)) is None
 
 
 def test_a_support_that_has_no_such_force_is_no_trace_in_another_unit():

@@ -173,6 +173,15 @@ FOUR = [0.0, 1.0, 2.0, 3.0]
         ({"ts": FOUR, "z": FOUR, "uncertainty": [1, 1, np.inf, 1]}, "uncertainties > 0"),
         ({"ts": FOUR, "z": FOUR, "uncertainty": [1, 1]}, "trace.uncertainty"),
         ({"ts": FOUR, "z": "high"}, "trace.z"),
+        (
+            {"ts": FOUR, "force": [0, 3e300, 0, 1]},
+            r"trace.force = .e\+300: needs values up to",
+        ),
+        (
+            {"ts": FOUR, "z": [0, 1, 2, -4e60]},
+            r"trace.z = -.e\+60: needs values up to 1e\+50",
+        ),
+        ({"ts": FOUR, "z": FOUR, "uncertainty": 1e200}, "needs uncertainties up to 1e"),
     ],
 )
 def test_bad_traces_are_named(arguments, message):
@@ -192,6 +201,7 @@ def test_bad_traces_are_named(arguments, message):
         ({"max_steps": 1.5}, "max_steps = 1.5"),
         ({"starts": 0}, "starts = 0: needs a whole number >= 1"),
         ({"accuracy": 1.0}, "accuracy = 1: needs"),
+        ({"progress": "yes"}, "progress = 'yes': needs True or False"),
         ({"trace": fx.Trace([0, 1, 2, 11], z=FOUR)}, r"times in \[0, duration\]"),
     ],
 )

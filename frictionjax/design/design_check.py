@@ -5,7 +5,7 @@ from typing import Any
 import equinox as eqx
 import numpy as np
 
-from ..arguments import Real, as_real
+from ..arguments import Real, as_real, is_known
 from ..bristles import AbstractBristle
 from ..bristles.pulling import pulling_text
 from ..coefficients import Coefficients
@@ -73,6 +73,10 @@ class DesignCheck(eqx.Module):
         )
 
     def __repr__(self) -> str:
+        if not is_known(self):
+            return super().__repr__()
+        if shape := np.shape(self.law.rho_plus):
+            return f"DesignCheck(batch {shape}: {self.slide!r})"
         told = f"gamma = {float(self.gamma):.4g}, rate = {float(self.rate):.4g} N/s"
         pulls = "" if self.law.alpha is None else pulling_text(self.law.alpha)
         pulls = f"\n({pulls})" if pulls else ""

@@ -97,7 +97,7 @@ def _elsewhere(seen: Seen, problem: Problem) -> Oddity | None:
     size = float(np.percentile(np.abs(seen.force), 98))
     # Before the first sample, the fastest that this force could have moved the tip.
     way = min(after * 2 * size / drag, seen.most / seen.stiffness + eps)
-    sd = max(seen.sd, seen.scatter / seen.stiffness)
+    sd = seen.sd or seen.scatter / seen.stiffness  # slips scatter too
     away = float(seen.z[0]) - z0
     if abs(away) <= way + max(_SURE * sd, _BLIND * eps):
         return None
