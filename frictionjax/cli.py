@@ -137,7 +137,7 @@ def _start() -> None:
 
     from .wiggly.status import FailedCells
 
-    warnings.simplefilter("ignore", FailedCells)  # tables name them
+    warnings.simplefilter("once", FailedCells)  # a sweep and its study say the same
     # `keep_compiled` has its own: JAX warns anew for every program.
     warnings.filterwarnings("ignore", "Error writing persistent compilation cache")
     warnings.showwarning = _show_warning  # type: ignore[assignment]

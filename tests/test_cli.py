@@ -13,6 +13,7 @@ from command_line import error_line, run
 import frictionjax as fx
 from frictionjax.machine_cost import MachineCost
 from frictionjax.scene_files import default_study, scene_document
+from frictionjax.wiggly.status import warn_of_failed
 
 SMALL = ["--eps", "0.097:0.031:4", "--gamma", "1,2", "--no-progress"]
 
@@ -46,6 +47,23 @@ def test_a_budget_is_told_before_anything_runs(tmp_path, monkeypatch):
     first, last = result.stderr.splitlines()
     assert first.startswith("Budget of 1000 s: accuracy")
     assert last == "Error: stopped before it ran"
+
+
+def test_failed_cells_are_one_warning_of_the_shell(tmp_path, monkeypatch):
+    """A table names them too, which may have gone into a file."""
+
+    def failed(*_, **__):
+        for _ in range(2):  # of the sweep, and of its study
+            warn_of_failed(np.array([[0, 1]]), np.array([1.0]), np.array([0.1, 0.05]))
+        raise ValueError("stopped after it ran")
+
+    monkeypatch.setattr("frictionjax.report.study.sweep", failed)
+    lines = run("study", *SMALL, "--out", tmp_path / "there").stderr.splitlines()
+    (said,) = [line for line in lines if line.startswith("Warning: ")]
+    assert said.startswith(
+        "Warning: 1 of 2 cells failed (gamma = 1, eps = 0.05: MAX_STEPS)"
+    )
+    assert lines[-1] == "Error: stopped after it ran"
 
 
 def test_study_writes_a_folder(study):
