@@ -29,7 +29,8 @@ def waiting(name: str, shown: bool) -> Iterator[Callable[[str], None]]:
     def show() -> None:
         if done.wait(_PATIENCE):
             return
-        with tqdm(bar_format=_WAITING, desc=name, leave=False) as line:
+        # With a delay it does not show itself before its clock is set.
+        with tqdm(bar_format=_WAITING, desc=name, leave=False, delay=1e-9) as line:
             line.start_t = began
             while True:
                 line.set_description_str(f"{name}: {told[0]}" if told[0] else name)
