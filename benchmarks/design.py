@@ -22,15 +22,15 @@ from clock import timed
 from scipy.optimize import Bounds, LinearConstraint, minimize, nnls
 
 import frictionjax as fx
-from frictionjax.design.constraints import Layout, basis, waves_of
+from frictionjax.design.constraints import FitShape, basis, waves_of_heights
 from frictionjax.design.extreme_slopes import reach
 from frictionjax.design.interior import (
     barrier_of,
-    descend,
+    follow_barrier,
     stop_before_walls,
 )
-from frictionjax.design.profile_fit import problem_of
-from frictionjax.design.starts import start
+from frictionjax.design.profile_fit import surface_problem
+from frictionjax.design.starts import random_start
 
 jax.config.update("jax_enable_x64", True)
 
@@ -67,7 +67,7 @@ class Rows:
     """The program of a case in SciPy's words: low <= A x <= high, energy |x|^2."""
 
     def __init__(self, plus, minus, bend):
-        points = Layout(HARMONICS, False, False, 0).points
+        points = FitShape(HARMONICS, False, False, 0).points
         slopes = basis(HARMONICS, points)
         low, high = np.full(points, -minus), np.full(points, plus)
         low[0], high[points // 2] = plus, -minus
@@ -140,7 +140,7 @@ def starts_of(problem):
     """The same random surfaces for everybody."""
     keys = jax.random.split(jax.random.PRNGKey(0), STARTS)
     none = jnp.zeros((STARTS, 0))
-    make = jax.vmap(lambda key, none: start(problem.layout, problem.task, key, none, none))
+    make = jax.vmap(lambda key, none: random_start(problem.layout, problem.task, key, none, none))
     return make(keys, none)
 
 
@@ -162,7 +162,7 @@ def quasi_newton(task_of, first, steps=2000):
     def program(first):
         def one(first):
             last = barrier_of(layout, task, half, first)
-            final, path = descend(last, first, steps, steps, chain)
+            final, path = follow_barrier(last, first, steps, steps, chain)
             return task.slope * layout.split(final).waves, path.steps
 
         return jax.vmap(one)(first)
@@ -219,11 +219,11 @@ def compare(name, plus, minus, radius, slow):
     best = least_distance(plus, minus, radius)
     target = fx.Target(HOMOTHETIC, plus, -minus)
     cold, ours, fit = timed(lambda: fx.fit_profile(target, smallest_radius=radius), REPEATS)
-    waves = np.asarray(waves_of(fit.profile.cos, fit.profile.sin))
+    waves = np.asarray(waves_of_heights(fit.profile.cos, fit.profile.sin))
     proof = f"{max(s.steps for s in fit.starts)} steps; first call {cold:.1f} s"
     proof += f"; proven within {fit.bending_energy / fit.bending_bound - 1:.1e}"
     row("fit_profile", ours, 1.0, *quality(waves, plus, minus, best), note=proof)
-    problem = problem_of([target], radius=radius)
+    problem = surface_problem([target], radius=radius)
     first, slope = starts_of(problem), float(problem.task.slope)
     cold, seconds, (found, steps) = timed(quasi_newton(problem, first), 1)
     note = f"{int(jnp.max(steps))} steps; compilation {cold - seconds:.1f} s"
@@ -312,10 +312,10 @@ def gradients():
         slope = differences(log_rho, x, way, 1e-6)
         worst = max(worst, float(np.max(np.abs(known @ way / slope - 1))))
     print(f"| sensitivities of log rho to surface and bristle | {worst:.1e} |")
-    problem = problem_of([target], radius=0.2, amplitude=0.1, **free)
+    problem = surface_problem([target], radius=0.2, amplitude=0.1, **free)
     share = jnp.array([0.4, 0.6])
     key = jax.random.PRNGKey(3)
-    first = start(problem.layout, problem.task, key, share, share)
+    first = random_start(problem.layout, problem.task, key, share, share)
     barrier = barrier_of(problem.layout, problem.task, jnp.asarray(0.5), first)
     barrier = barrier._replace(weight=jnp.asarray(0.1))
     x = np.concatenate([np.ravel(part) for part in first])

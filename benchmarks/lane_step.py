@@ -23,8 +23,8 @@ from scenes import AMPLITUDE, EDGES, PERIOD, SLOPE, TWO_PI, scene
 
 import frictionjax as fx
 from frictionjax.wiggly.field import TipField
-from frictionjax.wiggly.job_queue import Jobs, Legs
-from frictionjax.wiggly.lane import Cells, LaneScene, Sums
+from frictionjax.wiggly.job_queue import Lanes, Segments
+from frictionjax.wiggly.lane import LaneCells, LaneScene, Sums
 from frictionjax.wiggly.lanes import WIDTH, march
 from frictionjax.wiggly.rodas4p2 import RODAS4P2
 from frictionjax.wiggly.rosenbrock import Linearised, rosenbrock_step
@@ -122,12 +122,12 @@ def whole() -> None:
     one, (start, end, well) = scene("vertical"), lanes(EPS, LANES)
     parts = LaneScene(one.potential, one.support, one.load, *EDGES)
     numbers = EPS, EPS**GAMMA, 1e-2 * DRAG, TOLERANCE, TOLERANCE, np.inf, REACH
-    cells = Cells(*(np.array([v]) for v in numbers))
+    cells = LaneCells(*(np.array([v]) for v in numbers))
     index, ones = np.arange(LANES), np.ones(LANES)
-    jobs = Jobs(0 * index, start, well, 0 * ones, index, index + 1)
+    jobs = Lanes(0 * index, start, well, 0 * ones, index, index + 1)
     edge = AMPLITUDE * np.sin(TWO_PI * start / PERIOD) - SLOPE
     ends = edge, edge + SLIPS * EPS, 2 * ones, 2 * ones
-    legs = Legs(start, end, *ends, friction=SLOPE * ones, budget=1e6 * ones)
+    legs = Segments(start, end, *ends, friction=SLOPE * ones, budget=1e6 * ones)
     found, seconds = best(
         lambda: march(parts, cells, jobs, legs, SCHEME, Sums(energies=False))
     )

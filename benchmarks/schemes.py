@@ -14,8 +14,8 @@ import numpy as np
 from scenes import AMPLITUDE, EDGES, PERIOD, SLOPE, TWO_PI, scene
 
 import frictionjax as fx
-from frictionjax.wiggly.job_queue import Jobs, Legs
-from frictionjax.wiggly.lane import Cells, LaneScene, Sums
+from frictionjax.wiggly.job_queue import Lanes, Segments
+from frictionjax.wiggly.lane import LaneCells, LaneScene, Sums
 from frictionjax.wiggly.lanes import march
 from frictionjax.wiggly.rodas4p2 import RODAS4P2
 from frictionjax.wiggly.rodas5p import RODAS5P
@@ -84,11 +84,11 @@ def run(tableau: Tableau, eps: float, gamma: float, tolerance: float):
     end = np.arcsin((edge + SLIPS * eps + SLOPE) / AMPLITUDE) * PERIOD / TWO_PI
     first = 1e-2 * eps ** (1 + gamma)
     numbers = eps, eps**gamma, first, tolerance, tolerance, np.inf, 0.125
-    cells = Cells(*(np.array([v]) for v in numbers))
+    cells = LaneCells(*(np.array([v]) for v in numbers))
     index, one_each = np.arange(LANES), np.ones(LANES)
-    jobs = Jobs(0 * index, start, np.ceil(edge / eps), 0 * one_each, index, index + 1)
+    jobs = Lanes(0 * index, start, np.ceil(edge / eps), 0 * one_each, index, index + 1)
     ends = edge, edge + SLIPS * eps, 2 * one_each, 2 * one_each
-    legs = Legs(start, end, *ends, friction=SLOPE * one_each, budget=1e6 * one_each)
+    legs = Segments(start, end, *ends, friction=SLOPE * one_each, budget=1e6 * one_each)
     seconds = []
     for _ in range(3):
         begin = time.perf_counter()

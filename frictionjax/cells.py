@@ -13,7 +13,7 @@ from .friction_law import dissipation_potential
 from .limit_system import play_step, strip
 from .scene import Scene
 from .wiggly.integration import integrate
-from .wiggly.observed import AbstractWatch
+from .wiggly.observed import AbstractObserver
 from .wiggly.status import Status
 from .wiggly.tolerance import plan_steps, pull_of
 
@@ -28,7 +28,7 @@ class Deviation(NamedTuple):
     strip_excess: Real
 
 
-class LimitWatch(AbstractWatch):
+class LimitWatch(AbstractObserver):
     """Follows the limit system step by step beside a wiggly one and keeps the suprema.
 
     Steps end at the turning points of the load, so the play operator is exact at each.

@@ -26,7 +26,7 @@ _MISSING = 0.02
 _VISCOSITY = 0.1  # noise 0.02; a gamma off by 0.1 is 0.13 at eps = 0.3 and grows below
 
 
-class Verdict(Outcome):
+class CertificateStatus(Outcome):
     """Why a curve is or is not accepted; `message` says it for people."""
 
     OK = 0, "the curve solves the wiggly system"
@@ -58,12 +58,12 @@ class Certificate(NamedTuple):
     missing_force: float
     viscosity: float
     spacing: float
-    status: Verdict
+    status: CertificateStatus
 
     @property
     def ok(self) -> bool:
         """Whether the curve is within about eps/100 of a solution."""
-        return self.status == Verdict.OK
+        return self.status == CertificateStatus.OK
 
     @property
     def message(self) -> str:
@@ -146,7 +146,7 @@ def _nothing_known(scale: float) -> Certificate:
         missing_force=unknown,
         viscosity=unknown,
         spacing=unknown,
-        status=Verdict.NOT_FINITE,
+        status=CertificateStatus.NOT_FINITE,
     )
 
 
@@ -159,12 +159,12 @@ def _residual_error(force: Force, viscosity: float, ts, z, residual: float) -> f
 
 def _verdict(
     *, distance: float, missing_force: float, viscosity: float, spacing: float
-) -> Verdict:
+) -> CertificateStatus:
     """The first test that fails. NaN is no slip: nothing to measure the viscosity by."""
     if spacing > _COARSE:
-        return Verdict.UNRESOLVED
+        return CertificateStatus.UNRESOLVED
     if missing_force > _MISSING:
-        return Verdict.SKIPPED
+        return CertificateStatus.SKIPPED
     if abs(viscosity - 1) > _VISCOSITY:
-        return Verdict.VISCOSITY
-    return Verdict.OK if distance <= _DISTANCE else Verdict.OFF
+        return CertificateStatus.VISCOSITY
+    return CertificateStatus.OK if distance <= _DISTANCE else CertificateStatus.OFF

@@ -23,7 +23,7 @@ Column = Any
 """An array over samples or intervals: traced inside, NumPy outside."""
 
 
-class Samples(NamedTuple):
+class CurveSamples(NamedTuple):
     """At the samples, shapes (n,): the tip y = well + inside in periods, `f` in N with its
     derivatives by z, the load and `V_eps'` in N.
     """
@@ -80,7 +80,7 @@ class Force(eqx.Module):
         return force, by_tip / self.stretch(y)
 
 
-def _sample(force: Force, t: Real, z: Real) -> Samples:
+def _sample(force: Force, t: Real, z: Real) -> CurveSamples:
     well, inside = force.potential.tip(z, force.eps)
 
     def along(y):
@@ -91,7 +91,7 @@ def _sample(force: Force, t: Real, z: Real) -> Samples:
     slope, by_tip, value = jax.jvp(along, (inside,), (one,), has_aux=True)
     bend = by_tip / force.stretch(inside)
     wiggle, _ = force.potential.tip_force(inside, force.eps)
-    return Samples(well, inside, value, slope, bend, force.load(t), wiggle)
+    return CurveSamples(well, inside, value, slope, bend, force.load(t), wiggle)
 
 
 def _hermite(s, chord, first, last):
@@ -151,7 +151,7 @@ def _rest_residual(force: Force, viscosity: Real, ends) -> Real:
 
 
 @eqx.filter_jit
-def _chunk(force: Force, viscosity: Real, ts, z) -> tuple[Samples, Intervals]:
+def _chunk(force: Force, viscosity: Real, ts, z) -> tuple[CurveSamples, Intervals]:
     samples = jax.vmap(lambda t, s: _sample(force, t, s))(ts, z)
     left = jax.tree_util.tree_map(lambda v: v[:-1], samples)
     right = jax.tree_util.tree_map(lambda v: v[1:], samples)
@@ -165,7 +165,7 @@ def force_of(scene: Scene, eps: Real) -> Force:
     return Force(scene.potential, scene.support, scene.load, eps)
 
 
-def along_curve(force: Force, viscosity: float, ts, z) -> tuple[Samples, Intervals]:
+def along_curve(force: Force, viscosity: float, ts, z) -> tuple[CurveSamples, Intervals]:
     """Everything at and between the samples, chunk by chunk; NumPy arrays out.
 
     `viscosity` is `eps^gamma`; ts in s and z in m, shapes (n,), n >= 2.
@@ -186,7 +186,7 @@ def along_curve(force: Force, viscosity: float, ts, z) -> tuple[Samples, Interva
         between.append(
             jax.tree_util.tree_map(lambda v, k=count: np.asarray(v)[: k - 1], on)
         )
-    return Samples(*_join(samples)), Intervals(*_join(between))
+    return CurveSamples(*_join(samples)), Intervals(*_join(between))
 
 
 def _join(pieces):

@@ -7,14 +7,14 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .certificate_curve import Force, Intervals, Samples
+from .certificate_curve import Force, Intervals, CurveSamples
 from .extrema import Extrema, periodic_extrema
 
 _FOLD = 0.015  # periods around a fold: noise of eps/100 makes no passage
 _FAST = 0.25  # periods around the fastest place of a slip that count as the slip
 
 
-class Passages(NamedTuple):
+class Transits(NamedTuple):
     """Passages over place + n: samples before and after, n, and +1 or -1; shapes (k,)."""
 
     before: np.ndarray
@@ -23,7 +23,7 @@ class Passages(NamedTuple):
     sign: np.ndarray
 
 
-def passages(well: np.ndarray, inside: np.ndarray, place: float, band: float) -> Passages:
+def transits(well: np.ndarray, inside: np.ndarray, place: float, band: float) -> Transits:
     """Where a curve goes from one side of `place` + n to the other, by more than `band`.
 
     Samples within the band do not count, so neither noise nor lingering at a fold makes a
@@ -36,12 +36,12 @@ def passages(well: np.ndarray, inside: np.ndarray, place: float, band: float) ->
     over = np.flatnonzero(step)
     sign = np.sign(step[over])
     upper = np.maximum(side[over], side[over + 1])
-    return Passages(outside[over], outside[over + 1], upper, sign)
+    return Transits(outside[over], outside[over + 1], upper, sign)
 
 
-def along(passage: Passages, sign: int) -> Passages:
+def along(passage: Transits, sign: int) -> Transits:
     """Those in one direction."""
-    return Passages(*(v[passage.sign == sign] for v in passage))
+    return Transits(*(v[passage.sign == sign] for v in passage))
 
 
 def over_windows(operation: np.ufunc, values: np.ndarray, first, last) -> np.ndarray:
@@ -60,20 +60,20 @@ def _extrema(force: Force) -> Extrema:
     return periodic_extrema(wiggle, force.potential.points)
 
 
-class Folds(NamedTuple):
+class CurveFolds(NamedTuple):
     """Upward passages meet `V_eps'` at its largest, downward ones at its smallest."""
 
     places: dict[int, float]
     forces: dict[int, float]
 
 
-def folds_of(force: Force) -> Folds:
+def folds_of(force: Force) -> CurveFolds:
     """Where the tip leaves a well upward (+1) and downward (-1), and the force there."""
     top, most, bottom, least = (float(v) for v in _extrema(force))
-    return Folds({1: top, -1: bottom}, {1: most, -1: least})
+    return CurveFolds({1: top, -1: bottom}, {1: most, -1: least})
 
 
-def missing_forces(force: Force, folds: Folds, at: Samples) -> np.ndarray:
+def missing_forces(force: Force, folds: CurveFolds, at: CurveSamples) -> np.ndarray:
     """For each well left, the force missing at the fold in units of `Phi'' eps`.
 
     At the fold a solution moves on, so l - Phi' is larger than V' there: never positive
@@ -83,9 +83,9 @@ def missing_forces(force: Force, folds: Folds, at: Samples) -> np.ndarray:
     return np.concatenate([_missing(force, folds, at, sign) for sign in (1, -1)])
 
 
-def _missing(force: Force, folds: Folds, at: Samples, sign: int) -> np.ndarray:
+def _missing(force: Force, folds: CurveFolds, at: CurveSamples, sign: int) -> np.ndarray:
     place = folds.places[sign]
-    found = along(passages(at.well, at.inside, place, _FOLD), sign)
+    found = along(transits(at.well, at.inside, place, _FOLD), sign)
     best = over_windows(np.maximum, sign * at.load, found.before, found.after + 1)
     pull, stiffness = _pull(force, found.well, place)
     eps = float(force.eps)
@@ -107,7 +107,7 @@ def _pulls(force: Force, well, place):
     return jax.vmap(force.support.force)(z), jax.vmap(force.support.stiffness_at)(z)
 
 
-def viscosity_ratio(folds: Folds, z: np.ndarray, at: Samples, on: Intervals) -> float:
+def viscosity_ratio(folds: CurveFolds, z: np.ndarray, at: CurveSamples, on: Intervals) -> float:
     """`int f dt / (z_j - z_i)` over the fast parts of all slips, in N s/m; NaN without.
 
     The fast part of an upward slip is around the fold of the downward ones. An impulse
@@ -117,7 +117,7 @@ def viscosity_ratio(folds: Folds, z: np.ndarray, at: Samples, on: Intervals) -> 
     band = min(_FAST, 0.5 * gap, 0.5 - 0.5 * gap)
     impulse, moved = 0.0, 0.0
     for sign in (1, -1):
-        crossed = passages(at.well, at.inside, folds.places[-sign], band)
+        crossed = transits(at.well, at.inside, folds.places[-sign], band)
         slip = along(crossed, sign)
         given = over_windows(np.add, on.impulse, slip.before, slip.after)
         impulse += sign * float(np.sum(given))

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from .certificate_curve import Intervals, Samples
+from .certificate_curve import Intervals, CurveSamples
 
 _MARGIN = 0.015  # perturbation in units of eps up to which the second order is allowed for
 _SLIDING = 0.3  # share of (rho_plus - rho_minus)/2 above which a force is a slide's
 
 
 def distance(
-    ts, z, at: Samples, on: Intervals, eps: float, viscosity: float, reach: float
+    ts, z, at: CurveSamples, on: Intervals, eps: float, viscosity: float, reach: float
 ) -> float:
     """Lower bound of the distance from any solution, in units of eps.
 
@@ -38,7 +38,7 @@ def distance(
 class _Windows:
     """Windows of dyadic lengths over one curve."""
 
-    def __init__(self, h, dz, at: Samples, on: Intervals, eps: float, viscosity: float):
+    def __init__(self, h, dz, at: CurveSamples, on: Intervals, eps: float, viscosity: float):
         self.h, self.eps, self.viscosity = h, eps, viscosity
         self.slope = at.slope
         self.defect = viscosity * dz - on.impulse

@@ -192,15 +192,15 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
     _start()
     from .friction_law import friction as friction_of
     from .report.job import joined, read_job
-    from .report.tables import coefficient_table, coefficients_of, errors_of, row_table
+    from .report.tables import coefficient_table, coefficients_by_name, errors_by_name, row_table
 
     job = read_job(scene, **surface)
     law = friction_of(job.scene)
     if as_json:
-        numbers: dict[str, Any] = coefficients_of(law)
+        numbers: dict[str, Any] = coefficients_by_name(law)
         if law.alpha is not None:
             numbers["pulling"] = bool(law.alpha < 0)
-        error = errors_of(law, job.error)
+        error = errors_by_name(law, job.error)
         if job.rows is not None or error:
             finite = {name: e if math.isfinite(e) else None for name, e in error.items()}
             numbers["error"] = finite
@@ -400,14 +400,14 @@ def design(
     pictures into a folder.
     """
     _start()
-    from .report.design import Asked, run_design
+    from .report.design import DesignRequest, run_design
     from .report.job import read_job
     from .report.place import require_folder
 
     folder = require_folder(out)
     job = read_job(scene, bristle)
     more = smallest_radius, largest_amplitude, pulling
-    asked = Asked(wanted, free, bounds, period, samples, harmonics, *more)
+    asked = DesignRequest(wanted, free, bounds, period, samples, harmonics, *more)
     _write(folder, lambda place: run_design(job, place, asked))
 
 

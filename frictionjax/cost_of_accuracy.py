@@ -26,7 +26,7 @@ from .wiggly.status import ENDED, Status
 from .wiggly.tolerance import accuracies_of
 
 METHODS = ("auto", "windowed", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau")
-ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+MEASURED_ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 _TIMES = 61
 _WRONG = 0.5  # eps: nothing that is so far off is a solution
 _LOST = 1.5  # eps: where all times asked for lie in slips, and states may be one apart
@@ -199,7 +199,7 @@ def work_precision(
     eps: Any = 1e-2,
     gamma: Any = 1.0,
     methods: Any = METHODS,
-    accuracies: Any = ACCURACIES,
+    accuracies: Any = MEASURED_ACCURACIES,
     ts: Any = None,
     *,
     repeats: int = 5,

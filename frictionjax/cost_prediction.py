@@ -23,7 +23,7 @@ _LEAST_EPS = 4  # that an order needs
 # way. What 8 vertical sweeps added to a process, 0.1 to 1.3 GB, is within a factor of 1.6
 # (`benchmarks/memory.py`); surveys made again and programs of other profiles come on top.
 _LEG_BYTES, _JOB_BYTES, _VALUE_BYTES = 1200.0, 1500.0, 100.0
-ACCURACIES = (1e-6, 1e-5, 1e-4, 1e-3)  # that calibration has looked at, and their cost
+PREDICTED_ACCURACIES = (1e-6, 1e-5, 1e-4, 1e-3)  # that calibration has looked at, and their cost
 
 
 class CostPrediction(NamedTuple):
@@ -143,7 +143,7 @@ def fit_budget(
     budget: float,
     ts: Any = None,
     method: str = "auto",
-    accuracies: Any = ACCURACIES,
+    accuracies: Any = PREDICTED_ACCURACIES,
 ) -> Affordable:
     """The tightest of `accuracies` that fits `budget` (s); with fewer eps if none does.
 

@@ -127,7 +127,7 @@ def order_cost(
             some = np.geomspace(*ends, points)
             cost = predict_cost(scene, some, gamma, accuracy, measure=measure)
             grids.append(EpsGrid(*ends, points, **found, seconds=cost.seconds))
-    return chosen(grids, float(within))
+    return cheapest_grid(grids, float(within))
 
 
 def _candidates() -> Iterator[tuple[int, int, int]]:
@@ -220,7 +220,7 @@ def _judged(
     return grid._replace(confirmed=not against and (reach or not below)), against
 
 
-def chosen(grids: list[EpsGrid], within: float) -> OrderCost:
+def cheapest_grid(grids: list[EpsGrid], within: float) -> OrderCost:
     """The result of `order_cost` from the grids of a pilot."""
     grids = sorted(grids, key=lambda grid: (grid.seconds, grid.half_width))
     if not grids:

@@ -139,7 +139,7 @@ def _lengthened(column: np.ndarray, to: int) -> np.ndarray:
     return whole
 
 
-def room(count: int, least: int, factor: int = 4) -> int:
+def padded_size(count: int, least: int, factor: int = 4) -> int:
     """The smallest of least, factor least, factor^2 least ... that holds `count`."""
     size = least
     while size < count:

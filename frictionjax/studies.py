@@ -31,9 +31,9 @@ class Study(NamedTuple):
 
     def plot(self):
         """Errors against eps with the fitted orders, as a matplotlib Figure."""
-        from .plot.convergence import draw
+        from .plot.convergence import draw_convergence
 
-        return draw(self.dataset, self.orders, self.curves)
+        return draw_convergence(self.dataset, self.orders, self.curves)
 
 
 def study(dataset: xr.Dataset) -> Study:

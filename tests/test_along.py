@@ -5,7 +5,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from frictionjax.wiggly.along import KnownSteps
+from frictionjax.wiggly.along import ReplaySteps
 
 # The second step is far too long for the tolerance; room beyond the last is padding.
 ENDS = np.array([0.1, 0.9, 1.0, np.inf, np.inf])
@@ -20,7 +20,7 @@ def ended(rate, t0, t1):
         t1,
         None,
         jnp.asarray(1.0),
-        stepsize_controller=KnownSteps(HARSH, jnp.asarray(ENDS)),
+        stepsize_controller=ReplaySteps(HARSH, jnp.asarray(ENDS)),
         max_steps=ENDS.size,
     )
     return found.ys[0], found.stats["num_accepted_steps"], found.stats["num_steps"]

@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 
 from frictionjax.wiggly.brackets import gaps_of, shifts_of, wells_between
-from frictionjax.wiggly.job_queue import Arrivals, Legs
+from frictionjax.wiggly.job_queue import SegmentEnds, Segments
 
 
 def measured(measure, wells=0.1, paces=(1.0, 1.0), path=1.0, ahead=1, fastest=1.0):
     """Two lanes at a stop, `wells` apart, that move at `paces` where the path does at 1."""
     none = np.zeros(2)
     place, speed = np.array([0.0, wells]), np.array(paces)
-    found = Arrivals(np.array([3.0, 3.0]), place, speed, *[none] * 11)
+    found = SegmentEnds(np.array([3.0, 3.0]), place, speed, *[none] * 11)
     slope = np.full(2, path)
-    legs = Legs(none, none, none, none, slope, slope, none, none)
+    legs = Segments(none, none, none, none, slope, slope, none, none)
     return measure(found, legs, np.array([0]), np.array([ahead]), fastest)[0]
 
 

@@ -125,7 +125,7 @@ def test_many_short_slides_are_no_matter_for_slip_maps(periods, alone):
     ],
 )
 def test_the_rows_of_tables_are_foreseen(monkeypatch, eps, gamma, times, method):
-    rows, plans = np.zeros(2), rounds.plan_windows
+    rows, plans = np.zeros(2), rounds.plan_brackets
 
     def plan(*parts):
         found = plans(*parts)

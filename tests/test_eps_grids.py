@@ -5,7 +5,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax import cost_prediction, eps_grids
-from frictionjax.eps_grids import EpsGrid, _candidates, _intervals, _Pilot, chosen
+from frictionjax.eps_grids import EpsGrid, _candidates, _intervals, _Pilot, cheapest_grid
 from frictionjax.machine_cost import MachineCost
 from frictionjax.slide_laws import NO_LAW
 
@@ -107,7 +107,7 @@ def bent(scatter):
 
 def test_a_grid_of_large_eps_is_held_against_smaller_ones():
     # The smallest eps scatter so much that no grid there is within 0.02.
-    found = chosen(grids_of(bent(lambda x: np.where(x < np.log(2e-4), 0.08, 1e-4))), 0.02)
+    found = cheapest_grid(grids_of(bent(lambda x: np.where(x < np.log(2e-4), 0.08, 1e-4))), 0.02)
     assert not found.success
     assert found.choice is None
     trap = [g for g in found.grids if g.half_width <= 0.02 and g.order > 1.2]
@@ -115,7 +115,7 @@ def test_a_grid_of_large_eps_is_held_against_smaller_ones():
     assert not any(grid.confirmed for grid in trap)
     assert "ranges disagree" in found.message
     # Where they do not scatter they are chosen, though larger eps are cheaper.
-    found = chosen(grids_of(bent(lambda x: 1e-4), second=lambda eps: 1e-4 / eps**0.3), 0.02)
+    found = cheapest_grid(grids_of(bent(lambda x: 1e-4), second=lambda eps: 1e-4 / eps**0.3), 0.02)
     assert found.success
     assert found.choice.order == pytest.approx(0.95, abs=0.02)
     assert found.choice.eps_max < 2e-4
@@ -123,7 +123,7 @@ def test_a_grid_of_large_eps_is_held_against_smaller_ones():
 
 def test_what_was_compared_is_said():
     errors = PILOT * np.exp(1e-3 * np.random.default_rng(2).normal(size=48))
-    found = chosen(grids_of(errors, second=lambda eps: 1e-3 / eps), 0.02)
+    found = cheapest_grid(grids_of(errors, second=lambda eps: 1e-3 / eps), 0.02)
     assert found.success
     assert found.choice.eps_max == pytest.approx(1e-1)
     assert "grids of smaller eps, down to 1e-06 m, agree" in found.message

@@ -12,9 +12,9 @@ from scipy.optimize import nnls
 
 import frictionjax as fx
 from frictionjax.design.bending import free_energy, kernel_ratio
-from frictionjax.design.constraints import heights_of
-from frictionjax.design.profile_fit import problem_of
-from frictionjax.design.profile_program import run
+from frictionjax.design.constraints import heights_of_waves
+from frictionjax.design.profile_fit import surface_problem
+from frictionjax.design.profile_program import multistart
 from frictionjax.design.profile_status import ProfileStatus
 from frictionjax.design.targets import geometry
 
@@ -102,18 +102,18 @@ def test_many_random_targets_of_every_bristle_at_once(count):
     """One batch of the compiled program, coefficients by Lemmas 2 and 3."""
     rng = np.random.default_rng(11)
     targets = [reachable_target(kind, rng) for kind in BRISTLES for _ in range(count)]
-    problems = [problem_of([target], pulling=True) for target in targets]
+    problems = [surface_problem([target], pulling=True) for target in targets]
     layout = problems[0].layout
     tasks = jax.tree_util.tree_map(lambda *one: np.stack(one), *(p.task for p in problems))
     keys, shares = jax.random.split(jax.random.PRNGKey(0), 1), np.zeros((1, 0))
     half = np.array([0.5])
-    fit = jax.vmap(lambda task: run(layout, 200, np.asarray(200), task, half, keys, shares))
+    fit = jax.vmap(lambda task: multistart(layout, 200, np.asarray(200), task, half, keys, shares))
     runs = fit(tasks)
     assert np.all(runs.settled.met)
     assert np.all(runs.path.done)
     slope = np.asarray(tasks.slope)[:, None]
     waves = np.asarray(runs.settled.waves)[:, 0] * slope
-    cos, sin = heights_of(waves)
+    cos, sin = heights_of_waves(waves)
     slopes = slopes_of(Rows(cos, sin))
     for index, target in enumerate(targets):
         known = geometry(target.bristle)
@@ -223,15 +223,15 @@ def test_a_bounded_height_has_local_optima():
 
 
 def test_a_batch_of_starts_equals_each_alone():
-    problem = problem_of([fx.Target(ANGULAR, 0.03, -0.1)])  # no closed form
+    problem = surface_problem([fx.Target(ANGULAR, 0.03, -0.1)])  # no closed form
     keys, places = jax.random.split(jax.random.PRNGKey(5), 2), np.array([0.5, 0.375])
-    batch = run(
+    batch = multistart(
         problem.layout, 200, np.asarray(200), problem.task, places, keys, np.zeros((2, 0))
     )
     for i in range(2):
         twice = np.array([i, i])
         args = places[twice], keys[twice], np.zeros((2, 0))
-        alone = run(problem.layout, 200, np.asarray(200), problem.task, *args)
+        alone = multistart(problem.layout, 200, np.asarray(200), problem.task, *args)
         np.testing.assert_allclose(
             batch.settled.waves[i], alone.settled.waves[i], rtol=0, atol=1e-9
         )

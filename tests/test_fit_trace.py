@@ -9,11 +9,11 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.design.trace_flow import _states, bumped_flow, flow, plan_of
-from frictionjax.design.trace_problem import problem_of
+from frictionjax.design.trace_problem import trace_problem
 from frictionjax.design.trace_report import _patterned
 from frictionjax.design.trace_seen import bumps_of, intervals_of
 from frictionjax.design.trace_status import TraceStatus
-from frictionjax.design.waves import Waves
+from frictionjax.design.waves import WaveProfile
 
 EPS = np.asarray(0.05)
 ONE = np.asarray(1.0)
@@ -107,12 +107,12 @@ def _longer_run(gamma):
     scene = scene_of()
     plan = plan_of(NUMBERS, scene, EPS, gamma, np.asarray(1e-6))
     parts = scene, EPS, gamma, jnp.asarray(TIMES), plan
-    return jax.jit(lambda numbers: _states(Waves(*jnp.split(numbers, 2)), *parts)[0])
+    return jax.jit(lambda numbers: _states(WaveProfile(*jnp.split(numbers, 2)), *parts)[0])
 
 
 def test_passages_bound_the_surface_from_the_other_side():
     """No speed enters: the truth keeps within what it passed, a steeper one does not."""
-    problem = problem_of(trace_of(scene_of()), scene_of(), 0.05, 1.0, 4, 1e-3)
+    problem = trace_problem(trace_of(scene_of()), scene_of(), 0.05, 1.0, 4, 1e-3)
     sides = problem.passages.side
     assert np.sum(sides > 0) > 100
     assert np.sum(sides < 0) > 100
@@ -124,7 +124,7 @@ def test_passages_bound_the_surface_from_the_other_side():
     ends = [problem.held(1.3 * NUMBERS + share * way)[0] for share in (1, -1)]
     np.testing.assert_allclose(by @ way, (ends[0] - ends[1]) / 2, atol=1e-6 * np.max(over))
     still = fx.Trace(TIMES, z=np.zeros(TIMES.size))
-    known = problem_of(still, scene_of(), 0.05, 1.0, 4, 1e-3)
+    known = trace_problem(still, scene_of(), 0.05, 1.0, 4, 1e-3)
     assert known.held(NUMBERS)[0].size == 0
 
 

@@ -5,11 +5,11 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.wiggly.find_path import path_of
-from frictionjax.wiggly.job_queue import Arrivals, Jobs, Legs
+from frictionjax.wiggly.job_queue import SegmentEnds, Lanes, Segments
 from frictionjax.wiggly.planning import lane_scene, planned
-from frictionjax.wiggly.rounds import PATIENCE, Rounds
-from frictionjax.wiggly.starts import Ground
-from frictionjax.wiggly.windows import Plan
+from frictionjax.wiggly.rounds import PATIENCE, BracketContext
+from frictionjax.wiggly.starts import CellBounds
+from frictionjax.wiggly.windows import BracketPlan
 
 
 def scene_under(times, values):
@@ -49,25 +49,25 @@ def test_cells_wait_for_lanes_that_go_astray_so_long_only():
     """There was no answer in 10 minutes; one lane alone has its own budget."""
     scene = scene_under([0.0, 1.0], [0.0, 1.1])  # one way of 1 m
     eps, none = np.array([1e-4, 1e-5, 1e-6]), np.zeros(6)
-    every = dict.fromkeys(Ground._fields, None) | {"eps": eps}
-    blank = Rounds(*[None] * 12)._replace(waited=np.zeros(3), path=path_of(scene))
-    rounds = blank._replace(ground=Ground(**every))
-    legs = Legs(*np.zeros((len(Legs._fields), 6)))._replace(budget=np.full(6, 1e9))
+    every = dict.fromkeys(CellBounds._fields, None) | {"eps": eps}
+    blank = BracketContext(*[None] * 12)._replace(waited=np.zeros(3), path=path_of(scene))
+    rounds = blank._replace(ground=CellBounds(**every))
+    legs = Segments(*np.zeros((len(Segments._fields), 6)))._replace(budget=np.full(6, 1e9))
     legs = legs._replace(guide1=np.array([0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]))
     cell, known = np.array([0, 1, 2, 0, 1, 2]), np.array([True, False, True])
-    jobs = Jobs(cell, none, none, none, np.arange(6), np.arange(1, 7))
-    plan = Plan(jobs, legs, none, none, none, none, known, known, none, none)
+    jobs = Lanes(cell, none, none, none, np.arange(6), np.arange(1, 7))
+    plan = BracketPlan(jobs, legs, none, none, none, none, known, known, none, none)
     able, some = rounds._within_patience(plan)
     assert able.all()
     beyond = some.legs.budget - PATIENCE
     assert beyond == pytest.approx([1e9 - PATIENCE, 0, 0, 200 * 10, 0, 0], abs=1e-6)
     steps = PATIENCE * np.array([5.0, 0.6, 0.2, 0.3, 0.4, np.nan])
-    found = Arrivals(*np.tile(steps, (len(Arrivals._fields), 1)))._replace(code=none)
+    found = SegmentEnds(*np.tile(steps, (len(SegmentEnds._fields), 1)))._replace(code=none)
     rounds._wait(plan, found)
     assert rounds.waited == pytest.approx(PATIENCE * np.array([0.3, 0.6, 0.2]), abs=2000.1)
     rounds._wait(plan, found)
     gave_up = found._replace(code=np.array([0, 0, 0, 1.0, 0, 0]))
-    whole = Rounds(*rounds)._replace(waited=np.zeros(3))
+    whole = BracketContext(*rounds)._replace(waited=np.zeros(3))
     whole._wait(plan, gave_up)
     assert whole.waited[0] == 0.3 * PATIENCE
     able = rounds._within_patience(plan)[0]

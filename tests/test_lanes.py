@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.wiggly.job_queue import Jobs, Legs, Tables, run_queue
-from frictionjax.wiggly.lane import Cells, Sums
+from frictionjax.wiggly.job_queue import Lanes, Segments, Tables, run_queue
+from frictionjax.wiggly.lane import LaneCells, Sums
 from frictionjax.wiggly.lanes import (
     NARROW,
     WIDTH,
@@ -50,14 +50,14 @@ def test_few_jobs_take_a_wide_loop_that_is_there_until_it_costs_more(monkeypatch
 
 
 def test_wells_one_after_the_other_are_counted_in_each_cells_own_periods():
-    cells = Cells(np.array([0.1, 1e-3]), *[None] * (len(Cells._fields) - 1))
+    cells = LaneCells(np.array([0.1, 1e-3]), *[None] * (len(LaneCells._fields) - 1))
     nothing = np.zeros(2)
-    jobs = Jobs(np.array([0.0, 1.0]), *[nothing] * 3, np.array([0, 2]), np.array([2, 3]))
-    legs = {name: np.zeros(3) for name in Legs._fields}
+    jobs = Lanes(np.array([0.0, 1.0]), *[nothing] * 3, np.array([0, 2]), np.array([2, 3]))
+    legs = {name: np.zeros(3) for name in Segments._fields}
     legs |= {"guide0": np.array([0.0, 1.0, 0.5]), "guide1": np.array([1.0, 0.5, 1.5])}
-    assert _wells(cells, jobs, Legs(**legs)) == pytest.approx([15, 1000])
+    assert _wells(cells, jobs, Segments(**legs)) == pytest.approx([15, 1000])
     legs["guide1"][0] = 200.0  # 2005 wells of the first job
-    assert _wells(cells, jobs, Legs(**legs)) == pytest.approx([2005, 1000])
+    assert _wells(cells, jobs, Segments(**legs)) == pytest.approx([2005, 1000])
 
 
 def test_work_and_not_the_number_of_jobs_decides_on_the_loop():
@@ -81,7 +81,7 @@ def test_loops_are_compiled_as_one_function(width):
         duration=1.0,
     )
     fixed = lane_scene(scene, 0.1), TABLEAU, Sums(), width
-    columns = len(Cells._fields), len(Jobs._fields), len(Legs._fields)
+    columns = len(LaneCells._fields), len(Lanes._fields), len(Segments._fields)
     tables = [np.ones((n, w)) for n, w in zip(FEW, columns, strict=True)]
     program = jax.make_jaxpr(
         lambda *rows: run_queue._fn(*fixed, Tables(*rows, waiting=np.asarray(1)))

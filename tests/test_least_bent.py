@@ -7,10 +7,10 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.design.bending import free_energy, kernel_ratio
-from frictionjax.design.constraints import Layout, heights_of
+from frictionjax.design.constraints import FitShape, heights_of_waves
 from frictionjax.design.extreme_slopes import reach
 from frictionjax.design.least_bent import _waves, has_closed_form, least_bent
-from frictionjax.design.profile_fit import problem_of
+from frictionjax.design.profile_fit import surface_problem
 
 HOMOTHETIC = fx.bristles.Homothetic(1.0)
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.6)
@@ -18,14 +18,14 @@ SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.6)
 
 def found(targets, harmonics=16, **bounds):
     """The row of one start of two, or None."""
-    problem = problem_of(targets, harmonics, **bounds)
+    problem = surface_problem(targets, harmonics, **bounds)
     runs = least_bent(problem.layout, problem.task, 2)
     return None if runs is None else jax.tree_util.tree_map(lambda row: row[1], runs)
 
 
 def waves_of(targets, *args, **bounds):
     """Waves of v = w' themselves."""
-    problem = problem_of(targets, *args, **bounds)
+    problem = surface_problem(targets, *args, **bounds)
     return problem.task.slope * found(targets, *args, **bounds).settled.waves
 
 
@@ -58,7 +58,7 @@ def test_beyond_the_ratio_of_kernels_it_would_undershoot():
 def test_targets_have_to_agree():
     """Of two bristles on one surface; a ten-thousandth apart they do not."""
     one = fx.Target(HOMOTHETIC, 0.3, -0.2)
-    law = fx.friction(fx.profiles.Fourier(*heights_of(waves_of(one))), SLANTED)
+    law = fx.friction(fx.profiles.Fourier(*heights_of_waves(waves_of(one))), SLANTED)
     plus, minus = float(law.rho_plus), float(law.rho_minus)
     assert found([one, fx.Target(SLANTED, plus, minus)]) is not None
     assert found([one, fx.Target(SLANTED, plus * (1 + 1e-4), minus)]) is None
@@ -75,7 +75,7 @@ def test_bounds_have_to_hold_with_their_margin():
     high = float(steep.slope_bounds().upper)
     law = fx.friction(fx.profiles.Sine(0.5 * high), steep)
     target = fx.Target(steep, law.rho_plus, law.rho_minus)
-    slope = problem_of(target).task.slope
+    slope = surface_problem(target).task.slope
     row = found(target)
     assert slope * row.settled.wanted[0] == pytest.approx(0.5 * high)
     low = -float(steep.slope_bounds().lower)
@@ -85,11 +85,11 @@ def test_bounds_have_to_hold_with_their_margin():
 @pytest.mark.parametrize(
     ("layout", "may"),
     [
-        (Layout(16, False, False, 0), True),
-        (Layout(16, True, False, 0), True),
-        (Layout(16, False, True, 0), False),  # starts differ in where the slope is lowest
-        (Layout(16, False, False, 1), False),
-        (Layout(1, False, False, 0), False),  # a sine: both slopes are one number
+        (FitShape(16, False, False, 0), True),
+        (FitShape(16, True, False, 0), True),
+        (FitShape(16, False, True, 0), False),  # starts differ in where the slope is lowest
+        (FitShape(16, False, False, 1), False),
+        (FitShape(1, False, False, 0), False),  # a sine: both slopes are one number
     ],
 )
 def test_where_there_may_be_one(layout, may):

@@ -9,7 +9,7 @@ import frictionjax as fx
 from frictionjax.wiggly.extent import Guide
 from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.job_queue import guide_of
-from frictionjax.wiggly.leg_ends import Cut, followed
+from frictionjax.wiggly.leg_ends import Cut, follow_path
 from frictionjax.wiggly.path import states_at
 from frictionjax.wiggly.windows import legs_of
 
@@ -106,10 +106,10 @@ def test_cubics_of_legs_follow_the_path(path, accuracy):
     fixed = np.unique(np.concatenate([path.edges[1:], path.touch[path.touch < 3]]))
     cuts = [Cut(np.zeros(1), fixed), Cut(np.zeros(1), np.union1d(fixed, [0.1, 2.9]))]
     assert off_path(scene, path, fixed, [0.5]) > 1e-3
-    found = followed(scene, path, eps, accuracy, cuts)
+    found = follow_path(scene, path, eps, accuracy, cuts)
     for size, before, after in zip(eps, cuts, found, strict=True):
         assert np.all(np.isin(before.stops, after.stops))
         worst = off_path(scene, path, after.stops, np.linspace(0.02, 0.98, 25))
         assert worst < 0.06 * accuracy * size
-        (alone,) = followed(scene, path, np.array([size]), accuracy, [before])
+        (alone,) = follow_path(scene, path, np.array([size]), accuracy, [before])
         assert np.array_equal(alone.stops, after.stops)

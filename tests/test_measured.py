@@ -13,7 +13,7 @@ from frictionjax.measured import (
     read_heights,
     row_coefficients,
 )
-from frictionjax.profiles.steepest import extreme_slopes
+from frictionjax.profiles.steepest import slopes_of_waves
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 BRISTLE = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
@@ -180,7 +180,7 @@ def test_error_of_the_mean_profile_is_what_fresh_noise_shows():
 
 
 def test_slopes_of_a_noisy_map_are_known_better_than_those_of_a_row():
-    exact = extreme_slopes(np.array([-0.02j, -0.004j]))
+    exact = slopes_of_waves(np.array([-0.02j, -0.004j]))
     measured = grooves(60, noise=0.02)
     found = fit_profile(measured, 1e-5, 3).slopes
     one = fit_profile(measured, 1e-5, 3, row=0).slopes

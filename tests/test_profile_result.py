@@ -11,9 +11,9 @@ import frictionjax as fx
 from frictionjax.design.constraints import flat
 from frictionjax.design.interior import barrier_of
 from frictionjax.design.open_directions import identifiability
-from frictionjax.design.profile_fit import problem_of
+from frictionjax.design.profile_fit import surface_problem
 from frictionjax.design.profile_status import ProfileStatus
-from frictionjax.design.starts import start
+from frictionjax.design.starts import random_start
 
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
 TARGET = fx.Target(SLANTED, 0.15, -0.1)
@@ -76,7 +76,7 @@ def test_sensitivities_are_the_derivatives_of_the_coefficients(freed):
     cos = np.cos(turn) * other.cos - np.sin(turn) * other.sin
     sin = np.cos(turn) * other.sin + np.sin(turn) * other.cos
     unknowns = np.concatenate([cos, sin])
-    law = problem_of([TARGET], free=FREE["free"], bounds=FREE["bounds"]).law
+    law = surface_problem([TARGET], free=FREE["free"], bounds=FREE["bounds"]).law
     bounds = zip(freed.free, ((0.1, 0.9), (0.5, 2.0)), strict=True)
     share = [(freed.free[name] - low) / (high - low) for name, (low, high) in bounds]
     known = identifiability(law, cos, sin, np.array(share)).sensitivities
@@ -105,11 +105,11 @@ def test_sensitivities_are_the_derivatives_of_the_coefficients(freed):
 
 @pytest.mark.slow
 def test_the_barrier_has_the_derivatives_it_says():
-    problem = problem_of(
+    problem = surface_problem(
         [TARGET], bounds=FREE["bounds"], free=FREE["free"], radius=0.2, amplitude=0.1
     )
     share = np.array([0.4, 0.6])
-    first = start(problem.layout, problem.task, jax.random.PRNGKey(3), share, share)
+    first = random_start(problem.layout, problem.task, jax.random.PRNGKey(3), share, share)
     barrier = barrier_of(problem.layout, problem.task, np.array(0.5), first)
     barrier = barrier._replace(weight=np.array(0.1))
     x = np.asarray(flat(first))

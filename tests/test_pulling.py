@@ -13,7 +13,7 @@ from frictionjax.bristles.pulling import pulling_note
 from frictionjax.design import slide_fit
 from frictionjax.design.fit_status import FitStatus
 from frictionjax.design.free_parameter import free_parameter, require_bounds
-from frictionjax.design.inverse import Brackets, _pressing_alike
+from frictionjax.design.inverse import RootBrackets, _pressing_alike
 from frictionjax.design.slide_fit import SlideFit
 from frictionjax.design.steady_slide import SteadySlide
 from frictionjax.report.job import read_job
@@ -72,7 +72,7 @@ def test_a_root_where_alpha_has_another_sign_than_around_it_is_none():
     there = jnp.array([[True, True, False]])
     sides, none = jnp.array([[1.0, 1.0, 1.0]]), jnp.zeros((1, 3))
     parts = none, none, there, there, there, sides, jnp.array([2]), none, none, none
-    found = _pressing_alike(Brackets(*parts), jnp.array([[0.3, -0.1, jnp.nan]]))
+    found = _pressing_alike(RootBrackets(*parts), jnp.array([[0.3, -0.1, jnp.nan]]))
     assert found.there.tolist() == [[True, False, False]]
     assert found.number.tolist() == [1]
 

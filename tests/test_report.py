@@ -11,8 +11,8 @@ from frictionjax.report.job import number_list, read_job
 from frictionjax.report.place import filled, require_folder
 from frictionjax.report.tables import (
     coefficient_table,
-    coefficients_of,
-    errors_of,
+    coefficients_by_name,
+    errors_by_name,
     failed_table,
     lemma_table,
     order_table,
@@ -44,14 +44,14 @@ def test_coefficients():
 
 
 def test_coefficients_with_errors():
-    text = coefficient_table(LAW, dict.fromkeys(coefficients_of(LAW), 0.0123))
+    text = coefficient_table(LAW, dict.fromkeys(coefficients_by_name(LAW), 0.0123))
     lines = {line.split()[0]: line.split()[1:] for line in text.splitlines()}
     assert lines["rho_plus"][1:3] == ["0.012", "N"]
     assert lines["alpha"][1] == "N"  # the bristle's own
 
 
 def test_the_abstract_setting_has_two_coefficients():
-    bare = coefficients_of(type(LAW)(rho_plus=LAW.rho_plus, rho_minus=LAW.rho_minus))
+    bare = coefficients_by_name(type(LAW)(rho_plus=LAW.rho_plus, rho_minus=LAW.rho_minus))
     assert list(bare) == ["rho_plus", "rho_minus", "ratio"]
 
 
@@ -108,7 +108,7 @@ def test_failed_cells_are_listed():
 
 
 def test_rows_of_a_map():
-    names = [name for name in coefficients_of(LAW) if name not in ("alpha", "a")]
+    names = [name for name in coefficients_by_name(LAW) if name not in ("alpha", "a")]
     values = {name: np.array([1.0, 3.0]) for name in (*names, "explained")}
     text = row_table(RowCoefficients(values, 9e-6, [0, 2], {1: "too steep"}, {}))
     assert text.startswith("2 rows, period 9e-06 m")
@@ -176,9 +176,9 @@ def test_a_sawtooth_in_a_file_is_told_what_its_samples_leave_open(tmp_path):
     job = read_job(None, **fit)
     (note,) = [line for line in job.notes if "steepest slopes open" in line]
     assert note.startswith("Note: the samples leave")
-    errors = errors_of(fx.friction(job.scene))
+    errors = errors_by_name(fx.friction(job.scene))
     assert errors["omega_plus"] > 0.02
-    assert set(errors) == set(coefficients_of(LAW)) - {"alpha", "a"}
+    assert set(errors) == set(coefficients_by_name(LAW)) - {"alpha", "a"}
     longer = read_job(None, **fit, smoothing=5e-6)
     assert any("cut-off 5e-06 m" in line for line in longer.notes)
     assert any("a shorter smoothing takes off less" in line for line in longer.notes)
@@ -190,11 +190,11 @@ def test_a_sawtooth_in_a_file_is_told_what_its_samples_leave_open(tmp_path):
 
 def test_of_two_errors_the_larger_is_shown():
     found = with_errors(LAW, np.float64(0.01), np.float64(0.02))
-    standard = dict.fromkeys(coefficients_of(LAW), 0.015)
-    errors = errors_of(found, standard)
+    standard = dict.fromkeys(coefficients_by_name(LAW), 0.015)
+    errors = errors_by_name(found, standard)
     assert errors["omega_plus"] == 0.015
     assert errors["omega_minus"] == 0.02
-    assert errors_of(LAW, standard) == standard
+    assert errors_by_name(LAW, standard) == standard
 
 
 def test_a_named_bristle_takes_the_place_of_the_scenes():

@@ -8,9 +8,9 @@ from fast_slides import BRISTLES, PROFILES, SCENES, SINE, TIMES
 
 import frictionjax as fx
 from frictionjax.wiggly import engine, layout, riding, rounds
-from frictionjax.wiggly.curve import Curve
+from frictionjax.wiggly.curve import TransitTimes
 from frictionjax.wiggly.find_path import path_of
-from frictionjax.wiggly.rides import Ride
+from frictionjax.wiggly.rides import FastSlide
 
 
 def test_a_ride_reaches_the_end_of_a_slide_of_a_hundred_million_wells(monkeypatch):
@@ -21,7 +21,7 @@ def test_a_ride_reaches_the_end_of_a_slide_of_a_hundred_million_wells(monkeypatc
     rides = []
 
     def only_rides(rounds, warm):
-        riding.find_rides(rounds, warm)
+        riding.find_fast_slides(rounds, warm)
         rides.extend(rounds.ground.rides[0])
         raise InterruptedError
 
@@ -75,8 +75,8 @@ def test_tiles_end_on_rides():
     edges, none = np.array([0.0, 100.0]), np.zeros((1, 13))
     series = none + np.eye(13)[1] * 0.5  # a second for a hundred wells
     series[0, 0] = 0.5
-    curve = Curve(edges, np.array([1.0, 2.0]), series, none[:, 0], none[:, 0] + 0.9, 0.9)
-    ride = Ride(curve, 1.0, 0.0, 0.0, 0, lambda: none[:, 0])
+    curve = TransitTimes(edges, np.array([1.0, 2.0]), series, none[:, 0], none[:, 0] + 0.9, 0.9)
+    ride = FastSlide(curve, 1.0, 0.0, 0.0, 0, lambda: none[:, 0])
     times = np.array([0.0, 1.0, 1.15, 1.17, 1.33, 1.9, 2.0, 5.0])
     assert layout._on_rides((ride,), times).tolist() == [0, 0, 0, 1, 2, 5, 6, 6]
     assert layout._on_rides((), times).tolist() == [0] * 8

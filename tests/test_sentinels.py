@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from frictionjax.measured.samples import Samples
+from frictionjax.measured.samples import HeightSamples
 from frictionjax.measured.sentinels import without_sentinels
 
 EMPTY = np.empty((0, 0), int)
@@ -11,7 +11,7 @@ EMPTY = np.empty((0, 0), int)
 
 def sorted_out(values, outliers=None):
     rows = np.atleast_2d(values)
-    samples = Samples(np.arange(rows.shape[1]), rows, [], EMPTY, EMPTY)
+    samples = HeightSamples(np.arange(rows.shape[1]), rows, [], EMPTY, EMPTY)
     return without_sentinels(samples, outliers)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from frictionjax.design.slide_scan import Scan, crossings, scan, sliding, touching
+from frictionjax.design.slide_scan import Scan, crossings, scan_slides, sliding, touching
 
 
 class Known:
@@ -28,7 +28,7 @@ HUMP = Known(lambda x: 1 - (x - 0.513) ** 2, lambda x: -2 * (x - 0.513))
 
 def test_a_maximum_between_nodes_is_reached_on_both_sides():
     """At 0.513 of 33 even nodes: the highest of them is 1.7e-4 below."""
-    found = scan(HUMP, HUMP.slope, 0.0, 1.0)
+    found = scan_slides(HUMP, HUMP.slope, 0.0, 1.0)
     assert found.reach[1] == pytest.approx(1.0, abs=1e-12)
     target = 1 - 1e-8
     roots = crossings(HUMP.gap(target), found, target)
@@ -37,7 +37,7 @@ def test_a_maximum_between_nodes_is_reached_on_both_sides():
 
 
 def test_a_target_at_the_turn_itself_touches():
-    found = scan(HUMP, HUMP.slope, 0.0, 1.0)
+    found = scan_slides(HUMP, HUMP.slope, 0.0, 1.0)
     assert touching(found, 1.0)[0] == pytest.approx(0.513, abs=1e-6)
     assert touching(found, 1.0 + 1e-8).size == 0
     assert touching(found, float(HUMP.formula(0.25))).size == 0  # a node, but no turn
@@ -45,7 +45,7 @@ def test_a_target_at_the_turn_itself_touches():
 
 def test_rounding_is_no_turn():
     flat = Known(lambda x: 1 + 1e-13 * np.sin(1e5 * x), lambda x: 0.0)
-    found = scan(flat, flat.slope, 0.0, 1.0)
+    found = scan_slides(flat, flat.slope, 0.0, 1.0)
     assert found.nodes.size == 43
     assert flat.calls == 0
 
@@ -53,7 +53,7 @@ def test_rounding_is_no_turn():
 def test_a_step_is_no_turn_either():
     """No slope of another sign on its other side: nodes stand for themselves."""
     step = Known(lambda x: 10 * (x > 0.5) - x, lambda x: -1.0)
-    found = scan(step, step.slope, 0.0, 1.0)
+    found = scan_slides(step, step.slope, 0.0, 1.0)
     assert found.nodes.size == 43
     assert np.all(np.diff(found.nodes) > 0)
 
@@ -80,7 +80,7 @@ def test_an_end_that_was_not_evaluated_is_open_where_values_grow_to_it(mirrored)
             return np.nan if x < 5e-6 else formula(x)
 
         turned = Known((lambda x: known(1 - x)) if mirrored else known, lambda x: np.nan)
-        return scan(turned, turned.slope, 0.0, 1.0)
+        return scan_slides(turned, turned.slope, 0.0, 1.0)
 
     pole = lost_at(lambda x: 1 / x)
     assert pole.failed(1e9).size == 2  # 0 and 1e-6

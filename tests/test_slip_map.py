@@ -14,10 +14,10 @@ from scipy.integrate import solve_ivp
 
 import frictionjax as fx
 from frictionjax.wiggly import engine, slip_map
-from frictionjax.wiggly.curve import Curve, Curves
+from frictionjax.wiggly.curve import TransitTimes, ManyTransitTimes
 from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.landscape import Landscape, landscape
-from frictionjax.wiggly.passage import Stretch, passages, pull_at, track_of
+from frictionjax.wiggly.passage import WellArc, transit_times, pull_at, well_pull_of
 from frictionjax.wiggly.planning import lane_scene, planned
 
 
@@ -35,12 +35,12 @@ def passage_of(scene, eps, gamma, sign, excess):
     pull = force + sign * excess
     state = float(scene.support.state_of(scene.load(time) - pull))
     one = np.ones(1)
-    stretch = Stretch(
+    stretch = WellArc(
         eps * one, place * one, one, sign * one, force * one, 0.5 * excess * one
     )
-    track = track_of(scene.potential, stretch)
+    track = well_pull_of(scene.potential, stretch)
     local = pull_at(scene, np.full((1, 12), time), np.full((1, 12), state))
-    found = passages(track, local, one * eps**gamma)
+    found = transit_times(track, local, one * eps**gamma)
     return float(found.length[0, 0]), float(found.kept[0, 0]), (place, time, state)
 
 
@@ -88,8 +88,8 @@ def test_curves_obey_the_recursion():
     place, force, one = float(folds.place_plus), float(folds.force_plus), np.ones(1)
     time, excess = 0.3, 1e-3
     state = float(scene.support.state_of(scene.load(time) - force - excess))
-    stretch = Stretch(eps * one, place * one, one, one, force * one, 0.3 * excess * one)
-    track = track_of(scene.potential, stretch)
+    stretch = WellArc(eps * one, place * one, one, one, force * one, 0.3 * excess * one)
+    track = well_pull_of(scene.potential, stretch)
     viscosity = one * eps**gamma
     slides = slip_map.Slides(
         track, eps * one, viscosity, state * one, 0 * one, time * one, 0.75 * one
@@ -99,7 +99,7 @@ def test_curves_obey_the_recursion():
     now = curve.starts[0]
     for n in range(300):
         pull = pull_at(scene, np.full((1, 12), now), np.full((1, 12), state + eps * n))
-        length = passages(track, pull, viscosity).length[0, 0]
+        length = transit_times(track, pull, viscosity).length[0, 0]
         now += length
         assert abs(curve.time_of(np.array([n + 1.0]))[0] - now) < 1e-6 * length
     numbers = np.linspace(0.0, curve.edges[-1], 57)
@@ -200,7 +200,7 @@ def test_small_eps_is_no_harder(name, gamma):
 
 def test_errors_of_a_wrong_map_are_seen(monkeypatch):
     """Passages a thousandth too long: lanes disagree, and no bracket closes."""
-    right = slip_map.passages
+    right = slip_map.transit_times
 
     def wrong(*args):
         found = right(*args)
@@ -236,7 +236,7 @@ def test_rounded_times_say_by_how_much():
     series[0, :2] = 0.5 * wells * length
     edges, starts = np.array([0.0, wells]), np.array([start, start + wells * length])
     nothing = np.zeros(1)
-    curves = Curves([Curve(edges, starts, series, nothing, nothing, 1.0)])
+    curves = ManyTransitTimes([TransitTimes(edges, starts, series, nothing, nothing, 1.0)])
     number = np.array([0.0, 1.0, 7.0, 399.0, 1000.0])
     times, late = curves.rounded_times(np.zeros(5, dtype=int), number)
     np.testing.assert_array_equal(times, curves.time_of(np.zeros(5, dtype=int), number))

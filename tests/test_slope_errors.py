@@ -11,8 +11,8 @@ from frictionjax.profiles.heights import fit_heights
 from frictionjax.profiles.slope_errors import of_heights, of_waves, require_once
 from frictionjax.profiles.smoothing import gaussian_gain
 from frictionjax.profiles.spline import _coefficients, _steepest
-from frictionjax.profiles.steepest import extreme_slopes, series
-from frictionjax.report.tables import coefficient_table, errors_of
+from frictionjax.profiles.steepest import slopes_of_waves, series_values
+from frictionjax.report.tables import coefficient_table, errors_by_name
 
 BRISTLE = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
 TAU = 2 * np.pi
@@ -73,15 +73,15 @@ def test_a_step_between_two_samples_may_be_of_any_slope():
 def test_a_smooth_surface_is_determined(count):
     rng = np.random.default_rng(count)
     for waves in (np.array([0.02]), 0.01 * (rng.normal(size=4) + 1j * rng.normal(size=4))):
-        found = of_spline(series(waves, count))
-        exact = extreme_slopes(waves)
+        found = of_spline(series_values(waves, count))
+        exact = slopes_of_waves(waves)
         apart = abs(found.omega_plus - exact[0]), abs(found.omega_minus - exact[1])
         assert apart[0] <= found.error_plus + 1e-12
         assert apart[1] <= found.error_minus + 1e-12
         if count >= 64 or waves.size == 1:
             assert found.relative < 1.5e-3
     x = np.arange(5 * count) / count
-    fit = from_heights(x, series(waves, x.size // 5)[np.arange(x.size) % count], 1.0, 6)
+    fit = from_heights(x, series_values(waves, x.size // 5)[np.arange(x.size) % count], 1.0, 6)
     assert fit.slopes.relative < 1e-3
 
 
@@ -129,7 +129,7 @@ def test_stated_errors_hold_of_random_traces():
     for index in range(50):
         one = sampled(rng, index, rng.uniform(1.6, 5), (24, 32, 64))
         fit = fit_heights(one.x, one.heights, 1.0, 8)
-        found = of_waves(extreme_slopes(fit.cos - 1j * fit.sin), fit.waves)
+        found = of_waves(slopes_of_waves(fit.cos - 1j * fit.sin), fit.waves)
         error = max(abs(found.omega_plus - one.steepest), 1e-3 * one.steepest)
         inside.append(error <= found.error_plus + 1e-3 * one.steepest)
         over.append(found.error_plus / error)
@@ -151,7 +151,7 @@ def test_friction_passes_the_errors_on():
     table = coefficient_table(found).splitlines()
     assert "+-" in table[0]
     assert f" {found.rho_plus_error:.2g} " in table[1]
-    assert errors_of(found)["ratio"] > abs(found.rho_plus / found.rho_minus + 0.25)
+    assert errors_by_name(found)["ratio"] > abs(found.rho_plus / found.rho_minus + 0.25)
 
 
 def test_errors_of_rho_go_with_the_end_that_makes_it():
@@ -175,7 +175,7 @@ def test_an_exact_surface_has_no_errors():
     for surface in (fx.profiles.Sine(0.1), fx.profiles.Fourier([0.0], [0.02])):
         found = fx.friction(surface, BRISTLE)
         assert found.rho_plus_error is None
-        assert not errors_of(found)
+        assert not errors_by_name(found)
         assert "error" not in repr(found)
 
 
@@ -317,9 +317,9 @@ def test_stated_errors_hold_of_smoothed_surfaces(noise):
         size, length = rng.integers(1, 6), rng.choice([0.05, 0.1, 0.2, 0.3])
         parts = rng.normal(size=(2, size)) / np.arange(1, size + 1) ** rng.uniform(0.8, 2.2)
         waves = 0.01 * (parts[0] + 1j * parts[1])
-        heights = series(waves, int(rng.choice([32, 64, 128, 256])))
+        heights = series_values(waves, int(rng.choice([32, 64, 128, 256])))
         scatter = 0.5 * noise * np.ptp(heights) * rng.normal(size=heights.size)
-        found, exact = smoothed(heights + scatter, length), extreme_slopes(waves)
+        found, exact = smoothed(heights + scatter, length), slopes_of_waves(waves)
         inside.append(exact[0] - found.omega_plus <= 1.001 * found.error_plus)
         inside.append(found.omega_minus - exact[1] <= 1.001 * found.error_minus)
     assert np.mean(inside) >= 0.95

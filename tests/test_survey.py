@@ -21,7 +21,7 @@ from frictionjax.wiggly.cell_sums import (
 )
 from frictionjax.wiggly.find_path import path_of
 from frictionjax.wiggly.path import Path
-from frictionjax.wiggly.stops import Stops
+from frictionjax.wiggly.stops import StopValues
 from frictionjax.wiggly.survey import (
     BEHIND,
     OUTSIDE,
@@ -30,7 +30,7 @@ from frictionjax.wiggly.survey import (
     VISCOUS,
     WORK,
     nodes_of,
-    surveys_of,
+    sampled_slides_of,
 )
 
 LOW, HIGH, COUNT, PERIOD = 1.0, 3.0, 17, 1e-3
@@ -43,7 +43,7 @@ def survey(density):
     sums = 0.5 * PERIOD * (density(middle - off) + density(middle + off))
     ends, extremes = starts + PERIOD, np.zeros((1, 5, COUNT))
     parts = (a[None] for a in (starts, ends, sums))
-    return surveys_of(np.array([LOW]), np.array([HIGH]), *parts, extremes)[0]
+    return sampled_slides_of(np.array([LOW]), np.array([HIGH]), *parts, extremes)[0]
 
 
 def test_smooth_sums_are_integrals_of_their_density():
@@ -82,7 +82,7 @@ def of_whole_wells(nodes, wells):
     work = np.sin(ends) - np.sin(starts)
     sums = np.stack([work, 0 * work, 0 * work])
     ends_of = np.array([LOW]), np.array([HIGH])
-    return surveys_of(*ends_of, starts[None], ends[None], sums[None], extremes)[0]
+    return sampled_slides_of(*ends_of, starts[None], ends[None], sums[None], extremes)[0]
 
 
 @pytest.mark.parametrize(("nodes", "wells"), [(17, 35), (17, 102), (34, 117), (68, 137)])
@@ -105,14 +105,14 @@ def rough_survey(behind, wobble, rows=slice(0, 2)):
     sums = np.zeros((1, 3, COUNT))
     ends = starts + 1e-12
     parts = np.array([LOW]), np.array([HIGH]), starts[None], ends[None]
-    return surveys_of(*parts, sums, extremes)[0]
+    return sampled_slides_of(*parts, sums, extremes)[0]
 
 
 def way(*surveys):
     """A cell that starts at rest and then slides by 4 m, surveyed throughout."""
     parts = np.zeros((3, 2)), np.zeros(2), np.zeros((5, 2))
     size = np.full(2, 1e3)  # energies of a kJ
-    stops = Stops(np.array([0.0, LOW]), np.zeros(2), np.zeros(2), size, *parts)
+    stops = StopValues(np.array([0.0, LOW]), np.zeros(2), np.zeros(2), size, *parts)
     slide = SimpleNamespace(stops=np.array([1]), piece=0, way=4.0)
     chain = np.array([0])
     totals, before = np.zeros((3, 1)), np.zeros((len(surveys), 3))

@@ -13,7 +13,7 @@ from frictionjax.design.trace_descent import View
 from frictionjax.design.trace_energy import scatter_of, seen_as, ways
 from frictionjax.design.trace_odd import oddity_of
 from frictionjax.design.trace_outliers import outliers_of
-from frictionjax.design.trace_problem import problem_of
+from frictionjax.design.trace_problem import trace_problem
 from frictionjax.design.trace_report import _counted, _freedom
 from frictionjax.design.trace_status import TraceStatus
 
@@ -156,7 +156,7 @@ def test_traces_of_a_surface_are_not_odd(samples, gamma, size):
     ts = np.linspace(0.01, 5.99, samples)
     values = load(ts) - states(ts, gamma)
     values = values + size * np.random.default_rng(1).normal(size=samples)
-    problem = problem_of(traced(values, size or None, ts), SCENE, EPS, gamma, 4, 1e-3)
+    problem = trace_problem(traced(values, size or None, ts), SCENE, EPS, gamma, 4, 1e-3)
     assert oddity_of(traced(values, size or None, ts), problem) is None
 
 
@@ -180,7 +180,7 @@ def test_scatter_is_that_of_one_sample():
 
 
 def odd(trace):
-    return oddity_of(trace, problem_of(trace, SCENE, EPS, 1.0, 4, 1e-3))
+    return oddity_of(trace, trace_problem(trace, SCENE, EPS, 1.0, 4, 1e-3))
 
 
 def test_a_few_samples_that_are_wrong_hide_no_wrong_sign():
@@ -225,7 +225,7 @@ def test_an_offset_is_told_by_where_the_trace_starts(offset, size):
 def test_another_start_is_told_by_its_position():
     trace = traced(states(FROM_ZERO), None, FROM_ZERO, "z")
     assert odd(trace) is None
-    problem = problem_of(trace, SCENE.replace(z0=0.05), EPS, 1.0, 4, 1e-3)
+    problem = trace_problem(trace, SCENE.replace(z0=0.05), EPS, 1.0, 4, 1e-3)
     assert "z is 0 m, where the scene starts at 0.05 m" in oddity_of(trace, problem).text
 
 
@@ -241,7 +241,7 @@ def test_a_support_that_has_no_such_force_is_no_trace_in_another_unit():
     slow = fx.loads.Sine(0.8, 3.0)
     scene = fx.Scene(SCENE.profile, SCENE.bristle, bounded, slow, LENGTH)
     trace = traced(0.0 * FORCE, 1e-3)
-    problem = problem_of(trace, scene, EPS, 1.0, 4, 1e-3)
+    problem = trace_problem(trace, scene, EPS, 1.0, 4, 1e-3)
     assert not np.isfinite(seen_as(problem, traced(FORCE), 1e3).z).any()
 
 

@@ -9,7 +9,7 @@ import frictionjax as fx
 from frictionjax.wiggly.integration import integrate
 from frictionjax.wiggly.landscape import landscape
 from frictionjax.wiggly.rosenbrock_solvers import Rodas5P
-from frictionjax.wiggly.tolerance import Plan, plan_steps
+from frictionjax.wiggly.tolerance import StepPlan, plan_steps
 
 EPS = 0.02
 
@@ -31,7 +31,7 @@ def run(scene, plan, solver, ts):
     return integrate(scene, jnp.asarray(EPS), one, ts, plan, solver, until=ts[-1])
 
 
-def plan_of(scene, tolerance, reach=None) -> Plan:
+def plan_of(scene, tolerance, reach=None) -> StepPlan:
     plan = plan_steps(scene, jnp.asarray(EPS), jnp.asarray(1.0), jnp.asarray(1e-3))
     reach = plan.reach if reach is None else jnp.asarray(reach)
     return plan._replace(tolerance=jnp.asarray(tolerance), reach=reach)
@@ -55,9 +55,9 @@ def test_guard_keeps_the_well_where_tolerance_does_not(scene):
 
 def test_no_accepted_step_is_longer_than_the_reach(scene):
     """Seen from outside: a watch that measures the longest move between accepted steps."""
-    from frictionjax.wiggly.observed import AbstractWatch
+    from frictionjax.wiggly.observed import AbstractObserver
 
-    class Longest(AbstractWatch):
+    class Longest(AbstractObserver):
         def start(self, z):
             return (z, jnp.zeros_like(z))
 
@@ -99,9 +99,9 @@ def test_steps_end_at_kinks_of_the_load():
     scene = fx.Scene(*parts, fx.supports.Spring(1.0), load, 1.0)
     ends = []
 
-    from frictionjax.wiggly.observed import AbstractWatch
+    from frictionjax.wiggly.observed import AbstractObserver
 
-    class Nearest(AbstractWatch):
+    class Nearest(AbstractObserver):
         def start(self, z):
             return jnp.full_like(z, jnp.inf)
 

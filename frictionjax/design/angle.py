@@ -21,14 +21,14 @@ from ..bristles.pulling import swapped_text
 from ..coefficients import coefficients_jit
 from ..potentials import potential
 from ..profiles import AbstractProfile
-from ..programs import Program, room
+from ..programs import Program, padded_size
 from ..surroundings import with_nan
 from .angle_fit import AngleFit, intervals_text
 from .fit_status import GOOD, FitStatus
 from .free_parameter import FreeParameter, free_parameter, require_bounds, with_arrays
 from .inverse import Pulled, solve_targets
 from .quantities import MEANING, QUANTITIES, Slopes
-from .survey import Survey, survey
+from .survey import Admissible, survey
 
 _NO_BOUNDS = np.full(2, np.nan)
 _ROOM = 8, 8  # smallest piece of a batch, and by how much the next size is larger
@@ -38,7 +38,7 @@ _MOST = 512  # targets side by side: 7 KB each of comparisons at every node
 class _Range(NamedTuple):
     """A survey, and its intervals of the number and of the quantity (pieces, 2)."""
 
-    seen: Survey
+    seen: Admissible
     admissible: Real
     reachable: Real
 
@@ -81,7 +81,7 @@ def _in_sizes(target: Real, fit: Any) -> Any:
     """`fit` of targets in pieces of a few sizes, so that few programs are compiled."""
     targets = jnp.atleast_1d(target)
     count = targets.shape[0]
-    size = min(room(count, *_ROOM), _MOST)
+    size = min(padded_size(count, *_ROOM), _MOST)
     padded = jnp.pad(targets, (0, -count % size), mode="edge")
     parts = [fit(padded[at : at + size]) for at in range(0, count, size)]
 
@@ -179,7 +179,7 @@ def fit_angle(
     return fit
 
 
-def _with_pulled(code: Any, asked: tuple, targets: Any, seen: Survey) -> tuple[Any, Pulled]:
+def _with_pulled(code: Any, asked: tuple, targets: Any, seen: Admissible) -> tuple[Any, Pulled]:
     """Codes where bristles that pull, and may not, reach a target, and the nearest of them.
 
     The same program as for those that press. Where all are found it is not run.

@@ -13,9 +13,9 @@ from ..bristles.pulling import pulling_text
 from ..outcomes import counted, flags, outcomes
 from ..profiles import AbstractProfile
 from ..programs import Program
-from .angle_json import dump, fields
+from .angle_json import angle_to_json, angle_from_json
 from .fit_json import written
-from .fit_status import GOOD, FitStatus, status_of
+from .fit_status import GOOD, FitStatus, fit_status_of
 from .free_parameter import FreeParameter, free_parameter
 from .inverse import Pulled
 from .quantities import QUANTITIES, Slopes, on_slopes, quantity_of
@@ -113,7 +113,7 @@ class AngleFit(eqx.Module):
 
     def to_json(self, path: Any = None) -> str:
         """Everything as JSON; written to `path` where given."""
-        return written(dump(self), path)
+        return written(angle_to_json(self), path)
 
     @classmethod
     def from_json(cls, source: Any) -> "AngleFit":
@@ -122,7 +122,7 @@ class AngleFit(eqx.Module):
         A bristle or a surface given as functions is None. Raises `ValueError` for what is
         no such JSON.
         """
-        return cls(**fields(source))
+        return cls(**angle_from_json(source))
 
     def __repr__(self) -> str:
         if not is_known(self):
@@ -134,7 +134,7 @@ class AngleFit(eqx.Module):
 
 
 def _message(fit: AngleFit) -> str:
-    status = status_of(int(fit.code))
+    status = fit_status_of(int(fit.code))
     asked = f"{fit.quantity} = {as_text(fit.target)}"
     if status in (FitStatus.UNREACHABLE, FitStatus.PULLS):
         return f"{asked} {_out_of_reach(fit, status)}"

@@ -6,7 +6,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from .fit_json import document_of, numbers_of, plain
+from .fit_json import document_of, array_of, plain
 from .inverse import Pulled
 from .part_json import part_entry, part_of
 from .quantities import Slopes
@@ -29,18 +29,18 @@ def entry_of(fit: Any) -> dict[str, Any]:
 
 def fields_of(document: dict[str, Any]) -> dict[str, Any]:
     """The fields of an `AngleFit`, of such a document."""
-    found = {name: jnp.asarray(numbers_of(document[name])) for name in _ARRAYS}
+    found = {name: jnp.asarray(array_of(document[name])) for name in _ARRAYS}
     # Documents of earlier versions lack these.
     unknown = np.full(np.shape(document["target"]), np.nan).tolist()
     alpha = document.get("alpha", unknown)
     pulled = document.get("pulled", {"value": unknown, "alpha": unknown})
-    slopes = {k: jnp.asarray(numbers_of(v)) for k, v in document["slopes"].items()}
+    slopes = {k: jnp.asarray(array_of(v)) for k, v in document["slopes"].items()}
     return found | {
         "bristle": part_of(document["bristle"]),
         "profile": part_of(document["profile"]),
         "code": jnp.asarray(document["code"]),
-        "alpha": jnp.asarray(numbers_of(alpha)),
-        "pulled": Pulled(**{k: jnp.asarray(numbers_of(v)) for k, v in pulled.items()}),
+        "alpha": jnp.asarray(array_of(alpha)),
+        "pulled": Pulled(**{k: jnp.asarray(array_of(v)) for k, v in pulled.items()}),
         "slopes": Slopes(**slopes),
         "free": document["free"],
         "quantity": document["quantity"],
@@ -48,11 +48,11 @@ def fields_of(document: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def dump(fit: Any) -> str:
+def angle_to_json(fit: Any) -> str:
     """The JSON text of an `AngleFit`."""
     return json.dumps(entry_of(fit), indent=1)
 
 
-def fields(source: Any) -> dict[str, Any]:
+def angle_from_json(source: Any) -> dict[str, Any]:
     """The fields of an `AngleFit`, of a JSON text or file."""
     return fields_of(document_of(source, _KIND, {*_ARRAYS, *_NAMES, *_PARTS}))

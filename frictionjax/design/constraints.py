@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 POINTS = 32  # rows a wave: between two of them a series rises by 0.48% of its range more
-MARGIN = math.cos(math.pi / POINTS)
+ROW_MARGIN = math.cos(math.pi / POINTS)
 """Largest value on the rows over the largest value anywhere (Ehlich and Zeller, 1964)."""
 
 
@@ -30,7 +30,7 @@ class Unknowns(NamedTuple):
     free: Float[Array, " free"]
 
 
-class Layout(NamedTuple):
+class FitShape(NamedTuple):
     """Sizes of the unknowns and which bounds there are: what a program is compiled for."""
 
     harmonics: int
@@ -77,9 +77,9 @@ class Layout(NamedTuple):
         count = self.points
         ends = [jnp.zeros(2 * count)]
         if self.sharp:
-            ends += [jnp.full(2 * count, MARGIN * curvature)]
+            ends += [jnp.full(2 * count, ROW_MARGIN * curvature)]
         if self.high:
-            ends += [jnp.zeros(2 * count), MARGIN * jnp.atleast_1d(height)]
+            ends += [jnp.zeros(2 * count), ROW_MARGIN * jnp.atleast_1d(height)]
         ends += [jnp.zeros(self.free), jnp.ones(self.free)]
         return jnp.concatenate(ends)
 
@@ -114,7 +114,7 @@ def derivatives(waves: Array) -> Array:
     return jnp.stack([waves, bend, height])
 
 
-def heights_of(waves: Array) -> tuple[Array, Array]:
+def heights_of_waves(waves: Array) -> tuple[Array, Array]:
     """`cos` and `sin` of the heights `w`, as a `Fourier` profile takes them."""
     count = waves.shape[-1] // 2
     turns: Any = 2 * np.pi * np.arange(1, count + 1)
@@ -122,7 +122,7 @@ def heights_of(waves: Array) -> tuple[Array, Array]:
     return -size * waves[..., count:], size * waves[..., :count]
 
 
-def waves_of(cos: Array, sin: Array) -> Array:
+def waves_of_heights(cos: Array, sin: Array) -> Array:
     """The waves of a profile: `heights_of` turned round."""
     turns = 2 * np.pi * np.arange(1, cos.shape[-1] + 1)
     size = turns**2 / math.sqrt(2.0)

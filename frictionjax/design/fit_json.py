@@ -52,6 +52,6 @@ def plain(value: Any) -> Any:
     return value
 
 
-def numbers_of(rows: Any) -> np.ndarray:
+def array_of(rows: Any) -> np.ndarray:
     """The array that `plain` made lists of."""
     return np.array(rows, dtype=float)  # null becomes NaN

@@ -17,7 +17,7 @@ import optax
 from jaxtyping import Array, Float
 
 from ..arguments import Real
-from .constraints import Layout, Unknowns, at, flat
+from .constraints import FitShape, Unknowns, at, flat
 from .law import AbstractLaw
 
 FIRST, LAST, SHRINK = 1.0, 1e-7, 0.05  # weights of the barrier
@@ -33,7 +33,7 @@ open end, from which the last digits (5e-5 in slopes) could not be settled.
 """
 
 
-class Task(eqx.Module):
+class FitTask(eqx.Module):
     """Numbers of a fit, traced.
 
     `coefficients`: wanted, in N, shape (targets, 2); `factors`: of their residuals.
@@ -51,20 +51,20 @@ class Task(eqx.Module):
     firm: Real
 
 
-def residuals(task: Task, plus: Real, minus: Real, free: Array) -> Float[Array, " rows"]:
+def coefficient_residuals(task: FitTask, plus: Real, minus: Real, free: Array) -> Float[Array, " rows"]:
     """Scaled residuals of the coefficients at slopes in units of `task.slope`."""
     found = task.law.coefficients(task.slope * plus, task.slope * minus, free)
     return ((found - task.coefficients) * task.factors).ravel()
 
 
-def _misfit(task: Task, point: Unknowns) -> Float[Array, " rows"]:
+def _misfit(task: FitTask, point: Unknowns) -> Float[Array, " rows"]:
     """At both bounds of the extreme slopes: out of reach the better one would open up."""
     ends = zip(point.plus, point.minus, strict=True)
-    both = [residuals(task, plus, minus, point.free) for plus, minus in ends]
+    both = [coefficient_residuals(task, plus, minus, point.free) for plus, minus in ends]
     return jnp.concatenate(both) / jnp.sqrt(2.0)
 
 
-def _bristle_room(task: Task, start: Array, point: Unknowns) -> Float[Array, " rows"]:
+def _bristle_room(task: FitTask, start: Array, point: Unknowns) -> Float[Array, " rows"]:
     """> 0 where every bristle can follow the slopes and presses the way it did."""
     known, before = task.law.at(point.free), task.law.at(start)
     kept = (1 - EDGE if point.free.size else 1.0) / task.slope
@@ -77,10 +77,10 @@ def _bristle_room(task: Task, start: Array, point: Unknowns) -> Float[Array, " r
 class Barrier(NamedTuple):
     """The function that is minimised: `task` at one start and one weight."""
 
-    layout: Layout
+    layout: FitShape
     rows: Array
     ends: Array
-    task: Task
+    task: FitTask
     place: Real
     start: Array
     weight: Real
@@ -181,7 +181,7 @@ def optimiser() -> optax.GradientTransformationExtraArgs:
     return optax.chain(newton(), stop_before_walls(), backtracking)
 
 
-class Path(NamedTuple):
+class Iterates(NamedTuple):
     """Iterates of one start: `x` (steps, n), and `loss`, `weight`, `decrement` (steps,).
 
     `steps`: how many there are; `done`: whether the last barrier was centred.
@@ -195,19 +195,19 @@ class Path(NamedTuple):
     done: Any
 
 
-def barrier_of(layout: Layout, task: Task, place: Real, start: Unknowns) -> Barrier:
+def barrier_of(layout: FitShape, task: FitTask, place: Real, start: Unknowns) -> Barrier:
     """The last barrier of a start."""
     rows, ends = jnp.asarray(layout.rows()), layout.ends(task.curvature, task.height)
     return Barrier(layout, rows, ends, task, place, start.free, jnp.asarray(LAST))
 
 
-def descend(
+def follow_barrier(
     last: Barrier,
     start: Unknowns,
     kept: int,
     most: Any,
     optimise: optax.GradientTransformationExtraArgs | None = None,
-) -> tuple[Array, Path]:
+) -> tuple[Array, Iterates]:
     """The optimum from one start strictly inside, and the way to it.
 
     `most` steps, traced; there is room for `kept` of them.
@@ -241,15 +241,15 @@ def descend(
         return ~path.done & (path.steps < most) & jnp.all(jnp.isfinite(state[0]))
 
     empty = jnp.full(kept, jnp.nan)
-    path = Path(jnp.full((kept, first.size), jnp.nan), empty, empty, empty, 0, False)
+    path = Iterates(jnp.full((kept, first.size), jnp.nan), empty, empty, empty, 0, False)
     state = (first, optimise.init(first), jnp.asarray(FIRST), path)
     final, _, _, path = jax.lax.while_loop(go_on, body, state)
     return final, path
 
 
-def _noted(path: Path, x: Array, loss: Any, weight: Any, decrement: Any) -> Path:
+def _noted(path: Iterates, x: Array, loss: Any, weight: Any, decrement: Any) -> Iterates:
     place = path.steps
-    return Path(
+    return Iterates(
         path.x.at[place].set(x),
         path.loss.at[place].set(loss),
         path.weight.at[place].set(weight),

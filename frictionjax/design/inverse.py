@@ -14,7 +14,7 @@ from ..roots import find_root
 from .fit_status import FitStatus
 from .free_parameter import FreeParameter
 from .quantities import Slopes, on_slopes, quantity_of
-from .survey import Survey, first_places
+from .survey import Admissible, first_places
 
 ROOTS = 8  # solutions of one target that are kept
 _ULP = float(np.finfo(np.float64).eps)
@@ -48,7 +48,7 @@ class Pulled(NamedTuple):
     alpha: Real
 
 
-class Brackets(NamedTuple):
+class RootBrackets(NamedTuple):
     """Where the solutions of one target are, (ROOTS,), in the order of their coordinates.
 
     `there`: whether there is one. `simple`: the quantity crosses the target, from below
@@ -76,7 +76,7 @@ def solve_targets(
     slopes: Slopes,
     which: Real,
     targets: Float[Array, " n"],
-    found: Survey,
+    found: Admissible,
 ) -> Solutions:
     """Solutions of every target, from the survey of the quantity.
 
@@ -105,7 +105,7 @@ def solve_targets(
     return Solutions(x, roots, achieved, ended.alpha, code)
 
 
-def _pressing_alike(known: Brackets, alpha: Float[Array, "n roots"]) -> Brackets:
+def _pressing_alike(known: RootBrackets, alpha: Float[Array, "n roots"]) -> RootBrackets:
     """Without roots at which alpha has another sign than in the interval around them.
 
     Between two nodes of an interval alpha may dip below 0 unseen.
@@ -115,7 +115,7 @@ def _pressing_alike(known: Brackets, alpha: Float[Array, "n roots"]) -> Brackets
     return known._replace(there=known.there & ~lost, number=number)
 
 
-def _brackets(found: Survey, aim: Real, now: Real) -> Brackets:
+def _brackets(found: Admissible, aim: Real, now: Real) -> RootBrackets:
     rest = found.values - aim
     touches = found.turns & (jnp.abs(rest) <= _TOUCH * jnp.abs(aim))
     rest = jnp.where(touches, 0.0, rest)
@@ -123,7 +123,7 @@ def _brackets(found: Survey, aim: Real, now: Real) -> Brackets:
     nodes, sides = found.nodes.ravel(), jnp.sign(rest).ravel()
     lower, there = nodes[cells], cells >= 0
     level, constant = _constant(found, aim, now)
-    return Brackets(
+    return RootBrackets(
         lower=lower,
         upper=jnp.where(sides[cells] == 0, lower, jnp.roll(nodes, -1)[cells]),
         rises=sides[cells] < 0,
@@ -137,7 +137,7 @@ def _brackets(found: Survey, aim: Real, now: Real) -> Brackets:
     )
 
 
-def _chosen(roots: Array, known: Brackets, now: Real) -> tuple[Real, Array]:
+def _chosen(roots: Array, known: RootBrackets, now: Real) -> tuple[Real, Array]:
     """The solution nearest to `now`, or what stands for it, and all of them."""
     away = jnp.where(known.there, jnp.abs(roots - now), jnp.inf)
     x = jnp.where(known.number > 0, roots[jnp.argmin(away)], known.best)
@@ -146,7 +146,7 @@ def _chosen(roots: Array, known: Brackets, now: Real) -> tuple[Real, Array]:
     return jnp.where(known.constant, known.level, x), roots
 
 
-def _code(found: Survey, known: Brackets, x, roots, achieved, aim) -> Int[Array, ""]:
+def _code(found: Admissible, known: RootBrackets, x, roots, achieved, aim) -> Int[Array, ""]:
     """The `FitStatus` of one target; the first that holds."""
     met = jnp.abs(achieved - aim) <= _MET * jnp.abs(aim)
     touched = jnp.any((roots == x) & known.there & ~known.simple)
@@ -175,7 +175,7 @@ def _cells(rest: Float[Array, "pieces n"]) -> tuple[Int[Array, " roots"], Real]:
     return first_places(found, ROOTS), jnp.sum(found)
 
 
-def _polished(quantity: Callable, targets: Array, known: Brackets) -> Array:
+def _polished(quantity: Callable, targets: Array, known: RootBrackets) -> Array:
     """Roots in brackets (n, ROOTS), to rounding; the places of touches as they are.
 
     All in one loop, differentiated implicitly: their equations do not see each other.
@@ -198,7 +198,7 @@ def _polished(quantity: Callable, targets: Array, known: Brackets) -> Array:
     return jnp.where(known.simple, roots, known.lower)
 
 
-def _constant(found: Survey, aim: Real, now: Real) -> tuple[Real, Bool[Array, ""]]:
+def _constant(found: Admissible, aim: Real, now: Real) -> tuple[Real, Bool[Array, ""]]:
     """A coordinate in the intervals where the quantity is the target throughout."""
     same = found.flat & (jnp.abs(found.values[:, 0] - aim) <= _MET * jnp.abs(aim))
     inside = (found.ends[:, 0] <= now) & (now <= found.ends[:, 1])

@@ -9,18 +9,18 @@ from typing import Any
 import numpy as np
 
 from .bending import free_energy, kernel_ratio
-from .constraints import MARGIN, Layout, basis
+from .constraints import ROW_MARGIN, FitShape, basis
 from .extreme_slopes import Reach
-from .interior import LAST, Path, Task
+from .interior import LAST, Iterates, FitTask
 from .law import FixedLaw
-from .profile_program import Runs, repeated
+from .profile_program import StartRuns, repeated
 from .settling import Settled
 from .targets import Geometry, coefficients_of, extreme_slopes
 
 _EXACT = 1e-12  # of the targets, weighted: rounding of coefficients
 
 
-def least_bent(layout: Layout, task: Task, starts: int) -> Runs | None:
+def least_bent(layout: FitShape, task: FitTask, starts: int) -> StartRuns | None:
     """The optimum, by one start in a step, for all; None where no theorem gives it.
 
     It is (see `bending`) where the ratio of the extreme slopes flattens nothing, all
@@ -40,7 +40,7 @@ def least_bent(layout: Layout, task: Task, starts: int) -> Runs | None:
     sharpest = _curvature(layout, waves)
     steep = np.stack([plus * task.slope / law.upper, minus * task.slope / -law.lower])
     met = np.all(np.abs(left) <= _EXACT) and np.all(steep < 1)
-    if not (met and sharpest <= MARGIN * task.curvature):
+    if not (met and sharpest <= ROW_MARGIN * task.curvature):
         return None
     room = {"slopes": 1 - np.max(steep)}
     if layout.sharp:
@@ -48,12 +48,12 @@ def least_bent(layout: Layout, task: Task, starts: int) -> Runs | None:
     return repeated(starts, _found(task, waves, ends, left, room, sharpest))
 
 
-def has_closed_form(layout: Layout) -> bool:
+def has_closed_form(layout: FitShape) -> bool:
     """Whether there may be one: bristles as they are, heights free, two waves or more."""
     return layout.free == 0 and not layout.high and layout.harmonics > 1
 
 
-def _ends(task: Task, law: Geometry) -> np.ndarray:
+def _ends(task: FitTask, law: Geometry) -> np.ndarray:
     """Slopes (omega_plus, -omega_minus) that the first target asks for."""
     wanted = np.asarray(task.coefficients)[0]
     plus, minus = extreme_slopes(wanted[0], wanted[1], law.a[0], law.alpha[0])
@@ -77,20 +77,20 @@ def _kernel(harmonics: int) -> tuple[np.ndarray, np.ndarray, float, float]:
     return sizes, signs, float(np.sum(sizes**2)), float(np.sum(signs * sizes**2))
 
 
-def _curvature(layout: Layout, waves: np.ndarray) -> float:
+def _curvature(layout: FitShape, waves: np.ndarray) -> float:
     """Largest |v'| on the rows; 0 where nothing bounds it."""
     if not layout.sharp:
         return 0.0
     return float(np.max(np.abs(basis(layout.harmonics, layout.points, 1) @ waves)))
 
 
-def _found(task: Task, waves: Any, ends: Any, left: Any, room: Any, sharpest: Any) -> Runs:
+def _found(task: FitTask, waves: Any, ends: Any, left: Any, room: Any, sharpest: Any) -> StartRuns:
     """One start's row: one step of Newton's method, from anywhere."""
     plus, minus = ends
     array: Any = np.asarray
     none, true = array([]), array(True)
     reach = Reach(plus, minus, sharpest, array(np.nan))
-    path = Path(
+    path = Iterates(
         x=array([[*waves, plus, plus, minus, minus]]),
         loss=np.sum(waves**2, keepdims=True) / task.energy,
         weight=array([LAST]),
@@ -98,7 +98,7 @@ def _found(task: Task, waves: Any, ends: Any, left: Any, room: Any, sharpest: An
         steps=array(1),
         done=true,
     )
-    return Runs(
+    return StartRuns(
         settled=Settled(waves, none, reach, ends, left, true),
         path=path,
         room=room,

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array
 
 from ..arguments import Real
-from .constraints import at, waves_of
+from .constraints import at, waves_of_heights
 from .extreme_slopes import peaks, reach, with_extreme_slopes
 from .law import AbstractLaw
 
@@ -17,7 +17,7 @@ _RANK = 1e-9  # of the largest singular value
 _HALVINGS = 6
 
 
-class Identifiability(NamedTuple):
+class CoefficientIdentifiability(NamedTuple):
     """What the coefficients see of a surface and of free bristle parameters.
 
     `sensitivities`: of log rho_plus, log -rho_minus of every target to `cos`, `sin` and the
@@ -34,7 +34,7 @@ class Identifiability(NamedTuple):
 
 @eqx.filter_jit
 def _sensitivities(law: AbstractLaw, cos: Array, sin: Array, free: Array) -> Array:
-    found = peaks(waves_of(cos, sin))
+    found = peaks(waves_of_heights(cos, sin))
     turns = 2 * jnp.pi * jnp.arange(1, cos.size + 1)
 
     def coefficients(unknowns):
@@ -58,7 +58,7 @@ def identifiability(law: AbstractLaw, cos: Array, sin: Array, free: Array):
     count = np.size(cos)
     stiffness[: 2 * count] = np.tile((2.0 * np.pi * np.arange(1, count + 1)) ** 4, 2)
     _, turn = np.linalg.eigh(unseen * stiffness @ unseen.T)
-    return Identifiability(pulls, values, rank, turn.T @ unseen)
+    return CoefficientIdentifiability(pulls, values, rank, turn.T @ unseen)
 
 
 @eqx.filter_jit

@@ -8,16 +8,16 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..arguments import require, require_flags, require_real, require_whole
-from ..programs import room
+from ..programs import padded_size
 from ..surroundings import with_nan
 from .bending import free_energy
-from .constraints import Layout
+from .constraints import FitShape
 from .free_parameter import free_parameter, require_bounds, with_arrays
-from .interior import Task
+from .interior import FitTask
 from .law import AbstractLaw, FixedLaw, FreeLaw
 from .least_bent import least_bent
-from .profile_program import Runs, descended
-from .profile_report import report
+from .profile_program import StartRuns, descended
+from .profile_report import report_fit
 from .profile_result import ProfileFit
 from .starts import SHARES, places
 from .targets import Geometry, Target, extreme_slopes, require_targets
@@ -26,7 +26,7 @@ _KEPT = 1000  # steps that there is room for: other budgets compile nothing new
 _FIRM = 50.0  # above every multiplier of the extreme slopes, which their ratio raises
 
 
-class Problem(NamedTuple):
+class SurfaceProblem(NamedTuple):
     """A fit, checked: what was asked for and the task of the program.
 
     `scale`: of the residuals that the program takes, so that the largest weighs 1.
@@ -34,8 +34,8 @@ class Problem(NamedTuple):
 
     targets: list[Target]
     law: AbstractLaw
-    layout: Layout
-    task: Task
+    layout: FitShape
+    task: FitTask
     scale: float
     bounds: dict[str, float | None]
 
@@ -82,28 +82,28 @@ def fit_profile(
     for name, value in counts:
         require_whole(name, value)
     require_whole("seed", seed, 0)
-    problem = problem_of(
+    problem = surface_problem(
         targets, harmonics, free, bounds, smallest_radius, largest_amplitude, pulling
     )
     apart: Any = np.array(places(problem.layout, starts))
     runs = least_bent(problem.layout, problem.task, starts)
     if runs is None:
         runs = _descended(problem, apart, seed, max_steps)
-    return report(problem, runs, apart)
+    return report_fit(problem, runs, apart)
 
 
-def _descended(problem: Problem, apart: Any, seed: int, max_steps: int) -> Runs:
+def _descended(problem: SurfaceProblem, apart: Any, seed: int, max_steps: int) -> StartRuns:
     """From random surfaces and free parameters to the optimum of each start."""
     layout, law, starts = problem.layout, problem.law, apart.size
     keys: Any = jax.random.split(jax.random.PRNGKey(seed), starts)
     shares: Any = np.random.default_rng(seed).uniform(*SHARES, size=(starts, layout.free))
     if isinstance(law, FreeLaw):
         shares[0] = np.clip(np.asarray(law.shares()), *SHARES)
-    kept = room(max_steps, _KEPT)
+    kept = padded_size(max_steps, _KEPT)
     return descended(layout, problem.task, apart, keys, shares, kept, max_steps)
 
 
-def problem_of(
+def surface_problem(
     targets: Any,
     harmonics: int = 16,
     free: Sequence[str] = (),
@@ -111,7 +111,7 @@ def problem_of(
     radius: float | None = None,
     amplitude: float | None = None,
     pulling: bool = False,
-) -> Problem:
+) -> SurfaceProblem:
     """The problem, checked, in the units of its targets; see `fit_profile`."""
     asked, known = require_targets(targets, pulling)
     for name, value in (("smallest_radius", radius), ("largest_amplitude", amplitude)):
@@ -119,7 +119,7 @@ def problem_of(
             require_real(name, value, f"{name} > 0 in periods", lambda v: v > 0)
     law = _law(asked, known, free, bounds)
     count = len(law.free) if isinstance(law, FreeLaw) else 0
-    layout = Layout(int(harmonics), radius is not None, amplitude is not None, count)
+    layout = FitShape(int(harmonics), radius is not None, amplitude is not None, count)
     wanted = np.array([[float(t.rho_plus), float(t.rho_minus)] for t in asked])
     sizes = np.abs(wanted)
     if asked[0].uncertainty is not None:
@@ -135,7 +135,7 @@ def problem_of(
         slope = min(slope, harmonics * float(amplitude))
     uneven = max(plus / minus, minus / plus)
     array: Any = np.asarray
-    task = Task(
+    task = FitTask(
         law=law,
         coefficients=array(wanted),
         factors=array(factors / scale),
@@ -149,7 +149,7 @@ def problem_of(
         "smallest_radius": None if radius is None else float(radius),
         "largest_amplitude": None if amplitude is None else float(amplitude),
     }
-    return Problem(asked, law, layout, task, scale, given)
+    return SurfaceProblem(asked, law, layout, task, scale, given)
 
 
 def _expected(wanted: np.ndarray, known: Geometry) -> tuple[float, float]:

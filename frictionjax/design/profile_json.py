@@ -9,7 +9,7 @@ import numpy as np
 from ..coefficients import Coefficients
 from ..profiles import Fourier
 from .fit_json import document_of
-from .open_directions import Identifiability
+from .open_directions import CoefficientIdentifiability
 from .part_json import part_entry, part_of
 from .profile_history import History, Start
 from .profile_status import ProfileStatus
@@ -40,7 +40,7 @@ _PARTS = (
 )
 
 
-def dump(fit: Any) -> str:
+def profile_to_json(fit: Any) -> str:
     """The JSON text of a fit; numbers keep all digits, those not finite become null."""
     document: dict[str, Any] = {"kind": _KIND, "status": fit.status.name}
     document |= {name: getattr(fit, name) for name in _PLAIN}
@@ -65,7 +65,7 @@ def dump(fit: Any) -> str:
     return json.dumps(_finite(document), indent=1)
 
 
-def fields(source: Any) -> dict[str, Any]:
+def profile_from_json(source: Any) -> dict[str, Any]:
     """The fields of a fit, of a JSON text or file; see `ProfileFit.from_json`."""
     return _fields(document_of(source, _KIND, {*_PLAIN, *_PARTS}))
 
@@ -84,7 +84,7 @@ def _fields(document: dict[str, Any]) -> dict[str, Any]:
         "status": ProfileStatus[document["status"]],
         "starts": tuple(_start(entry) for entry in document["starts"]),
         "history": None if history is None else _history(history),
-        "identify": partial(Identifiability, **seen),
+        "identify": partial(CoefficientIdentifiability, **seen),
     }
 
 

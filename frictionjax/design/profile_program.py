@@ -9,18 +9,18 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from .constraints import Layout
+from .constraints import FitShape
 from .energy_bound import energy_bound
-from .interior import Path, Task, barrier_of, descend, residuals
+from .interior import Iterates, FitTask, barrier_of, follow_barrier, coefficient_residuals
 from .settling import Settled, rooms, settle
-from .starts import start
+from .starts import random_start
 
 TARGET_MET = 1e-9  # relative error of a coefficient that counts as met
 _SMALL = 1000  # numbers that are copied sooner than spread, which takes 5 us
 _PROVEN = 5e-3  # of the energy: barriers leave 1e-4, with bounds on curvature 1.4e-3
 
 
-class Runs(NamedTuple):
+class StartRuns(NamedTuple):
     """How all starts ended, a row for each.
 
     `room`: of each bound, in shares of itself; `bound`: of the energy; `misfit`: squared
@@ -29,14 +29,14 @@ class Runs(NamedTuple):
     """
 
     settled: Settled
-    path: Path
+    path: Iterates
     room: dict[str, Array]
     bound: Array
     misfit: Array
     ran: Array
 
 
-def repeated(starts: int, row: Runs) -> Runs:
+def repeated(starts: int, row: StartRuns) -> StartRuns:
     """`Runs` of one start, without the axis of starts, that stands for the others too."""
 
     def spread(leaf: Any) -> np.ndarray:
@@ -49,8 +49,8 @@ def repeated(starts: int, row: Runs) -> Runs:
 
 
 def descended(
-    layout: Layout, task: Task, places: Any, keys: Any, shares: Any, kept: int, most: int
-) -> Runs:
+    layout: FitShape, task: FitTask, places: Any, keys: Any, shares: Any, kept: int, most: int
+) -> StartRuns:
     """The optimum from every start; see `run`. One stands for all where it is proven.
 
     Without free parameters and bounds on the height the problem is convex, but for targets
@@ -61,11 +61,11 @@ def descended(
     lanes = places, keys, shares
     steps = np.asarray(most)
     if layout.free or layout.high:
-        return jax.device_get(run(layout, kept, steps, task, *lanes))
+        return jax.device_get(multistart(layout, kept, steps, task, *lanes))
     rows = []
     for index in range(places.size):
         one = (lane[index : index + 1] for lane in lanes)
-        rows.append(jax.device_get(run(layout, kept, steps, task, *one)))
+        rows.append(jax.device_get(multistart(layout, kept, steps, task, *one)))
         if _proven(task, rows[-1]):
             row = jax.tree_util.tree_map(lambda value: value[0], rows[-1])
             rows[-1] = repeated(places.size - index, row)
@@ -75,7 +75,7 @@ def descended(
     return jax.tree_util.tree_map(lambda *some: np.concatenate(some), *rows)
 
 
-def _proven(task: Task, found: Runs) -> bool:
+def _proven(task: FitTask, found: StartRuns) -> bool:
     """The targets are met, and no other surface with these slopes is less bent."""
     ended = bool(found.path.done[0]) and bool(found.settled.met[0])
     if not (ended and targets_met(task, found.settled.residuals)[0]):
@@ -84,7 +84,7 @@ def _proven(task: Task, found: Runs) -> bool:
     return bool(energy <= (1 + _PROVEN) * found.bound[0])
 
 
-def targets_met(task: Task, residuals: Any) -> np.ndarray:
+def targets_met(task: FitTask, residuals: Any) -> np.ndarray:
     """Whether scaled residuals of starts, (n, rows), are of coefficients that are met."""
     shape = len(residuals), *np.shape(task.coefficients)
     errors = np.reshape(residuals, shape) / task.factors / task.coefficients
@@ -92,15 +92,15 @@ def targets_met(task: Task, residuals: Any) -> np.ndarray:
 
 
 @eqx.filter_jit
-def run(
-    layout: Layout,
+def multistart(
+    layout: FitShape,
     kept: int,
     most: Any,
-    task: Task,
+    task: FitTask,
     places: Array,
     keys: Array,
     shares: Array,
-) -> Runs:
+) -> StartRuns:
     """The optimum from every start; `shares[0]` are the bristles' own free parameters.
 
     At most `most` steps, of which there is room for `kept`.
@@ -109,16 +109,16 @@ def run(
     return jax.vmap(one)(places, keys, shares)
 
 
-def _one(layout, kept, most, task, own, place, key, share) -> Runs:
-    first = start(layout, task, key, share, own)
+def _one(layout, kept, most, task, own, place, key, share) -> StartRuns:
+    first = random_start(layout, task, key, share, own)
     last = barrier_of(layout, task, place, first)
-    final, path = descend(last, first, kept, most)
+    final, path = follow_barrier(last, first, kept, most)
     settled = settle(layout, task, final)
     bound = energy_bound(last, final, settled.reach)
 
     def misfit(x):
         point = layout.split(x)
-        return jnp.sum(residuals(task, point.plus[1], point.minus[1], point.free) ** 2)
+        return jnp.sum(coefficient_residuals(task, point.plus[1], point.minus[1], point.free) ** 2)
 
     room = rooms(layout, task, settled.reach, settled.free)
-    return Runs(settled, path, room, bound, jax.vmap(misfit)(path.x), jnp.asarray(True))
+    return StartRuns(settled, path, room, bound, jax.vmap(misfit)(path.x), jnp.asarray(True))

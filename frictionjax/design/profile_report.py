@@ -11,12 +11,12 @@ from ..potentials import potential
 from ..profiles import Fourier
 from ..programs import Program
 from .bending import bending_energy
-from .constraints import MARGIN, heights_of
+from .constraints import ROW_MARGIN, heights_of_waves
 from .interior import EDGE
 from .law import FreeLaw
 from .open_directions import identifiability
 from .profile_history import History, Start
-from .profile_program import TARGET_MET, Runs, targets_met
+from .profile_program import TARGET_MET, StartRuns, targets_met
 from .profile_result import ProfileFit
 from .profile_status import MET, ProfileStatus
 from .reachable import (
@@ -34,7 +34,7 @@ _TIE = 1e-9  # relative difference of losses that counts as none
 _NEAR = 1e-3  # share of a bound that counts as reached
 
 
-def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
+def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
     """The result of the best start; see `ProfileFit`."""
     task = problem.task
     slope = float(task.slope)
@@ -85,7 +85,7 @@ def report(problem: Any, runs: Runs, places: np.ndarray) -> ProfileFit:
 @Program
 def _series(waves: Any, slope: Any) -> tuple[Any, Any]:
     """Compiled: NumPy arrays become JAX arrays in 30 us so, by `asarray` in 70."""
-    cos, sin = heights_of(waves)
+    cos, sin = heights_of_waves(waves)
     return slope * cos, slope * sin
 
 
@@ -117,7 +117,7 @@ def _free_values(problem: Any, free: Any) -> dict[str, float]:
     return dict(zip(labels, map(float, values), strict=True))
 
 
-def _status(problem: Any, runs: Runs, index: int, loss: float, met: bool) -> ProfileStatus:
+def _status(problem: Any, runs: StartRuns, index: int, loss: float, met: bool) -> ProfileStatus:
     if not np.isfinite(loss):
         return ProfileStatus.NOT_FINITE
     if not bool(runs.path.done[index]):
@@ -143,14 +143,14 @@ def _likely(freedom: int) -> float:
     return float(chi2.ppf(_SURE, max(freedom, 1)))
 
 
-def _bound_reached(problem: Any, runs: Runs, index: int) -> ProfileStatus:
+def _bound_reached(problem: Any, runs: StartRuns, index: int) -> ProfileStatus:
     room = {name: float(values[index]) for name, values in runs.room.items()}
     fixed = not problem.layout.free
     if fixed and not followed(problem.law.known, _asked(problem, runs, index)):
         return ProfileStatus.INADMISSIBLE
     if room["slopes"] < _NEAR + EDGE:
         return ProfileStatus.INADMISSIBLE
-    margin = 1 - MARGIN + _NEAR
+    margin = 1 - ROW_MARGIN + _NEAR
     if room.get("curvature", 1.0) < margin:
         return ProfileStatus.TOO_SHARP
     if room.get("height", 1.0) < margin:
@@ -166,7 +166,7 @@ def _within(wanted: np.ndarray, harmonics: int) -> bool:
 
 
 def _message(
-    problem: Any, runs: Runs, best: int, status: ProfileStatus, reached: Any, loss: float
+    problem: Any, runs: StartRuns, best: int, status: ProfileStatus, reached: Any, loss: float
 ) -> str:
     if status == ProfileStatus.MET:
         return status.message
@@ -183,13 +183,13 @@ def _message(
     return f"{status.message}; {_reachable(problem, runs, best)}; nearest: {nearest}"
 
 
-def _asked(problem: Any, runs: Runs, index: int) -> np.ndarray:
+def _asked(problem: Any, runs: StartRuns, index: int) -> np.ndarray:
     """Slopes that the targets ask of their bristles as a start found them."""
     known = Geometry(*map(np.asarray, problem.law.at(runs.settled.free[index])))
     return slopes_asked(known, np.asarray(problem.task.coefficients))
 
 
-def _reachable(problem: Any, runs: Runs, best: int) -> str:
+def _reachable(problem: Any, runs: StartRuns, best: int) -> str:
     task, layout = problem.task, problem.layout
     asked = _asked(problem, runs, best)
     within = ""
@@ -207,7 +207,7 @@ def _reachable(problem: Any, runs: Runs, best: int) -> str:
 
 def _start(
     problem: Any,
-    runs: Runs,
+    runs: StartRuns,
     index: int,
     status: ProfileStatus,
     loss: float,
@@ -228,11 +228,11 @@ def _start(
     )
 
 
-def _history(problem: Any, runs: Runs) -> History:
+def _history(problem: Any, runs: StartRuns) -> History:
     slope, layout = float(problem.task.slope), problem.layout
     x: Any = np.asarray(runs.path.x)[:, : int(np.max(np.asarray(runs.path.steps)))]
     first = 2 * layout.harmonics
-    cos, sin = heights_of(x[..., :first])
+    cos, sin = heights_of_waves(x[..., :first])
     steps = x.shape[1]
     free = x[..., x.shape[-1] - layout.free :]
     if isinstance(problem.law, FreeLaw):

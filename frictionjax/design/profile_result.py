@@ -13,11 +13,11 @@ from ..bristles import AbstractBristle
 from ..bristles.pulling import pulling_text
 from ..coefficients import Coefficients
 from ..profiles import Fourier
-from .constraints import heights_of, waves_of
+from .constraints import heights_of_waves, waves_of_heights
 from .fit_json import written
-from .open_directions import Identifiability, members
+from .open_directions import CoefficientIdentifiability, members
 from .profile_history import History, Start
-from .profile_json import dump, fields
+from .profile_json import profile_to_json, profile_from_json
 from .profile_status import ProfileStatus
 
 
@@ -52,12 +52,12 @@ class ProfileFit:
     message: str
     starts: tuple[Start, ...]
     history: History | None
-    identify: Callable[[], Identifiability]
+    identify: Callable[[], CoefficientIdentifiability]
     free: dict[str, float]
     bounds: dict[str, float | None]
 
     @cached_property
-    def identifiability(self) -> Identifiability:
+    def identifiability(self) -> CoefficientIdentifiability:
         """What the coefficients see of the surface, and what they leave open."""
         return self.identify()
 
@@ -90,14 +90,14 @@ class ProfileFit:
         require_real("size", size, "a number > 0", lambda v: v > 0)
         sharp, high = (self.bounds[k] for k in ("smallest_radius", "largest_amplitude"))
         known: Any = (
-            waves_of(self.profile.cos, self.profile.sin),
+            waves_of_heights(self.profile.cos, self.profile.sin),
             jax.random.split(jax.random.PRNGKey(seed), count),
             float(size),
             np.inf if sharp is None else 1 / sharp,
             np.inf if high is None else float(high),
         )
         waves, good = members(*known)
-        cos, sin = (np.asarray(rows) for rows in heights_of(waves))
+        cos, sin = (np.asarray(rows) for rows in heights_of_waves(waves))
         return [Fourier(cos[i], sin[i]) for i in np.flatnonzero(np.asarray(good))]
 
     def plot(self):
@@ -108,7 +108,7 @@ class ProfileFit:
 
     def to_json(self, path: Any = None) -> str:
         """Everything but the iterates' shapes as JSON; written to `path` where given."""
-        return written(dump(self), path)
+        return written(profile_to_json(self), path)
 
     @classmethod
     def from_json(cls, source: Any) -> "ProfileFit":
@@ -117,7 +117,7 @@ class ProfileFit:
         Bristles given as functions are None, the iterates' shapes empty. Raises
         `ValueError` for what is no such JSON.
         """
-        return cls(**fields(source))
+        return cls(**profile_from_json(source))
 
     def __repr__(self) -> str:
         rows = [

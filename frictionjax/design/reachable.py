@@ -6,7 +6,7 @@ import jax
 import numpy as np
 
 from ..arguments import as_text, no_less, no_more
-from .constraints import ORDERS, Layout, basis
+from .constraints import ORDERS, FitShape, basis
 from .law import AbstractLaw, FreeLaw
 from .targets import Geometry, extreme_slopes
 
@@ -76,7 +76,7 @@ def _mu(a: float, omega: float) -> float:
 
 
 def reachable_share(
-    layout: Layout, plus: float, minus: float, curvature: float, height: float
+    layout: FitShape, plus: float, minus: float, curvature: float, height: float
 ) -> float:
     """The largest multiple of the slopes (`plus`, -`minus`) that the bounds leave room for.
 

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from ..arguments import Real, is_concrete
 from ..bristles import AbstractBristle
 from ..profiles import AbstractProfile
-from ..programs import Program, room
+from ..programs import Program, padded_size
 from .free_parameter import FreeParameter, free_parameter
 from .quantities import QUANTITIES, on_slopes, quantity_of, slopes_of
 
@@ -68,7 +68,7 @@ def sensitivities_of(fit: Any) -> Sensitivities:
         return Sensitivities(*found)
     free = free_parameter(fit[0].bristle, fit.free)
     count = fit.value.shape[0]
-    more = room(count, *_ROOM) - count
+    more = padded_size(count, *_ROOM) - count
 
     def padded(leaf):
         if not eqx.is_array(leaf):

@@ -7,9 +7,9 @@ import jax.numpy as jnp
 from jaxtyping import Array
 
 from ..arguments import Real
-from .constraints import Layout
+from .constraints import FitShape
 from .extreme_slopes import Reach, peaks, reach, with_extreme_slopes
-from .interior import Task, residuals
+from .interior import FitTask, coefficient_residuals
 
 _STEPS = 40
 _NEAR = 0.03  # of the slopes: how far the last digits may move them
@@ -33,7 +33,7 @@ class Settled(NamedTuple):
     met: Array
 
 
-def settle(layout: Layout, task: Task, x: Array) -> Settled:
+def settle(layout: FitShape, task: FitTask, x: Array) -> Settled:
     """The optimum of the barrier with its last digits.
 
     Gauss-Newton steps of least length on the extreme slopes and the free parameters, which
@@ -45,7 +45,7 @@ def settle(layout: Layout, task: Task, x: Array) -> Settled:
     wanted = jnp.concatenate([before * jnp.array([1.0, -1.0]), point.free])
 
     def misfit(z):
-        return residuals(task, z[0], z[1], z[2:])
+        return coefficient_residuals(task, z[0], z[1], z[2:])
 
     # Short steps in parameters near their bounds: what lies on a bound stays there.
     ease = jnp.minimum(point.free, 1 - point.free)
@@ -63,15 +63,15 @@ def settle(layout: Layout, task: Task, x: Array) -> Settled:
     old, new = (jax.tree_util.tree_map(lambda v, i=i: v[i], reached) for i in (0, 1))
     gap = jnp.abs(new.plus - safe[0]) + jnp.abs(new.minus - safe[1])
     good = near & (gap <= _EXACT * (safe[0] + safe[1]))
-    good &= room(layout, task, new, safe[2:]) >= 0
+    good &= least_room(layout, task, new, safe[2:]) >= 0
     waves = jnp.where(good, both[1], both[0])
     free = jnp.where(good, safe[2:], point.free)
     found = jax.tree_util.tree_map(lambda o, n: jnp.where(good, n, o), old, new)
-    left = residuals(task, found.plus, found.minus, free)
+    left = coefficient_residuals(task, found.plus, found.minus, free)
     return Settled(waves, free, found, best[:2], left, good)
 
 
-def rooms(layout: Layout, task: Task, found: Reach, free: Array) -> dict[str, Real]:
+def rooms(layout: FitShape, task: FitTask, found: Reach, free: Array) -> dict[str, Real]:
     """How far each bound is, in shares of itself: >= 0 inside.
 
     Free parameters in shares of the width of their bounds.
@@ -91,6 +91,6 @@ def rooms(layout: Layout, task: Task, found: Reach, free: Array) -> dict[str, Re
     return out
 
 
-def room(layout: Layout, task: Task, found: Reach, free: Array) -> Real:
+def least_room(layout: FitShape, task: FitTask, found: Reach, free: Array) -> Real:
     """The least of `rooms`."""
     return jnp.min(jnp.stack(list(rooms(layout, task, found, free).values())))

@@ -28,10 +28,10 @@ from .fit_json import written
 from .fit_status import FitStatus
 from .free_parameter import FreeParameter, free_parameter
 from .quantities import QUANTITIES, quantity_of
-from .slide_json import dump, fields
-from .slide_scan import Scan, crossings, scan, sliding, touching
+from .slide_json import slide_to_json, slide_from_json
+from .slide_scan import Scan, crossings, scan_slides, sliding, touching
 from .steady_slide import (
-    FORCES,
+    SLIDE_FORCES,
     SteadySlide,
     forces_of,
     require_force,
@@ -106,7 +106,7 @@ class SlideFit(eqx.Module):
 
     def to_json(self, path: Any = None) -> str:
         """Everything as JSON; written to `path` where given."""
-        return written(dump(self), path)
+        return written(slide_to_json(self), path)
 
     @classmethod
     def from_json(cls, source: Any) -> "SlideFit":
@@ -115,7 +115,7 @@ class SlideFit(eqx.Module):
         A bristle or a surface given as functions is None. Raises `ValueError` for what is
         no such JSON.
         """
-        return cls(**fields(source))
+        return cls(**slide_from_json(source))
 
     def __repr__(self) -> str:
         return f"SlideFit({self.message})"
@@ -143,7 +143,7 @@ def _quantity(free, bristle, profile, asked: _Asked, x):
     """The quantity at a coordinate of the number, and the slide."""
     wiggle = BristlePotential(profile, free.at(bristle, x))
     slide = slide_at(wiggle, *asked.scene)
-    mean, peak = (quantity_of(forces_of(slide, f), asked.which) for f in FORCES)
+    mean, peak = (quantity_of(forces_of(slide, f), asked.which) for f in SLIDE_FORCES)
     return jnp.where(asked.peak, peak, mean), slide
 
 
@@ -241,7 +241,7 @@ def fit_slide(
     def slope(x):
         return float(alone(x).slope)
 
-    scans = [scan(shown, slope, *ends) for ends in parts]
+    scans = [scan_slides(shown, slope, *ends) for ends in parts]
     roots = np.concatenate([crossings(gap, one, target) for one in scans])
     turns = np.concatenate([touching(one, target) for one in scans])
     failed = np.concatenate([one.failed(target) for one in scans])

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 
 from . import angle_json, profile_json
 from .angle_fit import AngleFit
-from .fit_json import document_of, numbers_of, plain
+from .fit_json import document_of, array_of, plain
 from .fit_status import FitStatus
 from .part_json import part_entry, part_of
 from .profile_result import ProfileFit
@@ -34,12 +34,12 @@ def _slide_entry(slide: SteadySlide) -> dict[str, Any]:
 
 
 def _slide_of(entry: dict[str, Any]) -> SteadySlide:
-    numbers = {name: jnp.asarray(numbers_of(value)) for name, value in entry.items()}
+    numbers = {name: jnp.asarray(array_of(value)) for name, value in entry.items()}
     codes = {k: v.astype(int) for k, v in numbers.items() if k.startswith("code")}
     return SteadySlide(**numbers | codes)
 
 
-def dump(fit: Any) -> str:
+def slide_to_json(fit: Any) -> str:
     """The JSON text of a `SlideFit`."""
     document: dict[str, Any] = {"kind": _KIND, "message": fit.message}
     document |= {name: getattr(fit, name) for name in _ARRAYS}
@@ -48,10 +48,10 @@ def dump(fit: Any) -> str:
     return json.dumps(plain(document | {"limit": angle_json.entry_of(fit.limit)}), indent=1)
 
 
-def fields(source: Any) -> dict[str, Any]:
+def slide_from_json(source: Any) -> dict[str, Any]:
     """The fields of a `SlideFit`, of a JSON text or file."""
     document = document_of(source, _KIND, {*_ARRAYS, *_PARTS})
-    found = {name: jnp.asarray(numbers_of(document[name])) for name in _ARRAYS}
+    found = {name: jnp.asarray(array_of(document[name])) for name in _ARRAYS}
     return found | {
         "reachable": found["reachable"].reshape(-1, 2),
         "bristle": part_of(document["bristle"]),
@@ -69,14 +69,14 @@ def dump_profile(fit: Any) -> str:
     document |= {"status": fit.status.name, "steps": fit.steps}
     document["slides"] = [_slide_entry(slide) for slide in fit.slides]
     for name in ("fit", "limit"):
-        document[name] = json.loads(profile_json.dump(getattr(fit, name)))
+        document[name] = json.loads(profile_json.profile_to_json(getattr(fit, name)))
     return json.dumps(plain(document), indent=1)
 
 
 def profile_fields(source: Any) -> dict[str, Any]:
     """The fields of a `SlideProfileFit`, of a JSON text or file."""
     document = document_of(source, _PROFILE_KIND, {*_PROFILE_ARRAYS, *_PROFILE_PARTS})
-    found: dict[str, Any] = {k: numbers_of(document[k]) for k in _PROFILE_ARRAYS}
+    found: dict[str, Any] = {k: array_of(document[k]) for k in _PROFILE_ARRAYS}
     for name in ("fit", "limit"):
         found[name] = ProfileFit.from_json(json.dumps(document[name]))
     return found | {

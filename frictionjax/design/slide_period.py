@@ -43,7 +43,7 @@ _X, _W = np.polynomial.legendre.leggauss(4)
 _SHARES = 0.5 * (_X + 1)
 
 
-class Slide(NamedTuple):
+class SlideScene(NamedTuple):
     """What a period is made of: numbers, all traced.
 
     `sign`: 1 to the right, -1 to the left. `pull` c = rate eps^(gamma+1), `give` = k_h eps.
@@ -71,7 +71,7 @@ class Slide(NamedTuple):
         return drive * (self.pull * stretch * drive - self.give * stretch - climb)
 
 
-class Period(NamedTuple):
+class PeriodicOrbit(NamedTuple):
     """A period found: where it starts, its steps (STEPS,) padded with 0, and L there."""
 
     start: Real
@@ -82,7 +82,7 @@ class Period(NamedTuple):
     used: Int[Array, ""]
 
 
-def least_pull(slide: Slide) -> tuple[Slide, Real]:
+def least_pull(slide: SlideScene) -> tuple[SlideScene, Real]:
     """The slide with a viscosity that floats resolve, and about what that adds to f (N).
 
     A fold of curvature K is left late by `2.338 K^(-1/3) (c G)^(2/3)`, and away from
@@ -99,7 +99,7 @@ def least_pull(slide: Slide) -> tuple[Slide, Real]:
     return slide._replace(pull=jnp.maximum(slide.pull, least)), added
 
 
-def survey_ground(slide: Slide) -> tuple[Real, Real, Real]:
+def survey_ground(slide: SlideScene) -> tuple[Real, Real, Real]:
     """Way to the highest sample of `sign U`, steepest climb, and smallest G."""
     points = slide.potential.points
     grid = jnp.arange(points) / points
@@ -108,7 +108,7 @@ def survey_ground(slide: Slide) -> tuple[Real, Real, Real]:
     return grid[jnp.argmax(force)], jnp.max(climb), jnp.min(stretch)
 
 
-def _step(slide: Slide, x: Real, step: Real, level: Real) -> tuple[Real, list]:
+def _step(slide: SlideScene, x: Real, step: Real, level: Real) -> tuple[Real, list]:
     """One Rosenbrock step and its stages.
 
     The terrain does not see L: it is evaluated at all stages at once, a sixth of the
@@ -130,7 +130,7 @@ def _step(slide: Slide, x: Real, step: Real, level: Real) -> tuple[Real, list]:
     return inside + stages[-1], stages
 
 
-def _once(slide: Slide, start: Real, level: Real):
+def _once(slide: SlideScene, start: Real, level: Real):
     """Adaptive steps over a period from `level`; the steps, where it ends, and how many."""
     height, _ = slide.ground(start)
 
@@ -161,7 +161,7 @@ def _once(slide: Slide, start: Real, level: Real):
     return steps, jnp.where(way >= 1.0, level, jnp.nan), count
 
 
-def _end(slide: Slide, period: Period, level: Real) -> Real:
+def _end(slide: SlideScene, period: PeriodicOrbit, level: Real) -> Real:
     """L after the same steps from another level; in forward mode differentiable."""
 
     def one(i, state):
@@ -172,7 +172,7 @@ def _end(slide: Slide, period: Period, level: Real) -> Real:
     return jax.lax.fori_loop(0, period.used, one, (jnp.zeros(()), level))[1]
 
 
-def replay(slide: Slide, period: Period, level: Real) -> tuple[Real, Array, Array]:
+def replay(slide: SlideScene, period: PeriodicOrbit, level: Real) -> tuple[Real, Array, Array]:
     """The same steps from another level: where it ends, mean and peak of each step.
 
     Differentiable: steps are given. Returns L at the end, `int D G dx` (N) of each step
@@ -216,7 +216,7 @@ def _turn(level: Real, new: Real, turn: Real) -> Real:
     return jnp.where(turns, -low / jnp.where(turns, high - low, 1.0), 1.0)
 
 
-def find_period(slide: Slide) -> Period:
+def find_periodic_orbit(slide: SlideScene) -> PeriodicOrbit:
     """The periodic slide by Newton's method from below; not differentiable.
 
     First with steps chosen anew each time, then, as these make the map rough, on the last
@@ -225,7 +225,7 @@ def find_period(slide: Slide) -> Period:
     start, steepest, thinnest = survey_ground(slide)
     low = slide.pull * thinnest / (slide.give * thinnest + steepest)
     none, far = jnp.zeros(STEPS), jnp.asarray(jnp.inf)
-    begin = Period(start, none, jnp.log(low), jnp.zeros(()), far, jnp.asarray(0))
+    begin = PeriodicOrbit(start, none, jnp.log(low), jnp.zeros(()), far, jnp.asarray(0))
 
     def remeshed(period):
         steps, _, used = _once(slide, start, period.level)
@@ -247,7 +247,7 @@ def find_period(slide: Slide) -> Period:
     return iterated(lambda p: p, _CLOSED, _AGAIN, rough._replace(closed=far))
 
 
-def _newton(slide: Slide, period: Period, limit: Real) -> Period:
+def _newton(slide: SlideScene, period: PeriodicOrbit, limit: Real) -> PeriodicOrbit:
     """A step of Newton's method in D, where the map is convex: dD1/dD0 = kept D1/D0."""
     one = jnp.ones(())
     end, kept = jax.jvp(lambda v: _end(slide, period, v), (period.level,), (one,))
@@ -260,14 +260,14 @@ def _newton(slide: Slide, period: Period, limit: Real) -> Period:
     return period._replace(level=level, kept=kept, closed=closed)
 
 
-def slide_forces(slide: Slide) -> tuple[Real, Real, Period]:
+def slide_forces(slide: SlideScene) -> tuple[Real, Real, PeriodicOrbit]:
     """Mean and peak force (N, positive) of a steady slide, and its period.
 
     Differentiable once: the start of the period by the implicit function theorem, the rest
     through its steps, which are kept.
     """
     still = jax.lax.stop_gradient(slide)
-    period = jax.lax.stop_gradient(find_period(still))
+    period = jax.lax.stop_gradient(find_periodic_orbit(still))
 
     def totals(slide, level):
         last, means, peaks = replay(slide, period, level)

@@ -93,7 +93,7 @@ def sliding(
     return list(zip(ends[::2], ends[1::2], strict=True))
 
 
-def scan(shown: Shown, slope: Callable[[float], float], low: float, high: float) -> Scan:
+def scan_slides(shown: Shown, slope: Callable[[float], float], low: float, high: float) -> Scan:
     """Look over an interval: nodes that crowd towards its ends, extrema polished."""
     nodes = low + (high - low) * _SHARES
     nodes[-1] = high

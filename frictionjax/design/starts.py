@@ -5,15 +5,15 @@ import jax.numpy as jnp
 from jaxtyping import Array
 
 from ..arguments import Real
-from .constraints import ORDERS, Layout, Unknowns, basis, heights_of, waves_of
-from .interior import Task
+from .constraints import ORDERS, FitShape, Unknowns, basis, heights_of_waves, waves_of_heights
+from .interior import FitTask
 
 _GENTLE = 0.3  # of the nearest bound, at most
 SHARES = (0.02, 0.98)  # of the bounds of free parameters
 _PLACES = (1 / 2, 1 / 3, 1 / 4, 1 / 5, 2 / 5, 1 / 6, 3 / 8, 1 / 8)
 
 
-def places(layout: Layout, count: int) -> list[float]:
+def places(layout: FitShape, count: int) -> list[float]:
     """Where starts have their lowest slope, in periods from the highest, on the rows.
 
     Half a period is best unless the height is bounded: then a surface of several bumps
@@ -23,7 +23,7 @@ def places(layout: Layout, count: int) -> list[float]:
     return [round(place * layout.points) / layout.points for place in wanted]
 
 
-def start(layout: Layout, task: Task, key: Array, share: Array, own: Array) -> Unknowns:
+def random_start(layout: FitShape, task: FitTask, key: Array, share: Array, own: Array) -> Unknowns:
     """A random surface within a third of the bounds, its highest slope at 0.
 
     `share`, `own`: free parameters wanted and those of the bristles themselves, in shares
@@ -57,13 +57,13 @@ def start(layout: Layout, task: Task, key: Array, share: Array, own: Array) -> U
 
 def _moved(waves: Array, shift: Real) -> Array:
     """The surface with this place at 0."""
-    cos, sin = heights_of(waves)
+    cos, sin = heights_of_waves(waves)
     turn = 2 * jnp.pi * jnp.arange(1, cos.size + 1) * shift
     c, s = jnp.cos(turn), jnp.sin(turn)
-    return waves_of(cos * c + sin * s, sin * c - cos * s)
+    return waves_of_heights(cos * c + sin * s, sin * c - cos * s)
 
 
-def _pressing(task: Task, share: Array, own: Array) -> Array:
+def _pressing(task: FitTask, share: Array, own: Array) -> Array:
     """The nearest to `share` on the way from `own` at which bristles press as they do."""
     before = task.law.at(own).alpha
     steps = jnp.linspace(1.0, 0.0, 16)

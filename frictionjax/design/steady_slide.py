@@ -22,13 +22,13 @@ from ..outcomes import counted, flags, outcomes
 from ..parts import checked
 from ..potentials import potential
 from ..profiles import AbstractProfile
-from ..programs import Program, room
+from ..programs import Program, padded_size
 from ..supports import Spring
 from ..surroundings import with_nan
 from ..wiggly.status import Status
-from .slide_period import STEPS, Period, Slide, least_pull, slide_forces
+from .slide_period import STEPS, PeriodicOrbit, SlideScene, least_pull, slide_forces
 
-FORCES = ("mean", "peak")  # of a slide, that designs may ask for
+SLIDE_FORCES = ("mean", "peak")  # of a slide, that designs may ask for
 _LANES = 4  # eps at least that are solved at once: one program for a few of them
 _OPEN = 1e-7  # of log D over a period: mean forces right to that
 _ADDED = 1e-5  # of the force: more than that by a viscosity that floats resolve is told
@@ -92,7 +92,7 @@ class SlideForces(NamedTuple):
 
 def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> _Sides:
     def one(sign: Real):
-        slide = Slide(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
+        slide = SlideScene(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
         resolved, added = least_pull(slide)
         mean, peak, period = slide_forces(resolved)
         return _Sides(sign * mean, sign * peak, _code(period, mean, added))
@@ -119,7 +119,7 @@ def _joined(eps: Real, both: _Sides) -> SteadySlide:
 
 def require_force(force: str) -> None:
     """Raise `ValueError` unless designs know this force."""
-    require(force in FORCES, "force", force, "'mean' or 'peak'")
+    require(force in SLIDE_FORCES, "force", force, "'mean' or 'peak'")
 
 
 def forces_of(slide: SteadySlide, force: str) -> SlideForces:
@@ -133,7 +133,7 @@ def _forces(potential, eps, gamma, rate, stiffness):
     return jax.vmap(lambda e: _both_sides(potential, e, gamma, rate, stiffness))(eps)
 
 
-def _code(period: Period, mean: Real, added: Real) -> Real:
+def _code(period: PeriodicOrbit, mean: Real, added: Real) -> Real:
     closed = period.closed <= _OPEN
     known = jnp.where(
         added <= _ADDED * jnp.abs(mean), int(Status.OK), int(Status.STEP_TOO_SMALL)
@@ -190,7 +190,7 @@ def steady_slide(
     numbers = as_real(gamma), as_real(rate), support.stiffness
     several = jnp.atleast_1d(sizes)
     count = several.shape[0]
-    padded = jnp.pad(several, (0, room(count, _LANES, 2) - count), mode="edge")
+    padded = jnp.pad(several, (0, padded_size(count, _LANES, 2) - count), mode="edge")
     found = _forces(wiggle, padded, *numbers)
     wanted = slice(count) if sizes.ndim else 0
     return _joined(sizes, jax.tree_util.tree_map(lambda leaf: leaf[wanted], found))

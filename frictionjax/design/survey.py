@@ -15,8 +15,8 @@ from ..roots import find_root
 from .free_parameter import FreeParameter
 from .quantities import Slopes, on_slopes, quantity_of, side_of
 
-PIECES = 4  # intervals of admissible numbers: slanted springs have three
-_HALVES = slice(PIECES), slice(PIECES, 2 * PIECES)
+MOST_INTERVALS = 4  # intervals of admissible numbers: slanted springs have three
+_HALVES = slice(MOST_INTERVALS), slice(MOST_INTERVALS, 2 * MOST_INTERVALS)
 TURNS = 6  # extrema of the quantity in one interval
 _GRID = 257
 _BISECTIONS = 64  # a bracket of the grid's width to neighbouring floats
@@ -28,7 +28,7 @@ _POLE = 1e2  # growth from 1e-3 to 1e-9 of the width before an end: that of (1/d
 _FLAT = 256 * float(np.finfo(np.float64).eps)
 
 
-class Survey(NamedTuple):
+class Admissible(NamedTuple):
     """Intervals of admissible coordinates and the quantity at nodes that hold its turns.
 
     `nodes`, `values`: (PIECES, N), sorted in each interval, NaN in empty ones; `turns`
@@ -61,7 +61,7 @@ def survey(
     low: Real,
     high: Real,
     pulling: Bool[Array, ""],
-) -> tuple[Survey, Survey]:
+) -> tuple[Admissible, Admissible]:
     """Look over the coordinates between `low` and `high`; traceable, not differentiable.
 
     Where the bristle presses, or pulls and `pulling` allows it, and where it pulls and may
@@ -76,7 +76,7 @@ def survey(
 
     now = free.coordinate(bristle, free.now(bristle))
     ends, sides, missed = _pieces(law, low, high, now, pulling)
-    found = scan(lambda x: law(x)[0], ends, sides)
+    found = scan_admissible(lambda x: law(x)[0], ends, sides)
     half = [jax.tree_util.tree_map(lambda row, i=i: row[i], found) for i in _HALVES]
     allowed, others = (
         part._replace(missed=jnp.any(part.missed) | more)
@@ -105,14 +105,14 @@ def _pieces(
     after = jnp.concatenate([sides[1:], jnp.zeros(1)])
     opens, closes = (sides != 0) & (sides != before), (sides != 0) & (sides != after)
     wanted = (sides > 0) | pulling, (sides < 0) & ~pulling
-    first = jnp.concatenate([first_places(opens & some, PIECES) for some in wanted])
-    last = jnp.concatenate([first_places(closes & some, PIECES) for some in wanted])
+    first = jnp.concatenate([first_places(opens & some, MOST_INTERVALS) for some in wanted])
+    last = jnp.concatenate([first_places(closes & some, MOST_INTERVALS) for some in wanted])
     neighbours = jnp.concatenate([first - 1, last + 1])
     beyond = nodes[jnp.clip(neighbours, 0, nodes.shape[0] - 1)]
     inside = nodes[jnp.concatenate([first, last])]
-    edges = _edges(side, inside, beyond).reshape(2, 2 * PIECES).T
+    edges = _edges(side, inside, beyond).reshape(2, 2 * MOST_INTERVALS).T
     there = first >= 0
-    missed = [jnp.sum(opens & some) > PIECES for some in wanted]
+    missed = [jnp.sum(opens & some) > MOST_INTERVALS for some in wanted]
     return (
         jnp.where(there[:, None], edges, jnp.nan),
         jnp.where(there, sides[first], 0.0),
@@ -186,11 +186,11 @@ def first_places(flags: Bool[Array, "... n"], count: int) -> Int[Array, "... cou
     return jnp.where(found > 0, size - found, -1)
 
 
-def scan(
+def scan_admissible(
     fn: Callable[[Real], Real],
     ends: Float[Array, "pieces 2"],
     sides: Float[Array, " pieces"],
-) -> Survey:
+) -> Admissible:
     """Look over `fn` on intervals: nodes towards their ends, extrema polished.
 
     `missed` of the result is of each interval.
@@ -221,7 +221,7 @@ def scan(
     )
     order = jnp.argsort(columns[0], axis=1)
     places, values, turned = (jnp.take_along_axis(c, order, axis=1) for c in columns)
-    return Survey(places, values, turned, low, high, flat, sides, more & ~flat)
+    return Admissible(places, values, turned, low, high, flat, sides, more & ~flat)
 
 
 def _turns(every: Callable, nodes: Array, slopes: Array) -> tuple[Array, Array]:

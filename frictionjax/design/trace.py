@@ -21,7 +21,7 @@ from ..scene import Scene, known_scene, require_times
 from ..surroundings import with_nan
 from ..whole_files import write_whole
 from ..wiggly.trajectory import solve
-from .trace_file import QUANTITIES, trace_columns
+from .trace_file import TRACE_QUANTITIES, trace_columns
 
 _LARGEST = 1e50  # N, m: squares of squares of it are numbers
 
@@ -145,7 +145,7 @@ def simulate_trace(
 
     Raises `ValueError` as `solve`, for an unknown quantity, and a trajectory that failed.
     """
-    require(quantity in QUANTITIES, "quantity", quantity, "one of force, z")
+    require(quantity in TRACE_QUANTITIES, "quantity", quantity, "one of force, z")
     require_whole("seed", seed, 0)
     require_real("noise", noise, "noise >= 0", lambda v: v >= 0)
     scene = known_scene(scene)

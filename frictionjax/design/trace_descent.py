@@ -20,7 +20,7 @@ _PATIENCE = 6  # steps without a better objective: weights change back and forth
 _DAMPING, _MOST, _LEAST = 1e-3, 1e4, 1e-9
 
 
-class Observed(NamedTuple):
+class TraceSamples(NamedTuple):
     """Samples as the descent sees them: `z` and `sd` in m, (n,); eps in m.
 
     `sliding`: fastest speed of a slide without wiggles, m/s. `penalty`: of each squared
@@ -85,7 +85,7 @@ class View(NamedTuple):
     scale: float
 
 
-def view(seen: Observed, flow: Flow, blur: float = 0.0) -> View:
+def weigh(seen: TraceSamples, flow: Flow, blur: float = 0.0) -> View:
     """Look at the samples from one iterate.
 
     A sample that the model has inside a slip says when it slips, to within the clock,
@@ -115,7 +115,7 @@ def _weights(r: np.ndarray) -> np.ndarray:
 
 
 def _objective(
-    seen: Observed, now: View, flow: Flow, read: Read, force_sd: np.ndarray, numbers, over
+    seen: TraceSamples, now: View, flow: Flow, read: Read, force_sd: np.ndarray, numbers, over
 ) -> float:
     """Of another iterate, with the weights of this one.
 
@@ -132,7 +132,7 @@ def _objective(
     return float(np.sum(costs) + np.sum(seen.penalty * numbers**2) + np.sum(_huber(over)))
 
 
-def _equations(seen: Observed, now: View, flow: Flow, read: Read, numbers, over):
+def _equations(seen: TraceSamples, now: View, flow: Flow, read: Read, numbers, over):
     """Gauss-Newton's matrix and slope: trajectory in the right well, equation elsewhere."""
     inside = np.abs(now.away) <= _WELL * seen.eps
     force_sd = read.deviation(now.blurred)
@@ -146,8 +146,8 @@ def _equations(seen: Observed, now: View, flow: Flow, read: Read, numbers, over)
     return normal, weighted @ r + seen.penalty * numbers + steep @ excess
 
 
-def descend(
-    seen: Observed,
+def gauss_newton(
+    seen: TraceSamples,
     numbers: np.ndarray,
     flow: Flow,
     programs: Programs,
@@ -165,7 +165,7 @@ def descend(
         damping, growth, best, since = _DAMPING, 2.0, np.inf, 0
         converged = False
         while not converged and len(steps) < most:
-            now = view(seen, flow, blur)
+            now = weigh(seen, flow, blur)
             force_sd = read.deviation(now.blurred)
             rough = max(blur, _HELD)
             over = programs.held(numbers, rough)
@@ -192,14 +192,14 @@ def descend(
                 converged = promised < enough or damping >= _MOST
                 damping, growth = min(damping * growth, _MOST), 2 * growth
             converged = converged or since >= _PATIENCE
-    now = view(seen, flow)
+    now = weigh(seen, flow)
     over = programs.held(numbers, _HELD)
     last = _objective(seen, now, flow, read, read.deviation(seen.sd), numbers, over[0])
     steps.append(_step(seen, now, last, damping, 0.0))
     return Descent(numbers, flow, steps, converged)
 
 
-def _step(seen: Observed, now: View, objective: float, damping: float, blur: float):
+def _step(seen: TraceSamples, now: View, objective: float, damping: float, blur: float):
     used = now.used
     chi2 = float(np.mean((now.away / now.sd)[used] ** 2)) if used.any() else np.inf
     counts = int(np.sum(used)), int(np.sum(~now.clear)), int(np.sum(now.disputed))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .trace import Trace, forces_at
-from .trace_problem import Problem, states_of
+from .trace_problem import TraceProblem, states_under
 
 _SAMPLES = 2  # in a way of whole wells, or more. With 8, kN for N was not seen any more
 _STARTS = 2000  # ways looked at
@@ -19,7 +19,7 @@ _SPIKE = 8.0  # scatters
 _FEW = 0.02  # of the samples: fewer ways that gain energy are outliers
 
 
-class Seen(NamedTuple):
+class TraceStates(NamedTuple):
     """A trace as states `z` (m) and `force` = l - Phi' (N) at its samples.
 
     `sd`: of z, m, 0 where it is not known. `scatter`: of neighbouring forces, N.
@@ -35,7 +35,7 @@ class Seen(NamedTuple):
     most: float
 
 
-def seen_as(problem: Problem, trace: Trace, factor: float = 1.0) -> Seen:
+def seen_as(problem: TraceProblem, trace: Trace, factor: float = 1.0) -> TraceStates:
     """The trace times a factor; z is NaN where the support has no such force."""
     scene, ts = problem.scene, problem.ts[: trace.ts.size]
     rest = np.full(ts.size, float(scene.z0))
@@ -43,7 +43,7 @@ def seen_as(problem: Problem, trace: Trace, factor: float = 1.0) -> Seen:
     most = abs(load[0]) + abs(start[0]) + np.ptp(load)
     z = force = factor * _without_spikes(trace.values)
     if trace.quantity == "force":
-        z = np.asarray(states_of(scene, load - force))
+        z = np.asarray(states_under(scene, load - force))
     _, held, stiffness = map(np.asarray, forces_at(scene, ts, z))
     if trace.quantity == "z":
         force = load - held
@@ -52,7 +52,7 @@ def seen_as(problem: Problem, trace: Trace, factor: float = 1.0) -> Seen:
     steep = float(np.median(stiffness))
     known = 0.0 if trace.uncertainty is None else float(np.median(trace.uncertainty))
     sd = abs(factor) * known / (steep if trace.quantity == "force" else 1.0)
-    return Seen(z, force, sd, scatter_of(force), steep, float(most))
+    return TraceStates(z, force, sd, scatter_of(force), steep, float(most))
 
 
 def _without_spikes(values: np.ndarray) -> np.ndarray:
@@ -68,7 +68,7 @@ def scatter_of(values: np.ndarray) -> float:
     return 1.4826 * float(np.median(np.abs(bends)))
 
 
-def share_gained(seen: Seen, eps: float, within: float = 0.0) -> float:
+def share_gained(seen: TraceStates, eps: float, within: float = 0.0) -> float:
     """Energy gained on ways over whole wells, as a share of all work on them.
 
     `within`: work of a way that noise explains, in scatters of the force times its length.

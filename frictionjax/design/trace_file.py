@@ -10,7 +10,7 @@ from ..text_tables import Table, read_table
 from ..text_units import factor_of
 from .trace_comments import with_comments
 
-QUANTITIES = ("force", "z")
+TRACE_QUANTITIES = ("force", "z")
 _DIMENSIONS = {"t": "time", "force": "force", "z": "length"}
 _SAME = {  # other names of columns
     "time": "t",
@@ -33,7 +33,7 @@ def trace_columns(path: Path, decimal: str | None = None) -> dict[str, np.ndarra
     listed = ", ".join(names)
     columns = f"line {table.heading_line}, columns"
     require("t" in names, columns, listed, "t among them")
-    measured = [name for name in QUANTITIES if name in names]
+    measured = [name for name in TRACE_QUANTITIES if name in names]
     require(bool(measured), columns, listed, "force or z among them")
     require(len(measured) == 1, columns, listed, "one of force and z")
     table = table._replace(headings=with_comments(table, names, _DIMENSIONS))

@@ -11,15 +11,15 @@ from ..progress import waiting
 from ..scene import Scene, known_scene
 from ..surroundings import with_nan
 from .trace import Trace
-from .trace_descent import Descent, Programs, Step, descend
+from .trace_descent import Descent, Programs, Step, gauss_newton
 from .trace_flow import Flow
 from .trace_odd import oddity_of
 from .trace_passage import unbounded
-from .trace_problem import Problem, problem_of
+from .trace_problem import TraceProblem, trace_problem
 from .trace_programs import compiled_beside
-from .trace_report import explains, report, without_fit
+from .trace_report import explains, report_trace, without_fit
 from .trace_result import TraceFit
-from .trace_start import start
+from .trace_start import start_numbers
 from .trace_status import TraceStatus
 
 # Starts: bounded by passages or not, and the size of the prior. Of 10 surfaces at 3e-4 N
@@ -87,7 +87,7 @@ def fit_trace(
         require_real(name, value, f"{name} > 0", lambda v: v > 0)
     allowed = "1e-8 <= accuracy <= 0.1"
     require_real("accuracy", accuracy, allowed, lambda v: 1e-8 <= v <= 0.1)
-    problem = problem_of(trace, scene, float(eps), float(gamma), harmonics, accuracy)
+    problem = trace_problem(trace, scene, float(eps), float(gamma), harmonics, accuracy)
     with waiting("fit_trace", progress is True) as tell:
         odd = oddity_of(trace, problem)
         if odd is not None:
@@ -99,7 +99,7 @@ def fit_trace(
         if found is None:
             return without_fit(trace, problem, harmonics, TraceStatus.NOT_FINITE)
         tell("what is determined")
-        return report(trace, problem, found, float(within), left)
+        return report_trace(trace, problem, found, float(within), left)
 
 
 def _listener(progress: Any, tell: Callable[[str], None]) -> Callable[[Step], None]:
@@ -117,7 +117,7 @@ def _listener(progress: Any, tell: Callable[[str], None]) -> Callable[[Step], No
 
 def _descent(
     trace: Trace,
-    problem: Problem,
+    problem: TraceProblem,
     starts: int,
     most: int,
     progress: Callable,
@@ -135,7 +135,7 @@ def _descent(
         if work.steps > _WORK:
             return best, f"tried {index} of {starts} starts, after {work.steps:.1e} steps"
         programs = Programs(work.run, problem.read, problem.admissible, held)
-        found = descend(problem.observed(), numbers, flow, programs, most, progress)
+        found = gauss_newton(problem.observed(), numbers, flow, programs, most, progress)
         found = found._replace(drawn=index >= len(known))
         if explains(trace, problem, found):
             return found, ""
@@ -147,7 +147,7 @@ def _descent(
 class _Work:
     """Trajectories of a problem, and the steps of all of them."""
 
-    def __init__(self, problem: Problem):
+    def __init__(self, problem: TraceProblem):
         self._problem, self.steps = problem, 0
 
     def run(self, numbers: np.ndarray) -> Flow:
@@ -157,7 +157,7 @@ class _Work:
         return found
 
 
-def _starts(problem: Problem, ready: Callable[[], object]) -> list[tuple]:
+def _starts(problem: TraceProblem, ready: Callable[[], object]) -> list[tuple]:
     """Bounds, coefficients and trajectories of the starts, nearest to the samples first.
 
     The last, without bounds from passages, is for surfaces on which these bend the way.
@@ -168,7 +168,7 @@ def _starts(problem: Problem, ready: Callable[[], object]) -> list[tuple]:
         held = problem.held if bounded else unbounded
         parts = problem.rough, problem.scene, problem.eps
         penalty = factor * problem.penalty
-        numbers = start(*parts, zero, penalty, problem.admissible, held)
+        numbers = start_numbers(*parts, zero, penalty, problem.admissible, held)
         begun.append((bounded, held, numbers))
     ready()
     for bounded, held, numbers in begun:
@@ -179,7 +179,7 @@ def _starts(problem: Problem, ready: Callable[[], object]) -> list[tuple]:
     return [k[2:] for k in known]
 
 
-def _drawn(problem: Problem, known: list[tuple]) -> Iterator[tuple]:
+def _drawn(problem: TraceProblem, known: list[tuple]) -> Iterator[tuple]:
     """Starts at random about the best of those known."""
     rng = np.random.default_rng(0)
     for held, best, _ in known[:1]:

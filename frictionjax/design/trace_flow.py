@@ -15,8 +15,8 @@ from ..scene import Scene
 from ..wiggly.field import TipField
 from ..wiggly.integration import field_of
 from ..wiggly.rodas5p import RODAS5P
-from ..wiggly.tolerance import Plan, plan_steps
-from .waves import Bumped, Waves
+from ..wiggly.tolerance import StepPlan, plan_steps
+from .waves import Bumped, WaveProfile
 
 _STEPS = 2**19  # at most: some 20 s
 # Of a step, in periods. Iterates have ripples of small harmonics, on whose branches a
@@ -79,7 +79,7 @@ class _Front(NamedTuple):
     steps: Int[Array, ""]
 
 
-def _march(field: TipField, plan: Plan, tip: Real, stops: Array) -> tuple[Array, Array]:
+def _march(field: TipField, plan: StepPlan, tip: Real, stops: Array) -> tuple[Array, Array]:
     """Tip at every stop, and steps tried. Step lengths are no function of the profile.
 
     No step moves the tip further than `plan.reach` (see `WellGuard`).
@@ -139,9 +139,9 @@ def with_profile(scene: Scene, profile: AbstractProfile) -> Any:
     return eqx.tree_at(lambda s: s.potential, scene, potential)
 
 
-def waves_of(numbers: Array) -> Waves:
+def waves_of_numbers(numbers: Array) -> WaveProfile:
     """The series of cos and sin, one after the other."""
-    return Waves(*jnp.split(numbers, 2))
+    return WaveProfile(*jnp.split(numbers, 2))
 
 
 @Program
@@ -150,7 +150,7 @@ def flow(numbers, scene, eps, gamma, ts, plan) -> Flow:
 
     def along(way):
         def states(numbers):
-            return _states(waves_of(numbers), scene, eps, gamma, ts, plan)
+            return _states(waves_of_numbers(numbers), scene, eps, gamma, ts, plan)
 
         return jax.jvp(states, (numbers,), (way,), has_aux=True)
 
@@ -166,7 +166,7 @@ def bumped_flow(centres, width, numbers, scene, eps, gamma, ts, plan) -> Flow:
 
     def along(centre):
         def states(size):
-            profile = Bumped(waves_of(numbers), size, centre, width)
+            profile = Bumped(waves_of_numbers(numbers), size, centre, width)
             return _states(profile, scene, eps, gamma, ts, plan)
 
         return jax.jvp(states, (jnp.zeros(()),), (jnp.ones(()),), has_aux=True)
@@ -176,7 +176,7 @@ def bumped_flow(centres, width, numbers, scene, eps, gamma, ts, plan) -> Flow:
 
 
 @Program
-def plan_of(numbers, scene, eps, gamma, accuracy) -> Plan:
+def plan_of(numbers, scene, eps, gamma, accuracy) -> StepPlan:
     """Step control on the surface with these coefficients."""
-    plan = plan_steps(with_profile(scene, waves_of(numbers)), eps, gamma, accuracy)
+    plan = plan_steps(with_profile(scene, waves_of_numbers(numbers)), eps, gamma, accuracy)
     return plan._replace(reach=jnp.maximum(plan.reach, _LEAST_REACH))

@@ -8,7 +8,7 @@ import numpy as np
 from ..profiles import Fourier
 from .fit_json import document_of, plain
 from .trace import Trace
-from .trace_seen import Identifiability
+from .trace_seen import TraceIdentifiability
 from .trace_status import TraceStatus
 
 _KIND = "frictionjax.TraceFit"
@@ -18,7 +18,7 @@ _FLAGS = ("used", "slipping", "determined", "visited")  # bool
 _PARTS = ("profile", "trace", "status", "used", "slipping", "history", "identifiability")
 
 
-def dump(fit: Any) -> str:
+def trace_to_json(fit: Any) -> str:
     """The JSON text of a fit; numbers keep all digits, those not finite become null."""
     trace = fit.trace
     document: dict[str, Any] = {"kind": _KIND, "status": fit.status.name, "odd": fit.odd}
@@ -33,7 +33,7 @@ def dump(fit: Any) -> str:
     return json.dumps(plain(document), indent=1)
 
 
-def fields(source: Any) -> dict[str, Any]:
+def trace_from_json(source: Any) -> dict[str, Any]:
     """The fields of a fit, of a JSON text or file; see `TraceFit.from_json`."""
     document = document_of(source, _KIND, {*_PLAIN, *_ROWS, *_PARTS})
     entries = document["identifiability"].items()
@@ -46,7 +46,7 @@ def fields(source: Any) -> dict[str, Any]:
         "trace": Trace(**document["trace"]),
         "status": TraceStatus[document["status"]],
         "history": {k: _array(k, v, counts=True) for k, v in document["history"].items()},
-        "identifiability": Identifiability(**seen),
+        "identifiability": TraceIdentifiability(**seen),
         "odd": document.get("odd", ""),  # not in documents of earlier versions
     }
 

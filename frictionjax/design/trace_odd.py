@@ -6,9 +6,9 @@ import numpy as np
 
 from ..arguments import as_text
 from .trace import Trace
-from .trace_energy import Seen, seen_as, share_gained
+from .trace_energy import TraceStates, seen_as, share_gained
 from .trace_outliers import outliers_of
-from .trace_problem import Problem
+from .trace_problem import TraceProblem
 from .trace_status import TraceStatus
 
 # Of the work on ways over wells. 0.0000 in 132 traces without noise (nine scenes, three
@@ -37,7 +37,7 @@ class Oddity(NamedTuple):
     text: str
 
 
-def oddity_of(trace: Trace, problem: Problem) -> Oddity | None:
+def oddity_of(trace: Trace, problem: TraceProblem) -> Oddity | None:
     """What makes a fit pointless; None where nothing is odd.
 
     Units first: a trace in mN looks as if it were noise.
@@ -74,7 +74,7 @@ def _outliers(trace: Trace) -> Oddity | None:
     return Oddity(TraceStatus.OUTLIERS, told)
 
 
-def _still(seen: Seen, eps: float) -> Oddity | None:
+def _still(seen: TraceStates, eps: float) -> Oddity | None:
     """A tip that stays where it is, whatever the force.
 
     In a well the force rises with z. Of the load in place of the force z is noise.
@@ -90,7 +90,7 @@ def _still(seen: Seen, eps: float) -> Oddity | None:
     return Oddity(TraceStatus.NO_SLIDE, told)
 
 
-def _elsewhere(seen: Seen, problem: Problem) -> Oddity | None:
+def _elsewhere(seen: TraceStates, problem: TraceProblem) -> Oddity | None:
     """A first sample too far from z0 for what happens until then, as with an offset."""
     eps, after, z0 = float(problem.eps), float(problem.ts[0]), float(problem.scene.z0)
     drag = eps ** float(problem.gamma)
@@ -109,7 +109,7 @@ def _elsewhere(seen: Seen, problem: Problem) -> Oddity | None:
     return Oddity(TraceStatus.IMPOSSIBLE, told)
 
 
-def _mended(problem: Problem, trace: Trace, factors: tuple) -> Oddity | None:
+def _mended(problem: TraceProblem, trace: Trace, factors: tuple) -> Oddity | None:
     """Whether the trace obeys in another unit, with its sign or with the other."""
     eps = float(problem.eps)
     for factor in (sign * factor for sign in (1.0, -1.0) for factor in factors):
@@ -135,7 +135,7 @@ def _told(quantity: str, factor: float) -> Oddity:
     return Oddity(TraceStatus.WRONG_SIGN, text)
 
 
-def _noise(seen: Seen, eps: float) -> Oddity | None:
+def _noise(seen: TraceStates, eps: float) -> Oddity | None:
     """Noise that hides the wells, or the friction itself."""
     scatter = seen.scatter / seen.stiffness
     size = float(np.sqrt(np.mean(seen.force**2)))

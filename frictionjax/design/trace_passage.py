@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..programs import room
+from ..programs import padded_size
 from ..scene import Scene
 from .trace import forces_at
 from .trace_start import wiggle
@@ -57,7 +57,7 @@ def passages_of(scene: Any, ts: np.ndarray, z: np.ndarray, sd: np.ndarray, eps: 
     every = [np.concatenate(parts) for parts in (states, bounds, sides)]
     keep = np.linspace(0, every[0].size - 1, min(every[0].size, _MOST)).astype(int)
     places, loads, side = (part[keep] for part in every)
-    more = room(keep.size, _ROOM, 2) - keep.size
+    more = padded_size(keep.size, _ROOM, 2) - keep.size
     padded = np.pad(places, (0, more), mode="edge")
     force = np.asarray(forces_at(scene, np.zeros_like(padded), padded)[1])[: keep.size]
     return Passages(padded, loads - force, side, keep.size)

@@ -8,14 +8,14 @@ import numpy as np
 
 from ..arguments import as_real, require
 from ..potentials import BristlePotential
-from ..programs import Program, room
+from ..programs import Program, padded_size
 from ..scene import Scene, require_times
 from .trace import Trace, forces_at
-from .trace_descent import Observed
-from .trace_flow import Flow, bumped_flow, flow, plan_of, waves_of, with_profile
+from .trace_descent import TraceSamples
+from .trace_flow import Flow, bumped_flow, flow, plan_of, waves_of_numbers, with_profile
 from .trace_passage import Passages, held, passages_of
 from .trace_seen import bumps_of
-from .trace_start import Read, Reading, read, residuals
+from .trace_start import Read, Reading, read, read_residuals
 
 # Of the force range: the start explains forces no better, or folds appear where the trace
 # does not look (at 0 the first trial without noise began with 386 of 401 samples in other
@@ -26,7 +26,7 @@ _ROOM = 64  # times, by fours: few different programs
 _STRETCH = 0.02  # smallest G of an iterate
 
 
-class Problem(NamedTuple):
+class TraceProblem(NamedTuple):
     """A checked fit: trace as states, and programs of the coefficients."""
 
     scene: Scene
@@ -53,7 +53,7 @@ class Problem(NamedTuple):
 
     def read(self, numbers: np.ndarray) -> Read:
         """The equation at the samples."""
-        return residuals(self.reading, self.scene, self.eps, numbers)
+        return read_residuals(self.reading, self.scene, self.eps, numbers)
 
     def run_bumps(self, numbers: np.ndarray) -> Flow:
         """The same with derivatives by local bumps."""
@@ -73,7 +73,7 @@ class Problem(NamedTuple):
     def unheld(self) -> np.ndarray:
         """States under the load alone, without friction."""
         load = np.asarray(forces_at(self.scene, self.ts, np.zeros_like(self.ts))[0])
-        return np.asarray(states_of(self.scene, load))
+        return np.asarray(states_under(self.scene, load))
 
     def quantity_of(self, quantity: str, z: np.ndarray) -> np.ndarray:
         """What the trace measures, at states z."""
@@ -86,10 +86,10 @@ class Problem(NamedTuple):
         """Whether the bristle follows the surface, with a margin."""
         return bool(_follows(numbers, self.scene, self.eps))
 
-    def observed(self) -> Observed:
+    def observed(self) -> TraceSamples:
         """The samples as the descent sees them."""
         eps = float(self.eps)
-        return Observed(self.reading.z, self.reading.sd, eps, self.sliding, self.penalty)
+        return TraceSamples(self.reading.z, self.reading.sd, eps, self.sliding, self.penalty)
 
 
 def _cut(found: Flow, count: int) -> Flow:
@@ -100,7 +100,7 @@ def _cut(found: Flow, count: int) -> Flow:
 @Program
 def _follows(numbers, scene, eps):
     """`G` at this eps and at eps = 0, and the slopes that the contact allows."""
-    waves = waves_of(numbers)
+    waves = waves_of_numbers(numbers)
     potential = with_profile(scene, waves).potential
     grid = jnp.arange(waves.points) / waves.points
     stretch = jax.vmap(lambda y: potential.tip_force(y, eps)[1])(grid)
@@ -113,12 +113,12 @@ def _follows(numbers, scene, eps):
 
 @Program
 def _tips(numbers, scene, eps, z):
-    potential = with_profile(scene, waves_of(numbers)).potential
+    potential = with_profile(scene, waves_of_numbers(numbers)).potential
     return jax.vmap(lambda s: potential.tip(s, eps)[1])(z)
 
 
 @Program
-def states_of(scene, forces):
+def states_under(scene, forces):
     """States at which the support has these forces."""
     return jax.vmap(scene.support.state_of)(forces)
 
@@ -132,9 +132,9 @@ def _fastest(scene):
     return jnp.max(jnp.abs(speeds))
 
 
-def problem_of(
+def trace_problem(
     trace: Trace, scene: Any, eps: float, gamma: float, harmonics: int, accuracy: Any
-) -> Problem:
+) -> TraceProblem:
     """Check the arguments of `fit_trace` that belong together."""
     given = isinstance(scene, Scene) and isinstance(scene.potential, BristlePotential)
     require(given, "scene", type(scene).__name__, "a Scene with a profile and a bristle")
@@ -144,7 +144,7 @@ def problem_of(
     if trace.quantity == "force":
         load = np.asarray(forces_at(scene, ts, np.zeros_like(ts))[0])
         wanted = load - trace.values
-        z = np.asarray(states_of(scene, wanted))
+        z = np.asarray(states_under(scene, wanted))
     load, force, stiffness = (np.asarray(v) for v in forces_at(scene, ts, z))
     if wanted is not None:
         known = np.allclose(force, wanted, rtol=1e-9, atol=1e-9 * np.max(np.abs(wanted)))
@@ -163,10 +163,10 @@ def problem_of(
     drag_sd = np.hypot(reading.drag_sd, _ROUGH * half)
     turns = np.tile((2 * np.pi * np.arange(1, harmonics + 1)) ** 4, 2)
     bending = 0.5 * (2 * np.pi * half / alpha) ** 2
-    padded = np.pad(ts, (0, room(ts.size, _ROOM) - ts.size), mode="edge")
+    padded = np.pad(ts, (0, padded_size(ts.size, _ROOM) - ts.size), mode="edge")
     numbers = np.asarray(eps), np.asarray(gamma), np.asarray(as_real(accuracy))
     rough = reading._replace(drag_sd=drag_sd)
     penalty = 0.5 * turns / (_BENT * bending)
     passages = passages_of(scene, ts, z, sd, eps)
     more: Any = padded, reading, rough, sliding, penalty, passages, half
-    return Problem(scene, *numbers, *more)
+    return TraceProblem(scene, *numbers, *more)

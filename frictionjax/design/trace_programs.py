@@ -6,11 +6,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from .trace_problem import Problem
+from .trace_problem import TraceProblem
 
 
 @contextlib.contextmanager
-def compiled_beside(problem: Problem) -> Iterator[Callable[[], object]]:
+def compiled_beside(problem: TraceProblem) -> Iterator[Callable[[], object]]:
     """Compile the trajectory, then its derivatives by bumps, in a thread.
 
     Yields a function that waits for the first. At the end the second is waited for, where

@@ -6,11 +6,11 @@ import numpy as np
 
 from ..profiles import Fourier
 from .trace import Trace
-from .trace_descent import Descent, Step, View, view
+from .trace_descent import Descent, Step, View, weigh
 from .trace_flow import Flow
-from .trace_problem import Problem
+from .trace_problem import TraceProblem
 from .trace_result import TraceFit, TraceHistory
-from .trace_seen import Identifiability, identify
+from .trace_seen import TraceIdentifiability, identify
 from .trace_status import TraceStatus
 
 # Both: 5 standard deviations of chi2, and half more than expected, which small errors of
@@ -25,11 +25,11 @@ _LITTLE = 0.05  # of the period
 _UNTRUSTED = (TraceStatus.MISFIT, TraceStatus.OTHER_SLIPS, TraceStatus.MAX_STEPS)
 
 
-def report(
-    trace: Trace, problem: Problem, found: Descent, within: float, odd: str = ""
+def report_trace(
+    trace: Trace, problem: TraceProblem, found: Descent, within: float, odd: str = ""
 ) -> TraceFit:
     """Judge where the descent ended."""
-    now = view(problem.observed(), found.flow)
+    now = weigh(problem.observed(), found.flow)
     sd = problem.observed().sd
     counted = _counted(now, found.numbers.size)
     excess = float(np.sum((now.away / sd)[counted] ** 2))
@@ -74,7 +74,7 @@ def _freedom(counted: np.ndarray, unknowns: int) -> int:
     return max(1, int(np.sum(counted)) - unknowns)
 
 
-def explains(trace: Trace, problem: Problem, found: Descent) -> bool:
+def explains(trace: Trace, problem: TraceProblem, found: Descent) -> bool:
     """Whether a descent ended where the surface explains the trace, without doubt.
 
     From a start at random with no excess at all: where those are needed, wrong surfaces
@@ -82,7 +82,7 @@ def explains(trace: Trace, problem: Problem, found: Descent) -> bool:
     with ten samples in three slips).
     """
     seen = problem.observed()
-    now = view(seen, found.flow)
+    now = weigh(seen, found.flow)
     freedom = max(1, int(np.sum(now.used)) - found.numbers.size)
     r = (now.away / seen.sd)[now.used]
     excess = float(r @ r) / freedom
@@ -106,10 +106,10 @@ def _high(chi2: float, freedom: int) -> bool:
 
 
 def _status(
-    problem: Problem,
+    problem: TraceProblem,
     found: Descent,
     now: View,
-    judged: Identifiability,
+    judged: TraceIdentifiability,
     high: bool,
     sd: np.ndarray,
 ) -> TraceStatus:
@@ -159,7 +159,7 @@ def _history(steps: list[Step]) -> TraceHistory:
 
 
 def without_fit(
-    trace: Trace, problem: Problem, harmonics: int, status: TraceStatus, odd: str = ""
+    trace: Trace, problem: TraceProblem, harmonics: int, status: TraceStatus, odd: str = ""
 ) -> TraceFit:
     """The result where no surface was looked for, or no start has a trajectory.
 

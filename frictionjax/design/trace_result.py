@@ -8,8 +8,8 @@ import numpy as np
 from ..profiles import Fourier
 from .fit_json import written
 from .trace import Trace
-from .trace_json import dump, fields
-from .trace_seen import Identifiability
+from .trace_json import trace_to_json, trace_from_json
+from .trace_seen import TraceIdentifiability
 from .trace_status import TraceStatus
 
 
@@ -62,7 +62,7 @@ class TraceFit:
     degrees_of_freedom: int
     status: TraceStatus
     history: TraceHistory
-    identifiability: Identifiability
+    identifiability: TraceIdentifiability
     odd: str = ""
 
     @property
@@ -106,7 +106,7 @@ class TraceFit:
 
     def to_json(self, path: Any = None) -> str:
         """Everything as JSON; written to `path` where given."""
-        return written(dump(self), path)
+        return written(trace_to_json(self), path)
 
     @classmethod
     def from_json(cls, source: Any) -> "TraceFit":
@@ -114,7 +114,7 @@ class TraceFit:
 
         Raises `ValueError` for what is no such JSON.
         """
-        known = fields(source)
+        known = trace_from_json(source)
         known["history"] = TraceHistory(**known["history"])
         return cls(**known)
 

@@ -13,7 +13,7 @@ _DIP = 0.25
 _REACH = 0.5  # widths: bumps this near to a phase are steep there
 
 
-class Identifiability(NamedTuple):
+class TraceIdentifiability(NamedTuple):
     """What a trace determines of the slope `w'`.
 
     `phases` y in periods, (256,). `slope`: w' there. `standard_error`: of `slope`, without
@@ -84,7 +84,7 @@ def identify(
     by_bumps: np.ndarray,
     tips: np.ndarray,
     within: float,
-) -> Identifiability:
+) -> TraceIdentifiability:
     """Judge by derivatives of used samples, in standard deviations.
 
     `by`: (unknowns, samples); `by_bumps`: (bumps, samples); `tips`: phases of the samples.
@@ -108,7 +108,7 @@ def identify(
     size = float(np.linalg.norm(numbers))
     near = np.abs(_around(phases[:, None] - tips)) <= 0.5 * width
     visited = np.any(near, axis=1)
-    return Identifiability(
+    return TraceIdentifiability(
         phases=phases,
         slope=slope,
         standard_error=error,

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..programs import Program
-from .trace_flow import waves_of, with_profile
+from .trace_flow import waves_of_numbers, with_profile
 
 _ROUNDS = 12
 _SETTLED = 1e-3
@@ -49,7 +49,7 @@ def wiggle(numbers, scene, eps, states):
     """`V_eps'` in N, `V_eps''` in N/m at states (n,), and the first by the numbers."""
 
     def one(numbers, z):
-        potential = with_profile(scene, waves_of(numbers)).potential
+        potential = with_profile(scene, waves_of_numbers(numbers)).potential
         return potential.tip_force(potential.tip(z, eps)[1], eps)[0]
 
     def at(z):
@@ -76,14 +76,14 @@ class Read(NamedTuple):
         return np.hypot(sd * self.steep, self.drag_sd)
 
 
-def residuals(reading: Reading, scene: Any, eps: Any, numbers: np.ndarray) -> Read:
+def read_residuals(reading: Reading, scene: Any, eps: Any, numbers: np.ndarray) -> Read:
     """The wiggle force of the surface at the measured states, less what was read."""
     force, stiffness, by = map(np.asarray, wiggle(numbers, scene, eps, reading.z))
     steep = np.abs(stiffness) + reading.support
     return Read(force - reading.force, by, steep, reading.drag_sd)
 
 
-def start(reading: Reading, scene: Any, eps: Any, numbers, penalty, admissible, held):
+def start_numbers(reading: Reading, scene: Any, eps: Any, numbers, penalty, admissible, held):
     """Coefficients that fit the wiggle force at the samples, by Gauss-Newton.
 
     `penalty`: of each squared coefficient. `admissible(numbers)`: whether the bristle can
@@ -91,7 +91,7 @@ def start(reading: Reading, scene: Any, eps: Any, numbers, penalty, admissible, 
     off the curve (in slips) count little: weights `1/(1 + (r/3s)^2)`, s the median.
     """
     for _ in range(_ROUNDS):
-        found = residuals(reading, scene, eps, numbers)
+        found = read_residuals(reading, scene, eps, numbers)
         over, over_by = held(numbers)
         sd = found.deviation(reading.sd)
         r, rows = found.r / sd, found.by / sd[:, None]

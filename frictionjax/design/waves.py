@@ -13,7 +13,7 @@ from ..profiles.profile import AbstractProfile
 from ..trigonometry import sin_cos
 
 
-class Waves(AbstractProfile):
+class WaveProfile(AbstractProfile):
     """`profiles.Fourier`, its harmonics as one array instead of one after the other.
 
     With the tangents of 16 coefficients and Rosenbrock stages around it, a program with
@@ -77,7 +77,7 @@ class Bumped(AbstractProfile):
     a `vmap` over centres integrates once (bumps with sizes as an array: 12 s for 1.5 s).
     """
 
-    waves: Waves
+    waves: WaveProfile
     size: Real
     centre: Real
     width: Real

@@ -41,7 +41,7 @@ class Kind(IntEnum):
     OPEN = 5
 
 
-class Cells(NamedTuple):
+class LoadCells(NamedTuple):
     """Cells of [0, T] in order, shape (n,): ends in s, and the `Kind` of each.
 
     `size`: largest |l| met, N.
@@ -53,7 +53,7 @@ class Cells(NamedTuple):
     size: float
 
 
-def proved_cells(bounds: Enclosure, duration: float) -> Cells:
+def proved_cells(bounds: Enclosure, duration: float) -> LoadCells:
     """Cells on which bounds of l, l' and l'' prove what the load does.
 
     Cut until they do: nothing hides between samples, as none are taken. OPEN where more
@@ -80,7 +80,7 @@ def proved_cells(bounds: Enclosure, duration: float) -> Cells:
         lo, hi = halves(lo, hi, cuts)
     lo, hi, kind = (np.concatenate(column) for column in zip(*done, strict=True))
     order = np.argsort(lo, kind="stable")
-    return Cells(lo[order], hi[order], kind[order], size)
+    return LoadCells(lo[order], hi[order], kind[order], size)
 
 
 def halves(lo: np.ndarray, hi: np.ndarray, cuts: int = 2) -> tuple[np.ndarray, np.ndarray]:
@@ -158,11 +158,11 @@ def _require_numbers(times: np.ndarray, values: Interval) -> None:
         require(False, "load.fn", at, "finite values on [0, duration]")
 
 
-Point = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+LoadPoint = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 """l in N and l' in N/s at times (n,)."""
 
 
-def by_bounds(bounds: Enclosure) -> Point:
+def by_bounds(bounds: Enclosure) -> LoadPoint:
     """Values and slopes as the bounds have them: no compiled program is needed.
 
     A slope is 0 where bounds do not tell its sign: its rounding would be a turn.

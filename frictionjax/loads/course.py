@@ -10,9 +10,9 @@ from ..intervals import Enclosure, NoRuleError, TooMuchWorkError, enclosure_of
 from .cells import (
     MOST_NUMBERS,
     STEEPEST_SHARE,
-    Cells,
+    LoadCells,
     Kind,
-    Point,
+    LoadPoint,
     by_bounds,
     halves,
     needle,
@@ -42,7 +42,7 @@ class Course(NamedTuple):
     unproved: str
     hidden: float
     size: float
-    at: Point
+    at: LoadPoint
 
     def values(self, times: np.ndarray) -> np.ndarray:
         """l in N at times (n,)."""
@@ -89,7 +89,7 @@ def _sampled_course(fn: Callable, duration: float, why: str) -> Course:
     return Course(turns, kinks, steepest, why, hidden, cells.size, samples)
 
 
-def _events(cells: Cells, at: Point, duration: float) -> tuple[np.ndarray, np.ndarray]:
+def _events(cells: LoadCells, at: LoadPoint, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """Turning points, and kinks at which the load does not turn."""
     kinks = kinks_of(cells, at, duration)
     cells = _unbent(cells, at)
@@ -107,7 +107,7 @@ def _gaps(times: np.ndarray, others: np.ndarray) -> np.ndarray:
     return np.minimum(edges[right] - times, times - edges[right - 1])
 
 
-def _unbent(cells: Cells, at: Point) -> Cells:
+def _unbent(cells: LoadCells, at: LoadPoint) -> LoadCells:
     """Cells on which the slope grows or falls, cut where it is zero."""
     bent = np.flatnonzero(cells.kind == Kind.BENT)
     if bent.size == 0:
@@ -126,10 +126,10 @@ def _unbent(cells: Cells, at: Point) -> Cells:
     highs = np.concatenate([highs, hi[turning]])
     kind = np.concatenate([kind, np.sign(last[turning]).astype(int)])
     order = np.argsort(lows, kind="stable")
-    return Cells(lows[order], highs[order], kind[order], cells.size)
+    return LoadCells(lows[order], highs[order], kind[order], cells.size)
 
 
-def _roots(at: Point, lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
+def _roots(at: LoadPoint, lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
     """Where l' is zero in each [lo, hi], by Chandrupatla's method.
 
     Halving takes 50 looks where this takes 8, which is most of the time of a load that
@@ -165,7 +165,7 @@ def _next_share(x1, x2, x3, f1, f2, f3) -> np.ndarray:
     return np.where(np.isfinite(share), share, 0.5)
 
 
-def _turns(cells: Cells, kinks: np.ndarray, at: Point) -> np.ndarray:
+def _turns(cells: LoadCells, kinks: np.ndarray, at: LoadPoint) -> np.ndarray:
     """Times between a rise and a fall: in the rest between, where there is one."""
     moving = np.flatnonzero(np.abs(cells.kind) == 1)
     sign = cells.kind[moving]
@@ -185,7 +185,7 @@ def _turns(cells: Cells, kinks: np.ndarray, at: Point) -> np.ndarray:
     return np.where((first >= ends) & (first <= begins), first, found)
 
 
-def _steepest(bounds: Enclosure, at: Point, duration: float) -> float:
+def _steepest(bounds: Enclosure, at: LoadPoint, duration: float) -> float:
     """A time at which |l'| is within 2% of its largest, by bounds of it."""
     edges = np.linspace(0.0, duration, 65)
     lo, hi, place, best = edges[:-1], edges[1:], 0.5 * duration, 0.0

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arguments import Real, require
 from ..intervals import Enclosure
-from .cells import KINK, Cells, Kind, Point, halves, needle
+from .cells import KINK, LoadCells, Kind, LoadPoint, halves, needle
 
 _JUMP = 1e-6  # of max |l|: what a load may change by within a few spacings of floats
 # Changes that the slopes on either side explain: one of them holds at least half way.
@@ -22,7 +22,7 @@ _MOST_LOOKS = 2**15  # stretches
 _SLOW = "a continuous function, slow enough to tell from one that jumps"
 
 
-def kinks_of(cells: Cells, at: Point, duration: float) -> np.ndarray:
+def kinks_of(cells: LoadCells, at: LoadPoint, duration: float) -> np.ndarray:
     """Where l' jumps: times on the piece to the right. Raises where l itself does."""
     sharp = np.flatnonzero(cells.kind == Kind.NEEDLE)
     if sharp.size == 0:
@@ -46,7 +46,7 @@ def kinks_of(cells: Cells, at: Point, duration: float) -> np.ndarray:
 
 
 def _require_bounded(
-    lo: np.ndarray, hi: np.ndarray, at: Point, size: float, duration: float
+    lo: np.ndarray, hi: np.ndarray, at: LoadPoint, size: float, duration: float
 ) -> None:
     """Check that values do not go on growing towards places, however close."""
     away = _NEARER[:, None] * (_ASIDE * needle(duration))
@@ -62,7 +62,7 @@ def _require_bounded(
 
 
 def require_numbers_inside(
-    fn: Callable[[Real], Real], bounds: Enclosure, cells: Cells
+    fn: Callable[[Real], Real], bounds: Enclosure, cells: LoadCells
 ) -> None:
     """Check places of which bounds do not exclude that they are no number, float by float.
 

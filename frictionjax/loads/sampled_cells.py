@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arguments import Real, require
 from ..intervals import work_of
-from .cells import Cells, Kind, halves, needle
+from .cells import LoadCells, Kind, halves, needle
 
 # Cells of which each is looked at from its ends and at two places inside. A pulse that
 # lasts longer than one is seen; of shorter ones, one in the share of its cell.
@@ -66,7 +66,7 @@ class Samples:
         return value, slope
 
 
-def sampled_cells(at: Samples, duration: float) -> Cells:
+def sampled_cells(at: Samples, duration: float) -> LoadCells:
     """Cells of [0, duration], each foretold by the values and slopes at its ends.
 
     Cut where they do not foretell what is inside, down to the spacing of floats. Raises
@@ -95,7 +95,7 @@ def sampled_cells(at: Samples, duration: float) -> Cells:
         lo, hi = halves(lo[again], hi[again])
     lo, hi, kind = (np.concatenate(column) for column in zip(*done, strict=True))
     order = np.argsort(lo, kind="stable")
-    return Cells(lo[order], hi[order], kind[order], size)
+    return LoadCells(lo[order], hi[order], kind[order], size)
 
 
 def _left_open(values, slopes, lo: np.ndarray, hi: np.ndarray, unseen: float) -> np.ndarray:

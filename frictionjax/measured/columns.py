@@ -8,10 +8,10 @@ from ..arguments import require
 from .axes import axis_of
 from .entries import Size, Stated
 from .headings import Headings, read_headings
-from .samples import Samples
-from .scales import Asked, Scale, completed, require_metres, scale_of
+from .samples import HeightSamples
+from .scales import GivenUnits, Scale, completed, require_metres, scale_of
 from .sentinels import without_sentinels
-from .table import Table, read_table
+from .table import NumberTable, read_numbers
 
 _COUNTS = "0, 1, 2, ..."
 
@@ -19,14 +19,14 @@ _COUNTS = "0, 1, 2, ..."
 class _Raw(NamedTuple):
     """Samples in the file's units, and the m per unit of their positions, where known."""
 
-    samples: Samples
+    samples: HeightSamples
     length: Scale | None
     place: str
 
 
-def read_text(text: str, asked: Asked) -> Samples:
+def read_text(text: str, asked: GivenUnits) -> HeightSamples:
     """Heights of a text file, NaN where one is missing; see `read_heights`."""
-    table = read_table(text, asked.decimal)
+    table = read_numbers(text, asked.decimal)
     columns, first = table.block.shape[1], int(table.lines[0])
     headings = read_headings(table.said, columns, table.dialect, first)
     mapped = headings.pixel is not None or bool(headings.sizes)
@@ -44,7 +44,7 @@ def _are_positions(x: np.ndarray) -> bool:
     return x.size >= 8 and bool(np.all(np.diff(x) > 0))
 
 
-def _in_metres(raw: _Raw, headings: Headings, asked: Asked) -> Samples:
+def _in_metres(raw: _Raw, headings: Headings, asked: GivenUnits) -> HeightSamples:
     samples = without_sentinels(raw.samples, asked.outliers)
     # A factor is for whatever unit the heights have, as the user's is.
     factor = headings.factor
@@ -75,7 +75,7 @@ def _require_read(
         require(False, unread.place, unread.text[:60], needs)
 
 
-def _pairs(table: Table, headings: Headings, asked: Asked) -> _Raw:
+def _pairs(table: NumberTable, headings: Headings, asked: GivenUnits) -> _Raw:
     """A trace: positions and heights."""
     x, line = table.block[:, 0], int(table.lines[0])
     samples = _trace(table, x, table.block[:, 1], column=2)
@@ -95,7 +95,7 @@ def _pairs(table: Table, headings: Headings, asked: Asked) -> _Raw:
     return _Raw(samples, scale, f"line {line}, columns 1 and 2")
 
 
-def _counted(samples: Samples, headings: Headings, asked: Asked, line: int) -> _Raw:
+def _counted(samples: HeightSamples, headings: Headings, asked: GivenUnits, line: int) -> _Raw:
     """A trace whose first column counts samples: the pixel says how far they are."""
     x, place = samples.x, f"line {line}, column 1"
     pixel = _pixel(headings, asked, x.size)
@@ -125,9 +125,9 @@ def _counts(x: np.ndarray) -> bool:
     return first in (0, 1) and x.size > 3 and np.array_equal(x, first + np.arange(x.size))
 
 
-def _trace(table: Table, x: np.ndarray, heights: np.ndarray, column: int) -> Samples:
+def _trace(table: NumberTable, x: np.ndarray, heights: np.ndarray, column: int) -> HeightSamples:
     lines = table.lines[None, :]
-    return Samples(x, heights[None, :], [], lines, np.full_like(lines, column))
+    return HeightSamples(x, heights[None, :], [], lines, np.full_like(lines, column))
 
 
 def _require_positions(x: np.ndarray, lines: np.ndarray, column: int) -> None:
@@ -151,7 +151,7 @@ def _is_grid(block: np.ndarray) -> bool:
     return across.size > 3 and size == len(block) == len(np.unique(block[:, :2], axis=0))
 
 
-def _grid(table: Table, headings: Headings, asked: Asked) -> _Raw:
+def _grid(table: NumberTable, headings: Headings, asked: GivenUnits) -> _Raw:
     """A map: x, y and z in three columns."""
     order = np.lexsort((table.block[:, 0], table.block[:, 1]))
     rows = np.unique(table.block[:, 1]).size
@@ -162,11 +162,11 @@ def _grid(table: Table, headings: Headings, asked: Asked) -> _Raw:
     place = f"line {int(table.lines[0])}, columns 1 to 3"
     scale, notes = scale_of(asked.length, headings.length, "length_unit")
     note = f"{place}: x, y and z, {rows} rows of {across.shape[1]}"
-    samples = Samples(across[0], heights, [note, *notes], lines, np.full_like(lines, 3))
+    samples = HeightSamples(across[0], heights, [note, *notes], lines, np.full_like(lines, 3))
     return _Raw(samples, scale, place)
 
 
-def _map(table: Table, headings: Headings, asked: Asked) -> _Raw:
+def _map(table: NumberTable, headings: Headings, asked: GivenUnits) -> _Raw:
     """A map, one row a line; or a trace in one column."""
     block, line = table.block, int(table.lines[0])
     place = f"line {line}, column 1"
@@ -190,11 +190,11 @@ def _map(table: Table, headings: Headings, asked: Asked) -> _Raw:
     if one:
         lines, columns = lines.T, columns.T
     x = pixel.value * np.arange(heights.shape[1])
-    samples = Samples(x, heights, [], lines, columns)
+    samples = HeightSamples(x, heights, [], lines, columns)
     return _Raw(samples, Scale(1.0, pixel.said), place)
 
 
-def _require_heights(table: Table, headings: Headings) -> None:
+def _require_heights(table: NumberTable, headings: Headings) -> None:
     """Raise where a row or a column of a map is one of positions, or counts."""
     block, line = table.block, int(table.lines[0])
     for column, name in enumerate(headings.names):
@@ -213,7 +213,7 @@ def _require_heights(table: Table, headings: Headings) -> None:
         require(False, place, f"{said}, ...", needs)
 
 
-def _pixel(headings: Headings, asked: Asked, count: int) -> Scale | None:
+def _pixel(headings: Headings, asked: GivenUnits, count: int) -> Scale | None:
     """Distance of samples in m: the user's, the file's, or from its width."""
     pixel = asked.pixel_in_metres
     if pixel is not None:
@@ -225,7 +225,7 @@ def _pixel(headings: Headings, asked: Asked, count: int) -> Scale | None:
     return Scale(_in_file(headings.width, headings, asked) / count, "the width")
 
 
-def _in_file(size: Size, headings: Headings, asked: Asked) -> float:
+def _in_file(size: Size, headings: Headings, asked: GivenUnits) -> float:
     """A size in m, by its own unit, or else by that of lengths."""
     if size.unit is not None:
         return size.value * size.unit

@@ -13,7 +13,7 @@ _MARKS = (  # UTF-32's mark begins like UTF-16's
 _CONTROL = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # ^Z ends a text of DOS
 
 
-def decoded(data: bytes) -> str | None:
+def decoded_text(data: bytes) -> str | None:
     """The text of a file; None where it is none.
 
     By its byte order mark; UTF-16 without one by its zeros; UTF-8; or else one byte a

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .columns import read_text
-from .encoding import decoded
+from .encoding import decoded_text
 from .gaps import without_gaps
 from .instruments import is_instrument_text, read_instrument
 from .scales import asked_of
@@ -85,7 +85,7 @@ def heights_of(
     try:
         asked = asked_of(*options)
         data = Path(path).read_bytes()
-        text = None if is_instrument_text(data) else decoded(data)
+        text = None if is_instrument_text(data) else decoded_text(data)
         if text is None:
             samples = read_instrument(data, Path(path).suffix.lower(), asked)
         else:

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from ..arguments import as_real, require, require_whole
 from ..profiles import Fourier
 from ..profiles.heights import HeightsFit, SeriesFit
-from ..profiles.rows import fit_rows as fit_rows_of
-from ..profiles.rows import mean_in_phase, series_of
+from ..profiles.rows import fit_rows_in_phase as fit_rows_of
+from ..profiles.rows import mean_in_phase, complex_series
 from .files import Measured
 
 
@@ -51,5 +51,5 @@ def row_profile(fit: SeriesFit) -> Fourier:
 
 def mean_profile(fits: Sequence[SeriesFit]) -> Fourier:
     """Mean of profiles that differ in phase."""
-    mean = mean_in_phase([series_of(fit) for fit in fits])
+    mean = mean_in_phase([complex_series(fit) for fit in fits])
     return Fourier(as_real(mean.real), as_real(-mean.imag))

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arguments import no_more, require
 from ..profiles.heights import find_period
-from .samples import Samples
+from .samples import HeightSamples
 
 # A straight line over a tenth of a period misleads the steepest slopes by 1 to 2% in a
 # trace of 8 periods and 3 to 8% in one of 2 or 3; over a quarter by 7 and 20%. A cubic
@@ -15,7 +15,7 @@ _SHARE = 0.1  # of a row's samples: with more, 10% in a trace of 3 periods
 _HARMONICS = 8
 
 
-def without_gaps(samples: Samples) -> Samples:
+def without_gaps(samples: HeightSamples) -> HeightSamples:
     """Samples of which none is missing: the ends cut off, short gaps filled by lines.
 
     Raises `ValueError` for a gap longer than a tenth of the period (and one sample), or
@@ -39,7 +39,7 @@ def without_gaps(samples: Samples) -> Samples:
     return samples._replace(heights=filled, notes=[*samples.notes, note])
 
 
-def _cut(samples: Samples) -> Samples:
+def _cut(samples: HeightSamples) -> HeightSamples:
     """Samples without those at either end that are missing in every row."""
     there = np.flatnonzero(~np.isnan(samples.heights).all(axis=0))
     require(there.size > 0, samples.place(0, 0), "missing", "heights")
@@ -53,7 +53,7 @@ def _cut(samples: Samples) -> Samples:
         part[:, first:last] if part.size else part
         for part in (samples.lines, samples.columns)
     )
-    return Samples(x, heights, [*samples.notes, note], lines, columns)
+    return HeightSamples(x, heights, [*samples.notes, note], lines, columns)
 
 
 def _interpolated(x: np.ndarray, heights: np.ndarray) -> np.ndarray:
@@ -64,7 +64,7 @@ def _interpolated(x: np.ndarray, heights: np.ndarray) -> np.ndarray:
     return filled
 
 
-def _require_short(samples: Samples, missing: np.ndarray, filled: np.ndarray) -> int:
+def _require_short(samples: HeightSamples, missing: np.ndarray, filled: np.ndarray) -> int:
     """The longest gap in samples, which is short for the period of the heights."""
     row, start, count = _longest(missing)
     x = samples.x

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..arguments import require
 from .axes import axis_of
-from .samples import Samples
-from .scales import Asked, Scale, completed, require_metres
+from .samples import HeightSamples
+from .scales import GivenUnits, Scale, completed, require_metres
 from .sentinels import without_sentinels
 from .units import ALLOWED, metres
 
@@ -28,7 +28,7 @@ def is_instrument_text(data: bytes) -> bool:
     return begins.startswith(tuple(name.encode() for name in _TEXTS))
 
 
-def read_instrument(data: bytes, suffix: str, asked: Asked) -> Samples:
+def read_instrument(data: bytes, suffix: str, asked: GivenUnits) -> HeightSamples:
     """Heights of a file that is no plain text, NaN where one is missing.
 
     Several channels: the file's first one of heights. Raises `ValueError` where no
@@ -52,7 +52,7 @@ def read_instrument(data: bytes, suffix: str, asked: Asked) -> Samples:
             raise ValueError(refused) from None
 
 
-def _samples(reader: Any, suffix: str, asked: Asked) -> Samples:
+def _samples(reader: Any, suffix: str, asked: GivenUnits) -> HeightSamples:
     form = reader.format()
     guessed = form in _WITHOUT_MAGIC and suffix != f".{form}"
     require(not guessed, "file", "binary", "a format that SurfaceTopography knows")
@@ -85,7 +85,7 @@ def _samples(reader: Any, suffix: str, asked: Asked) -> Samples:
         needs = "heights: these go evenly, as positions do, unlike others; take them out"
         require(axis is None, ("first row", "first column")[axis or 0], values, needs)
     found = without_sentinels(
-        Samples(x, heights, notes, _NOWHERE, _NOWHERE), asked.outliers
+        HeightSamples(x, heights, notes, _NOWHERE, _NOWHERE), asked.outliers
     )
     along, up, unsaid = completed(lengths_by, heights_by, place)
     x, heights = along * x, up * found.heights
@@ -122,7 +122,7 @@ def _arrays(surface: Any, bare: bool) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _scales(
-    value: float | None, unit: str | None, asked: Asked
+    value: float | None, unit: str | None, asked: GivenUnits
 ) -> tuple[Scale | None, Scale | None]:
     """Of heights and of lengths: the file has one unit for both, or none."""
     if value is None:

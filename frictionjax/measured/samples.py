@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 
-class Samples(NamedTuple):
+class HeightSamples(NamedTuple):
     """Positions `x` in m, shape (n,); `heights` in m, (rows, n), NaN where one is missing.
 
     `notes`: lines on how the file was read. `lines`: number of each sample's line, shape

@@ -14,7 +14,7 @@ from .units import ALLOWED, metres, require_unit
 _LONGEST_TRACE, _STEEPEST = 1.0, 3.0
 
 
-class Asked(NamedTuple):
+class GivenUnits(NamedTuple):
     """What a user says of a file; None where he does not. `length`, `height`: m a unit."""
 
     pixel: float | None
@@ -41,7 +41,7 @@ def asked_of(
     height_unit: str | None,
     decimal: str | None,
     outliers: str | None = None,
-) -> Asked:
+) -> GivenUnits:
     """Options of `read_heights`, checked."""
     known = outliers in (None, "missing", "keep")
     require(known, "outliers", outliers, '"missing" or "keep"')
@@ -52,7 +52,7 @@ def asked_of(
     require(not both, "height_unit", height_unit, "none beside height_scale")
     length = require_unit("length_unit", length_unit)
     height = require_unit("height_unit", height_unit)
-    return Asked(pixel, height_scale, length, height, decimal, outliers)
+    return GivenUnits(pixel, height_scale, length, height, decimal, outliers)
 
 
 class Scale(NamedTuple):

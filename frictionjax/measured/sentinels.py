@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..arguments import require
-from .samples import Samples
+from .samples import HeightSamples
 
 _BITS = (32767.0, 32768.0, 65535.0, 2.0**31 - 1, 2.0**31, 2.0**32 - 1)
 _NINES = tuple(10.0**n - 1 for n in range(3, 8))
@@ -21,7 +21,7 @@ _FLANK = 0.1  # of that range: a neighbour so far out climbs to what lies apart
 _BULKS = (0.5, 0.75, 0.9, 0.97)  # of all heights, of which more than one value is needed
 
 
-def without_sentinels(samples: Samples, outliers: str | None = None) -> Samples:
+def without_sentinels(samples: HeightSamples, outliers: str | None = None) -> HeightSamples:
     """Samples whose sentinels are missing ones, with a note for each.
 
     Well-known marks are. Other heights that lie alone are what the user says,
@@ -46,7 +46,7 @@ def without_sentinels(samples: Samples, outliers: str | None = None) -> Samples:
 
 
 def _require_said(
-    samples: Samples, heights: np.ndarray, alone: np.ndarray, outliers: str | None
+    samples: HeightSamples, heights: np.ndarray, alone: np.ndarray, outliers: str | None
 ) -> None:
     row, sample = (int(i) for i in np.argwhere(alone)[0])
     others = heights[np.isfinite(heights) & ~alone]

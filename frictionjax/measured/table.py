@@ -10,7 +10,7 @@ from .cells import Dialect, find_dialect, only_marks
 _COMMENTS = ("#", "%", ";", "//", "!")
 
 
-class Table(NamedTuple):
+class NumberTable(NamedTuple):
     """`block`: numbers, shape (rows, columns), NaN where one is missing.
 
     `lines`: number of each row's line, from 1. `said`: numbered lines of text, headings
@@ -29,7 +29,7 @@ class _Row(NamedTuple):
     numbers: list[float]
 
 
-def read_table(text: str, decimal: str | None) -> Table:
+def read_numbers(text: str, decimal: str | None) -> NumberTable:
     """Numbers and headings of a text.
 
     Raises `ValueError` where rows differ in length, text follows numbers, or there are no
@@ -54,7 +54,7 @@ def read_table(text: str, decimal: str | None) -> Table:
         require(not late, f"line {number}", line[:40], "numbers, after others")
     block = np.array(_of_one_width(rows))
     block[~np.isfinite(block)] = np.nan
-    return Table(block, np.array([row.line for row in rows]), said, dialect)
+    return NumberTable(block, np.array([row.line for row in rows]), said, dialect)
 
 
 def _is_comment(line: str, numbers: list[float]) -> bool:

@@ -19,7 +19,7 @@ _ABOVE = 4.0  # times the target, and the middle of the curve: poles go on out o
 
 
 @styled
-def draw(fit: Any) -> Figure:
+def draw_angle_fit(fit: Any) -> Figure:
     """Draw a `fit_angle`: the quantity over all admissible values, target and solutions.
 
     One line for each admissible interval; between them alpha = 0, or nothing is

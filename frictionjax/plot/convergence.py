@@ -41,7 +41,7 @@ _KEY = (
 
 
 @styled
-def draw(
+def draw_convergence(
     dataset: xr.Dataset, orders: xr.Dataset, curves: xr.Dataset | None = None
 ) -> Figure:
     """Draw the errors of a sweep against eps, log-log, one line for each gamma.

@@ -22,7 +22,7 @@ _SPREAD, _STEP = 0.5, 0.1  # of the distance of two places: for all methods, bet
 _SIZES = {"auto": 12.0, "resolved": 9.0, "windowed": 6.0}
 
 
-class Runs(NamedTuple):
+class DrawnRuns(NamedTuple):
     """Runs of one method along one dimension, arrays of one shape.
 
     `errors` in eps, at most 1000 and at least what the reference can judge; `drawn`: the
@@ -38,14 +38,14 @@ class Runs(NamedTuple):
     failed: np.ndarray
 
 
-def runs_of(line: xr.Dataset) -> Runs:
+def runs_of(line: xr.Dataset) -> DrawnRuns:
     """The runs in a data set of one dimension."""
     errors = np.clip(line.error.values, floor_of(line), MOST)
     failed = failed_runs(line)
     drawn = ~failed & np.isfinite(errors)
     spread = np.stack([line.seconds_low.values, line.seconds_high.values])
     wrong = line.wrong.values > 0
-    return Runs(line.seconds.values, spread, errors, drawn, wrong, failed)
+    return DrawnRuns(line.seconds.values, spread, errors, drawn, wrong, failed)
 
 
 def failed_runs(runs: xr.Dataset) -> np.ndarray:

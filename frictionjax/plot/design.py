@@ -37,7 +37,7 @@ def _sentence(fit: Any) -> str:
     return f"{fit.status.name.replace('_', ' ').lower()}; {seen}"
 
 
-def series(profile: Fourier, order: int) -> tuple[np.ndarray, np.ndarray]:
+def drawn_series(profile: Fourier, order: int) -> tuple[np.ndarray, np.ndarray]:
     """A derivative of the profile over one period, centred on its steepest ascent."""
     cos, sin = np.asarray(profile.cos), np.asarray(profile.sin)
     turns = 2 * np.pi * np.arange(1, cos.size + 1)
@@ -49,9 +49,9 @@ def series(profile: Fourier, order: int) -> tuple[np.ndarray, np.ndarray]:
 def _heights(axes: Any, fit: Any, others: list[Fourier]) -> None:
     for index, other in enumerate(others):
         label = "same coefficients" if index == 0 else None
-        axes.plot(*series(other, 0), **_FAMILY_LOOK, label=label)
+        axes.plot(*drawn_series(other, 0), **_FAMILY_LOOK, label=label)
     label = f"least bent: $\\int w''^2$ = {fit.bending_energy:.4g}"
-    axes.plot(*series(fit.profile, 0), color=colour(0), linewidth=2, label=label)
+    axes.plot(*drawn_series(fit.profile, 0), color=colour(0), linewidth=2, label=label)
     axes.set(xlabel="y (periods)", ylabel="height w (periods)")
     axes.set_title("Surface")
     axes.margins(x=0)
@@ -60,8 +60,8 @@ def _heights(axes: Any, fit: Any, others: list[Fourier]) -> None:
 
 def _slopes(axes: Any, fit: Any, others: list[Fourier]) -> None:
     for other in others:
-        axes.plot(*series(other, 1), **_FAMILY_LOOK)
-    y, slopes = series(fit.profile, 1)
+        axes.plot(*drawn_series(other, 1), **_FAMILY_LOOK)
+    y, slopes = drawn_series(fit.profile, 1)
     axes.plot(y, slopes, color=colour(0), linewidth=2)
     found = fit.coefficients[0]
     ends = [("$\\omega_+$", found.omega_plus), ("$\\omega_-$", found.omega_minus)]

@@ -35,7 +35,7 @@ _LEFT = ("////", "not admissible"), ("....", "$\\alpha$ < 0: the bristle pulls")
 
 
 @styled
-def draw(data: xr.Dataset, quantities: Any = ("ratio", "contrast")) -> Figure:
+def draw_design_map(data: xr.Dataset, quantities: Any = ("ratio", "contrast")) -> Figure:
     """Draw maps of a `design_map`, one panel a quantity, contours labelled.
 
     Ratios are coloured by their logarithm, so that left and right look alike; colours end

@@ -19,7 +19,7 @@ from .style import (
 
 
 @styled
-def draw(dataset: xr.Dataset, gamma: float | None = None, eps: Any = None) -> Figure:
+def draw_dissipation(dataset: xr.Dataset, gamma: float | None = None, eps: Any = None) -> Figure:
     """Draw `int_0^t eps^gamma z'^2` (J) for a few eps of one gamma, and the limit's.
 
     Raises `ValueError` for a data set without dissipation.

@@ -24,7 +24,7 @@ from .style import (
 
 
 @styled
-def draw(
+def draw_loop(
     dataset: xr.Dataset,
     support: AbstractSupport,
     found: Coefficients,

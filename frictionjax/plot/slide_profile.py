@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from .design import against, series
+from .design import against, drawn_series
 from .style import LIMIT, colour, marker, new_figure, styled
 
 
@@ -30,9 +30,9 @@ def draw_slide_profile_fit(fit: Any) -> Figure:
 
 
 def _surfaces(axes: Any, fit: Any, order: int, label: str, title: str) -> None:
-    axes.plot(*series(fit.profile, order), color=colour(0), linewidth=2, label="its slides")
+    axes.plot(*drawn_series(fit.profile, order), color=colour(0), linewidth=2, label="its slides")
     limit = {"color": LIMIT, "linestyle": "--", "linewidth": 1}
-    axes.plot(*series(fit.limit.profile, order), **limit, label="limit only")
+    axes.plot(*drawn_series(fit.limit.profile, order), **limit, label="limit only")
     axes.set(xlabel="y (periods)", ylabel=label)
     axes.set_title(title)
     axes.margins(x=0)

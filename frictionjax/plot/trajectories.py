@@ -24,7 +24,7 @@ _RESOLVED = 8  # samples a slip, or the inset would show the sampling
 
 
 @styled
-def draw(dataset: xr.Dataset, gamma: float | None = None, eps: Any = None) -> Figure:
+def draw_trajectories(dataset: xr.Dataset, gamma: float | None = None, eps: Any = None) -> Figure:
     """Draw `z_eps` for a few eps of one gamma over the limit `z`, the strip shaded.
 
     `gamma`: the nearest to 1 where None; `eps`: largest, middle and smallest where None.

@@ -16,7 +16,7 @@ from .cost_runs import (
     TOO_LITTLE,
     UNKNOWN,
     WRONG,
-    Runs,
+    DrawnRuns,
     apart,
     failed_runs,
     floor_of,
@@ -36,7 +36,7 @@ _SMALL = {"linewidth": 5, "markersize": 9}  # in the legend
 
 
 @styled
-def draw(
+def draw_work_precision(
     dataset: xr.Dataset, eps: float | None = None, gamma: float | None = None
 ) -> Figure:
     """Draw a data set of `work_precision`.
@@ -98,7 +98,7 @@ def _times(axes: Any, cell: xr.Dataset) -> None:
     mark_failed([axes], [failed], levels=True)
 
 
-def _draw_spread(axes: Any, runs: Runs, shade: str) -> None:
+def _draw_spread(axes: Any, runs: DrawnRuns, shade: str) -> None:
     """From the fastest to the slowest run of each."""
     ends, errors = runs.spread[:, runs.drawn], runs.errors[runs.drawn]
     points = np.stack([ends, np.broadcast_to(errors, ends.shape)], axis=-1)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from .steepest import Waves, extreme_slopes, series, steepest
+from .steepest import SampledWaves, slopes_of_waves, series_values, steepest
 
 # Of 360 surfaces with noise of 1%, stated errors hold of 96.5% (of 98% at 0.3%); with half
 # this margin of 94.7%. Where noise leaves the waves before the filter open by more than
@@ -13,7 +13,7 @@ from .steepest import Waves, extreme_slopes, series, steepest
 _MARGIN, _KNOWN = 0.5, 0.2  # of the error; of the slope
 
 
-def taken_off(waves: Waves, samples: np.ndarray | None = None) -> tuple[float, float]:
+def taken_off(waves: SampledWaves, samples: np.ndarray | None = None) -> tuple[float, float]:
     """What the filter takes off the steepest slope upwards and downwards, both >= 0.
 
     `waves`: with the filter's gain; `samples`: the heights before it, where the waves are
@@ -23,7 +23,7 @@ def taken_off(waves: Waves, samples: np.ndarray | None = None) -> tuple[float, f
     return _taken(waves, samples), _taken(waves.mirrored(), below)
 
 
-def _taken(waves: Waves, samples: np.ndarray | None) -> float:
+def _taken(waves: SampledWaves, samples: np.ndarray | None) -> float:
     """Two estimates: by filtering once more, and from the waves before the filter.
 
     The first, `S1^2/S2 - S1` of the slopes after one and two filters, hardly knows of noise
@@ -31,10 +31,10 @@ def _taken(waves: Waves, samples: np.ndarray | None) -> float:
     of. So it counts for no less, and no more, than the waves that stand out of the noise
     say, within their error. (`S1 - S2` is 13% to 60% lower, at a cut-off of 0.3 periods.)
     """
-    once, twice = (extreme_slopes(waves.c * waves.gain**times)[0] for times in (1, 2))
+    once, twice = (slopes_of_waves(waves.c * waves.gain**times)[0] for times in (1, 2))
     again = once * (once / twice - 1) if twice > 0 else math.inf
     before = steepest(waves._replace(gain=np.ones(waves.gain.size)), samples)
-    smooth = None if samples is None else series(waves.gain * waves.c, samples.size)
+    smooth = None if samples is None else series_values(waves.gain * waves.c, samples.size)
     less = before.slope - steepest(waves, smooth).slope
     if not math.isfinite(before.error):
         return max(again, 0.0)

@@ -19,7 +19,7 @@ from .slope_errors import (
     warn_of,
     with_taken,
 )
-from .steepest import Waves, extreme_slopes
+from .steepest import SampledWaves, slopes_of_waves
 
 
 class Fourier(AbstractSampled):
@@ -68,7 +68,7 @@ class Fourier(AbstractSampled):
         """How far the steepest slopes may be off; None where nothing says so."""
         if self.slope_error is None or not is_concrete(self):
             return None
-        slopes = extreme_slopes(np.asarray(self.cos) - 1j * np.asarray(self.sin))
+        slopes = slopes_of_waves(np.asarray(self.cos) - 1j * np.asarray(self.sin))
         return with_taken(slopes, self.slope_error, self.slope_taken)
 
     @classmethod
@@ -114,9 +114,9 @@ class Fourier(AbstractSampled):
 
     @classmethod
     def of_measured(
-        cls, cos: np.ndarray, sin: np.ndarray, waves: Waves
+        cls, cos: np.ndarray, sin: np.ndarray, waves: SampledWaves
     ) -> "tuple[Fourier, SlopeErrors]":
         """A series in periods with the errors that measured waves leave to its slopes."""
-        errors = of_waves(extreme_slopes(cos - 1j * sin), waves)
+        errors = of_waves(slopes_of_waves(cos - 1j * sin), waves)
         taken = as_real(errors[4:]) if any(errors[4:]) else None
         return cls(as_real(cos), as_real(sin), as_real(errors[2:4]), taken), errors

@@ -14,7 +14,7 @@ from ..arguments import (
 )
 from .slope_errors import SlopeErrors
 from .smoothing import gaussian_gain
-from .steepest import Waves
+from .steepest import SampledWaves
 
 _Profile = TypeVar("_Profile")
 
@@ -43,7 +43,7 @@ class SeriesFit(NamedTuple):
     sin: np.ndarray
     period: float
     explained: float
-    waves: Waves
+    waves: SampledWaves
 
 
 _MOST = 16  # harmonics that decide on the period
@@ -168,7 +168,7 @@ def _complex(solution: np.ndarray) -> np.ndarray:
     return cos - 1j * sin
 
 
-def _waves(x: np.ndarray, heights: np.ndarray, period: float, harmonics: int) -> Waves:
+def _waves(x: np.ndarray, heights: np.ndarray, period: float, harmonics: int) -> SampledWaves:
     """All waves that the samples tell apart, and their noise, from what these leave."""
     harmonics = min(harmonics, max(1, (x.size - 3) // 3))
     design = _design(x, period, harmonics)
@@ -177,7 +177,7 @@ def _waves(x: np.ndarray, heights: np.ndarray, period: float, harmonics: int) ->
     free = max(1, x.size - design.shape[1])
     rounding = _ROUNDING * float(np.ptp(heights))
     noise = max(np.sqrt(left / free), rounding) * np.sqrt(2 / x.size) / period
-    return Waves(_complex(solution) / period, np.full(harmonics, noise), np.ones(harmonics))
+    return SampledWaves(_complex(solution) / period, np.full(harmonics, noise), np.ones(harmonics))
 
 
 def require_left(name: str, masked: int, left: int) -> None:

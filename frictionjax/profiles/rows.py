@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arguments import is_masked, known_numbers, numbers_of, require, require_whole
 from .heights import SeriesFit, find_period, fit_heights, require_left
-from .steepest import Waves
+from .steepest import SampledWaves
 
 _BLOCKS = 10  # of neighbouring rows, which are not independent of each other
 
@@ -20,15 +20,15 @@ def fit_map(
     smoothing: float | None = None,
 ) -> SeriesFit:
     """Fit of a map (rows, n): the mean of its rows; see `Fourier.from_heights`."""
-    fits = fit_rows(x, heights, period, harmonics, smoothing)
+    fits = fit_rows_in_phase(x, heights, period, harmonics, smoothing)
     if len(fits) == 1:  # a trace: its phase is kept
         return fits[0]
-    mean = mean_in_phase([series_of(fit) for fit in fits])
+    mean = mean_in_phase([complex_series(fit) for fit in fits])
     explained = float(np.mean([fit.explained for fit in fits]))
     return SeriesFit(mean.real, -mean.imag, fits[0].period, explained, mean_waves(fits))
 
 
-def fit_rows(
+def fit_rows_in_phase(
     x: Any,
     heights: Any,
     period: float | None,
@@ -70,7 +70,7 @@ def _common_period(x: np.ndarray, rows: np.ndarray, harmonics: int) -> float | N
     return find_period(x.astype(float), rows, harmonics)
 
 
-def series_of(fit: SeriesFit) -> np.ndarray:
+def complex_series(fit: SeriesFit) -> np.ndarray:
     """Coefficients of `Re sum_n c_n exp(2 pi i n y)`, shape (harmonics,)."""
     return fit.cos - 1j * fit.sin
 
@@ -80,7 +80,7 @@ def mean_in_phase(series: Sequence[np.ndarray]) -> np.ndarray:
     return np.mean([_in_phase(waves) for waves in series], axis=0)
 
 
-def mean_waves(fits: Sequence[SeriesFit]) -> Waves:
+def mean_waves(fits: Sequence[SeriesFit]) -> SampledWaves:
     """Mean of all waves that the rows tell apart, moved into phase, and its noise.
 
     The noise is what rows leave of their own, or the scatter over blocks of rows where
@@ -92,7 +92,7 @@ def mean_waves(fits: Sequence[SeriesFit]) -> Waves:
     between = np.var(means, axis=0, ddof=1) / (2 * len(blocks))
     own = np.mean([fit.waves.noise**2 for fit in fits], axis=0) / len(fits)
     noise = np.sqrt(np.maximum(own, between))
-    return Waves(rows.mean(axis=0), noise, fits[0].waves.gain)
+    return SampledWaves(rows.mean(axis=0), noise, fits[0].waves.gain)
 
 
 def _in_phase(waves: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 from ..arguments import as_text, is_known, known_numbers, require
 from .filtered import taken_off
 from .profile import AbstractProfile
-from .steepest import Waves, error_of, noise_of, series, steepest
+from .steepest import SampledWaves, error_of, noise_of, series_values, steepest
 
 _WARNED = 0.1  # of a steepest slope: friction is about as wrong
 _FEWEST = 8  # heights that say anything of what is between them
@@ -119,7 +119,7 @@ def with_taken(slopes: tuple[float, float], error: Any, taken: Any) -> SlopeErro
     return SlopeErrors(*slopes, *map(float, error), *taken)
 
 
-def of_waves(slopes: tuple[float, float], waves: Waves, samples=None) -> SlopeErrors:
+def of_waves(slopes: tuple[float, float], waves: SampledWaves, samples=None) -> SlopeErrors:
     """Errors of the largest and the smallest slope of a profile, from what was measured.
 
     `waves`, `samples`: as `taken_off` takes them, `samples` before any filter.
@@ -130,7 +130,7 @@ def of_waves(slopes: tuple[float, float], waves: Waves, samples=None) -> SlopeEr
     filtered = bool(np.any(waves.gain != 1.0))
     taken = taken_off(waves, samples) if filtered else (0.0, 0.0)
     if filtered and samples is not None:
-        samples = series(waves.gain * waves.c, samples.size)
+        samples = series_values(waves.gain * waves.c, samples.size)
     below = None if samples is None else -samples
     error_plus = error_of(slopes[0], steepest(waves, samples)) + taken[0]
     error_minus = error_of(-slopes[1], steepest(waves.mirrored(), below)) + taken[1]
@@ -151,7 +151,7 @@ def of_heights(
     c = (2 / count * np.fft.rfft(heights))[1 : (count + 1) // 2]
     noise = np.full(c.size, noise_of(heights) * math.sqrt(2 / count))
     passed = np.ones(c.size) if gain is None else gain[: c.size]
-    return of_waves(slopes, Waves(c, noise, passed), heights)
+    return of_waves(slopes, SampledWaves(c, noise, passed), heights)
 
 
 def warn_of(

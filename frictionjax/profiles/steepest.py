@@ -28,7 +28,7 @@ _FINE, _STEPS = 16, 3  # places in the shortest wave, and Newton steps from the 
 _ROUNDING = 1e-15
 
 
-class Waves(NamedTuple):
+class SampledWaves(NamedTuple):
     """`w(y) = Re sum_k c_k exp(2 pi i k y)`, k from 1, as the samples give it.
 
     `c`: complex, shape (harmonics,), as many as the samples tell apart. `noise`: standard
@@ -52,7 +52,7 @@ class Steepest(NamedTuple):
     error: float
 
 
-def series(c: np.ndarray, count: int, order: int = 0) -> np.ndarray:
+def series_values(c: np.ndarray, count: int, order: int = 0) -> np.ndarray:
     """`Re sum_k c_k exp(2 pi i k y)`, or a derivative, at y = 0, 1/count, ..."""
     k = np.arange(1, c.size + 1)
     spectrum = np.zeros(count, complex)
@@ -61,7 +61,7 @@ def series(c: np.ndarray, count: int, order: int = 0) -> np.ndarray:
     return np.fft.ifft(spectrum).real
 
 
-def steepest(waves: Waves, samples: np.ndarray | None = None) -> Steepest:
+def steepest(waves: SampledWaves, samples: np.ndarray | None = None) -> Steepest:
     """Steepest slope that the samples support, by windows, with its error.
 
     `samples`: where the waves are their interpolant, whose windows are then theirs. Of
@@ -75,7 +75,7 @@ def steepest(waves: Waves, samples: np.ndarray | None = None) -> Steepest:
         k = np.arange(1, used + 1)
         deviation = 2 * np.pi * math.sqrt(float(np.sum((k * noise) ** 2)))
         whole = samples is not None and used == most
-        heights = samples if whole else series(c, used + 1)
+        heights = samples if whole else series_values(c, used + 1)
         found.append(_by_windows(np.asarray(heights), _LET_THROUGH * deviation))
         found.append(_by_waves(c, noise, deviation))
     return min(found, key=lambda one: one.error)
@@ -90,7 +90,7 @@ def _by_waves(c: np.ndarray, noise: np.ndarray, deviation: float) -> Steepest:
     out of a noise that was smaller still, up to the last wave.)
     """
     top = _largest_slope(c)
-    rivals = int(np.sum(series(c, 2 * c.size, order=1) > top - 2 * deviation))
+    rivals = int(np.sum(series_values(c, 2 * c.size, order=1) > top - 2 * deviation))
     seen = np.maximum(np.abs(c) - _CERTAIN * noise, 0.0)
     half = c.size // 2
     beyond = 2 * np.pi * _BEYOND * float(np.sum((np.arange(1, c.size + 1) * seen)[half:]))
@@ -104,7 +104,7 @@ def _of_noise(rivals: int, deviation: float) -> float:
     return (math.sqrt(2 * math.log(max(rivals, 1))) + _CERTAIN) * deviation
 
 
-def last_of_note(waves: Waves) -> int:
+def last_of_note(waves: SampledWaves) -> int:
     """The last harmonic that stands out of the noise with its neighbours; 1 at least."""
     energy = np.abs(waves.c / np.maximum(waves.noise, 1e-300)) ** 2
     summed = np.append(0.0, np.cumsum(energy))
@@ -149,14 +149,14 @@ def _summit(values: np.ndarray) -> float:
     return float(values[top] + 0.5 * bend * shift**2)
 
 
-def extreme_slopes(c: np.ndarray) -> tuple[float, float]:
+def slopes_of_waves(c: np.ndarray) -> tuple[float, float]:
     """Largest and smallest slope of `Re sum_k c_k exp(2 pi i k y)`."""
     return _largest_slope(c), -_largest_slope(-c)
 
 
 def _largest_slope(c: np.ndarray) -> float:
     count = _FINE * max(2, c.size)
-    slopes = series(c, count, order=1)
+    slopes = series_values(c, count, order=1)
     turns = 2j * np.pi * np.arange(1, c.size + 1)
     y = int(np.argmax(slopes)) / count
     for _ in range(_STEPS):

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..cost_of_accuracy import ACCURACIES, METHODS, work_precision
+from ..cost_of_accuracy import MEASURED_ACCURACIES, METHODS, work_precision
 from ..instants import slips_of
 from ..plot import draw_work_precision
 from ..scene import Scene
 from ..scene_files import scene_document
 from .folder import write_figures, write_record
 from .job import Job, joined
-from .tables import flag_names, number, table
+from .tables import flag_names, formatted, table
 
 # Slips of the cells that are measured where none are named: at the last, general solvers
 # are lost already.
@@ -68,7 +68,7 @@ def run_cost(
         job.study["eps"],
         job.study["gamma"],
         methods or METHODS,
-        accuracies or ACCURACIES,
+        accuracies or MEASURED_ACCURACIES,
         seconds=seconds,
         progress=progress,
     )
@@ -180,7 +180,7 @@ def _row(run: xr.Dataset, names: dict[int, str]) -> tuple[str, ...]:
         *errors,
         _digits("residual", float(run.residual)),
         mescd,
-        number(float(run.seconds)),
+        formatted(float(run.seconds)),
         f"{float(run.seconds_high / run.seconds_low):.2f}" if several else "-",
         f"{float(run.compile_seconds):.1f}" if known else "-",
         *(_count(float(run[name])) for name in counts),

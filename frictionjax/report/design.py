@@ -24,13 +24,13 @@ from ..scene_files import scene_document
 from ..supports import Spring
 from ..whole_files import write_whole
 from .folder import write_figures
-from .job import Job, exchanged, joined
+from .job import Job, with_surface, joined
 from .tables import coefficient_table, table
 
 _MAP = 121  # values of an axis
 
 
-class Asked(NamedTuple):
+class DesignRequest(NamedTuple):
     """What a design is to reach: `wanted` by name, and how its results are written."""
 
     wanted: dict[str, float]
@@ -53,7 +53,7 @@ class _Design(NamedTuple):
     files: dict[str, str]
 
 
-def run_design(job: Job, folder: Path, asked: Asked) -> str:
+def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
     """Design the scene's bristle, or its surface, write it into `folder`, return tables.
 
     `rho_plus` and `rho_minus` together: the surface (`fit_profile`); one of them, or a
@@ -91,7 +91,7 @@ def _parts(scene: Scene) -> tuple[AbstractProfile, AbstractBristle]:
     return scene.profile, scene.bristle
 
 
-def _bristle(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
+def _bristle(job: Job, asked: DesignRequest, wanted: dict[str, float]) -> _Design:
     profile, bristle = _parts(job.scene)
     for name in ("smallest_radius", "largest_amplitude"):
         value = getattr(asked, name)
@@ -101,7 +101,7 @@ def _bristle(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
     fit = fit_angle(profile, bristle, **options, pulling=asked.pulling)
     if not fit.success:
         raise ValueError(fit.message)
-    found = exchanged(job.scene, profile, fit.bristle)
+    found = with_surface(job.scene, profile, fit.bristle)
     pictures = _bristle_pictures(fit)
     sections = [("Inverse design", angle_table(fit))]
     return _Design(found, sections, pictures, {"fit.json": fit.to_json()})
@@ -137,7 +137,7 @@ def _bristle_pictures(fit: AngleFit) -> Iterator[tuple[str, Figure]]:
     yield "map", plot.draw_design_map(data)
 
 
-def _surface(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
+def _surface(job: Job, asked: DesignRequest, wanted: dict[str, float]) -> _Design:
     _, bristle = _parts(job.scene)
     target = Target(bristle, wanted["rho_plus"], wanted["rho_minus"])
     free = [asked.free] if asked.free else []
@@ -153,7 +153,7 @@ def _surface(job: Job, asked: Asked, wanted: dict[str, float]) -> _Design:
     )
     if not fit.success:
         raise ValueError(fit.message)
-    found = exchanged(job.scene, fit.profile, fit.bristles[0] or bristle)
+    found = with_surface(job.scene, fit.profile, fit.bristles[0] or bristle)
     pictures = iter([("design", plot.draw_profile_fit(fit))])
     return _Design(
         found, [("Inverse design", repr(fit))], pictures, {"fit.json": fit.to_json()}

@@ -108,12 +108,12 @@ def _read_job(
         fit = {"period": period, "harmonics": harmonics, "row": row, "smoothing": smoothing}
         for name, value in {**file, **fit}.items():
             require(value is None, name, value, "--heights FILE beside it")
-        return Job(exchanged(known.scene, known.scene.profile, chosen), study, warned, None)
+        return Job(with_surface(known.scene, known.scene.profile, chosen), study, warned, None)
     measured = heights_of(heights, **file)
     harmonics = 8 if harmonics is None else harmonics
     try:
         found = fit_profile(measured, period, harmonics, row, smoothing)
-        scene = exchanged(known.scene, found.profile, chosen)
+        scene = with_surface(known.scene, found.profile, chosen)
         rows = None
         if measured.heights.shape[0] > 1:
             rows = row_coefficients(measured, chosen, harmonics, found.period, smoothing)
@@ -123,7 +123,7 @@ def _read_job(
     return Job(scene, study, notes, rows, row)
 
 
-def exchanged(old: Scene, profile: Any, bristle: AbstractBristle) -> Scene:
+def with_surface(old: Scene, profile: Any, bristle: AbstractBristle) -> Scene:
     """The scene with another surface and bristle."""
     return Scene(profile, bristle, old.support, old.load, old.duration, old.z0)
 

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..admissibility import require_reach
-from ..cost_prediction import ACCURACIES, CostPrediction, fit_budget, predict_cost
+from ..cost_prediction import PREDICTED_ACCURACIES, CostPrediction, fit_budget, predict_cost
 from ..grids import cells_of, grid_of
 from ..sweeps import sweep
 from ..wiggly.engine import prepare_cells
@@ -68,7 +68,7 @@ def within_budget(
     if asked is not None:
         require_accuracy(asked)  # `fit_budget` would name its own argument, accuracies
     own = float(job.study["accuracy"])
-    tried = {*ACCURACIES, own} if asked is None else {asked}
+    tried = {*PREDICTED_ACCURACIES, own} if asked is None else {asked}
     found = fit_budget(
         job.scene, eps, gamma, seconds, study_times(job), method, sorted(tried)
     )

@@ -51,7 +51,7 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 0) -
     return "\n".join(lines)
 
 
-def coefficients_of(found: Coefficients) -> dict[str, float]:
+def coefficients_by_name(found: Coefficients) -> dict[str, float]:
     """Numbers of a friction law by name, `ratio` = -rho_plus/rho_minus added.
 
     Only those that exist: the abstract setting has no bristle's.
@@ -64,7 +64,7 @@ def coefficients_of(found: Coefficients) -> dict[str, float]:
     return {name: numbers[name] for name, _, _ in _LAW if name in numbers}
 
 
-def errors_of(
+def errors_by_name(
     found: Coefficients, standard: dict[str, float] | None = None
 ) -> dict[str, float]:
     """Errors by name, of what samples leave of the surface; empty where nothing is known.
@@ -87,7 +87,7 @@ def errors_of(
         float(getattr(found, f"rho_{side}_error")) / float(getattr(found, f"rho_{side}"))
         for side in ("plus", "minus")
     )
-    ratio = abs(coefficients_of(found)["ratio"])
+    ratio = abs(coefficients_by_name(found)["ratio"])
     return known | _larger(known, "ratio", ratio * math.hypot(*parts))
 
 
@@ -100,7 +100,7 @@ def coefficient_table(found: Coefficients, error: dict[str, float] | None = None
 
     `error`: standard errors over the rows of a map, beside those of `errors_of`.
     """
-    numbers, error = coefficients_of(found), errors_of(found, error)
+    numbers, error = coefficients_by_name(found), errors_by_name(found, error)
     pulls = numbers.get("alpha", 0.0) < 0
     rows = [
         (
@@ -185,10 +185,10 @@ def sweep_table(dataset: xr.Dataset) -> str:
                 (
                     f"{gamma:.4g}",
                     f"{eps:.4g}",
-                    number(error),
-                    number(error / eps),
-                    number(_value(cell, "dissipation_error")),
-                    number(_value(cell, "residual")),
+                    formatted(error),
+                    formatted(error / eps),
+                    formatted(_value(cell, "dissipation_error")),
+                    formatted(_value(cell, "residual")),
                     f"{int(cell.steps)}",
                     names[int(cell.status)],
                 )
@@ -243,7 +243,7 @@ def _order_cells(orders: xr.Dataset, line: xr.Dataset, prefix: str) -> tuple[str
         str(line[f"{prefix}law"].item()),
         _slope(_value(line, f"{prefix}order_seen")),
         _constant(line, prefix),
-        number(_value(line, f"{prefix}constant_predicted")),
+        formatted(_value(line, f"{prefix}constant_predicted")),
         _window(line, prefix),
         f"{int(line[f'{prefix}points'])}",
         _verdict(orders, line, prefix),
@@ -255,7 +255,7 @@ def lemma_table(orders: xr.Dataset) -> str:
     rows = []
     for gamma in orders.gamma.values:
         line = orders.sel(gamma=gamma)
-        constants = number(float(line.C0)), number(float(line.C))
+        constants = formatted(float(line.C0)), formatted(float(line.C))
         rows.append((f"{gamma:.4g}", f"{float(line.beta):.3g}", *constants))
     return table(("gamma", "beta", "C0 of Lemma 7", "C of Lemma 9"), rows)
 
@@ -287,7 +287,7 @@ def _value(cell: xr.Dataset, name: str) -> float:
     return float(cell[name]) if name in cell else float("nan")
 
 
-def number(value: float) -> str:
+def formatted(value: float) -> str:
     """Three digits, or a dash where there is no number."""
     return f"{value:.3g}" if np.isfinite(value) else "-"
 
@@ -306,7 +306,7 @@ def _interval(line: xr.Dataset, prefix: str) -> str:
 
 def _constant(line: xr.Dataset, prefix: str) -> str:
     names = (f"{prefix}constant", f"{prefix}constant_low", f"{prefix}constant_high")
-    constant, low, high = (number(_value(line, name)) for name in names)
+    constant, low, high = (formatted(_value(line, name)) for name in names)
     return constant if low == "-" else f"{constant} [{low}, {high}]"
 
 

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 from .wrapped import AbstractWrappedController
 
 
-class KnownSteps(AbstractWrappedController):
+class ReplaySteps(AbstractWrappedController):
     """Ends steps at `times` (s, increasing, padded by anything beyond the last).
 
     Derivatives in reverse mode take every step once more, compiled otherwise. Judged

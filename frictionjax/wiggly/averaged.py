@@ -14,7 +14,7 @@ from jaxtyping import Array
 
 from ..programs import Program, in_chunks
 from ..scene import Scene
-from .passage import Track, steady_passages
+from .passage import WellPull, steady_transit_times
 
 _STEPS = 96  # of a slide, from its start to its end
 _SHORT = 4.0  # wells of the first step and the last
@@ -95,7 +95,7 @@ def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, numbe
 
 
 def lags_of(
-    scene: Scene, track: Track, eps, viscosity, origin, first, time, force, wells
+    scene: Scene, track: WellPull, eps, viscosity, origin, first, time, force, wells
 ) -> Lags:
     """Slides of `wells` from the lattice points `first`, passed at `time` (s); all (C,).
 
@@ -103,7 +103,7 @@ def lags_of(
     """
     low = np.log(force) + _RANGE[0]
     logs = low[:, None] + np.linspace(0.0, _RANGE[1] - _RANGE[0], _ROWS)
-    table = np.log(steady_passages(track, viscosity, np.exp(logs)))
+    table = np.log(steady_transit_times(track, viscosity, np.exp(logs)))
     number = _grid(wells)
     columns = table, low, track.fold, track.sign, eps, origin, first, time, number
     found = in_chunks(_march, _SLIDES, (scene,), columns)

@@ -146,7 +146,7 @@ def advance(
 def _cubic(s: float, step: Real, y0: Real, y1: Real, slope0: Real, slope1: Real):
     """Value and slope of the cubic Hermite interpolant at the share s of the step."""
     ends = y1 - y0, step * slope0, step * slope1
-    return y0 + hermite.way(s, *ends), hermite.slope(s, *ends) / step
+    return y0 + hermite.cubic(s, *ends), hermite.cubic_slope(s, *ends) / step
 
 
 def at_rest() -> Balance:

@@ -4,18 +4,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .job_queue import Arrivals, Legs
+from .job_queue import SegmentEnds, Segments
 
 
-class Found(NamedTuple):
+class BracketValues(NamedTuple):
     """Values at all stops of a layout, shape (S,), and of the legs that lead to them.
 
     `gap`: how closely brackets have closed, in eps; `how`: as in `Answers`.
     `steps`, `rejected`: of each cell.
     """
 
-    arrivals: Arrivals
-    legs: Legs
+    arrivals: SegmentEnds
+    legs: Segments
     gap: np.ndarray
     how: np.ndarray
     steps: np.ndarray

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .job_queue import Arrivals, Legs
+from .job_queue import SegmentEnds, Segments
 
 _SLOW = 0.03  # of the largest speed: what counts as a slip on a path that rests
 _SLIP = 10.0  # times the path's speed: faster tips are in a slip
@@ -10,7 +10,7 @@ _CREEP = 1e-2  # of the path's speed: tips that are slower hang on a branch and 
 
 
 def gaps_of(
-    found: Arrivals, legs: Legs, behind: np.ndarray, ahead: np.ndarray, speed: float
+    found: SegmentEnds, legs: Segments, behind: np.ndarray, ahead: np.ndarray, speed: float
 ) -> np.ndarray:
     """How closely brackets have closed at stops, in units of eps; 0 from a known start.
 
@@ -22,7 +22,7 @@ def gaps_of(
 
 
 def shifts_of(
-    found: Arrivals, legs: Legs, behind: np.ndarray, ahead: np.ndarray, speed: float
+    found: SegmentEnds, legs: Segments, behind: np.ndarray, ahead: np.ndarray, speed: float
 ) -> np.ndarray:
     """How far brackets are apart in time at stops, in slip periods; as `gaps_of`.
 
@@ -41,7 +41,7 @@ def wells_between(well0, tip0, well1, tip1) -> np.ndarray:
     return (well1 - well0) + (tip1 - tip0)
 
 
-def _apart(found: Arrivals, legs: Legs, behind, ahead, speed: float) -> tuple:
+def _apart(found: SegmentEnds, legs: Segments, behind, ahead, speed: float) -> tuple:
     """Wells between both lanes, and speeds of the slower and faster over the path's."""
     both = ahead >= 0
     a, b = np.where(both, ahead, 0), np.where(both, behind, 0)

@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from .balance import Errors, errors_of_sums
-from .layout import Layout, Slide
+from .layout import Layout, SampledPeriods
 from .path import Path
-from .stops import Stops
-from .survey import DEFICIT, RESIDUAL, SURPLUS, VISCOUS, WORK, Survey
-from .windows import Windows
+from .stops import StopValues
+from .survey import DEFICIT, RESIDUAL, SURPLUS, VISCOUS, WORK, SampledSlide
+from .windows import Brackets
 
 _NO_SLIPS = 0.1  # dissipation over eps times what the load goes: less where nothing folds
 
@@ -22,14 +22,14 @@ class CellWay(NamedTuple):
     """
 
     chain: np.ndarray
-    slides: list[Slide]
-    surveys: list[Survey]
+    slides: list[SampledPeriods]
+    surveys: list[SampledSlide]
     totals: np.ndarray
     before: np.ndarray
 
 
 def way_of(
-    chain: np.ndarray, slides: list[Slide], surveys: list[Survey], stops: Stops
+    chain: np.ndarray, slides: list[SampledPeriods], surveys: list[SampledSlide], stops: StopValues
 ) -> CellWay:
     """The cell's running sums, slides of which only some slips were measured included."""
     own, time = stops.sums[:, chain], stops.time[chain]
@@ -52,7 +52,7 @@ class _Outputs(NamedTuple):
     begin: np.ndarray
 
 
-def _outputs(cell: CellWay, stops: Stops, layout: Layout, output: np.ndarray) -> _Outputs:
+def _outputs(cell: CellWay, stops: StopValues, layout: Layout, output: np.ndarray) -> _Outputs:
     place = np.full(stops.time.size + 1, -1)
     place[cell.chain] = np.arange(cell.chain.size)
     lows = np.array([survey.low for survey in cell.surveys])
@@ -64,7 +64,7 @@ def _outputs(cell: CellWay, stops: Stops, layout: Layout, output: np.ndarray) ->
     return _Outputs(output, place[output], survey, begin)
 
 
-def _since_begin(windows: Windows, stops: Stops, chosen: np.ndarray) -> np.ndarray:
+def _since_begin(windows: Brackets, stops: StopValues, chosen: np.ndarray) -> np.ndarray:
     """Integrals in J over the windows of the chosen stops, up to these, (3, n).
 
     Times in a rest of the path share a window, and lanes sum from one stop to the next.
@@ -82,7 +82,7 @@ def _since_begin(windows: Windows, stops: Stops, chosen: np.ndarray) -> np.ndarr
 
 
 def _running(
-    cell: CellWay, stops: Stops, windows: Windows, outputs: _Outputs
+    cell: CellWay, stops: StopValues, windows: Brackets, outputs: _Outputs
 ) -> np.ndarray:
     """Integrals in J from 0 to each requested time, (3, n)."""
     in_chain = (outputs.place >= 0) & (outputs.stop >= 0)
@@ -119,7 +119,7 @@ def energetics(cell, stops, layout, output, energy0, of_path, path, unit, eps):
     return spent, running[RESIDUAL], cell.totals[RESIDUAL, -1], *rest
 
 
-def _errors(cell: CellWay, stops: Stops, path: Path, unit: float) -> Errors:
+def _errors(cell: CellWay, stops: StopValues, path: Path, unit: float) -> Errors:
     """Of the dissipation by either sum, what surveys add included."""
     _, viscous, residual = cell.totals[:, -1]
     size = stops.size[cell.chain].max(initial=0.0)
@@ -138,7 +138,7 @@ def _is_summed(cell: CellWay, errors: Errors, path: Path, eps: float) -> bool:
     return bool(errors.sum_is_closer and (few or not cell.surveys))
 
 
-def _with_slips(cell: CellWay, stops: Stops, energy0: float, beyond, path: Path):
+def _with_slips(cell: CellWay, stops: StopValues, energy0: float, beyond, path: Path):
     """Gap, sup of the error, and what surveys may be off, from energies."""
     final = beyond[-1] + _spent(cell, stops, path)
     gap = _second_opinion(cell, stops, final)
@@ -147,7 +147,7 @@ def _with_slips(cell: CellWay, stops: Stops, energy0: float, beyond, path: Path)
     return gap, worst, _share(float(unsure), final)
 
 
-def _without_slips(cell: CellWay, stops: Stops, energy0: float, beyond, errors: Errors):
+def _without_slips(cell: CellWay, stops: StopValues, energy0: float, beyond, errors: Errors):
     """The same where the motion is smooth, from the direct sum.
 
     What is dissipated is little of the energies there: 4700 wells from the origin, over a
@@ -167,7 +167,7 @@ def _share(error: float, whole: float) -> float:
     return error / max(abs(whole), 1e-300) if error > 0 else error  # NaN stays
 
 
-def _second_opinion(cell: CellWay, stops: Stops, final: float) -> float:
+def _second_opinion(cell: CellWay, stops: StopValues, final: float) -> float:
     """Estimate in J of the error of the dissipation at the end.
 
     The direct sum over a surveyed slide is one slip off where slips drift across the ends
@@ -185,7 +185,7 @@ def no_energetics(size: int) -> tuple:
     return nothing, nothing, np.nan, np.nan, np.nan, 0.0
 
 
-def _spent(cell: CellWay, stops: Stops, path: Path) -> float:
+def _spent(cell: CellWay, stops: StopValues, path: Path) -> float:
     """The path's dissipation in J over [0, T], from the legs and slides of the cell."""
     legs = float(np.sum(stops.sums[VISCOUS, cell.chain] - stops.beyond[cell.chain]))
     return legs + sum(path.rho[s.piece] * s.way for s in cell.slides)
@@ -220,7 +220,7 @@ class Deviations(NamedTuple):
 NOT_ASKED = Deviations(np.nan, np.nan, 0.0)
 
 
-def deviations(cell: CellWay, stops: Stops) -> Deviations:
+def deviations(cell: CellWay, stops: StopValues) -> Deviations:
     """Largest deviations of the whole way, and by how much surveys may change them.
 
     The first wells of a slide are surveyed most roughly, where z is still near the path:

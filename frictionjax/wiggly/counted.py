@@ -20,7 +20,7 @@ from jaxtyping import Array, Float
 from ..arguments import Real
 from ..scene import Scene
 from .field import TipField
-from .fronts import controller_of, front_at_start, fronts_at, stops_of
+from .fronts import controller_of, checkpoint_at_start, checkpoints_at, times_of_stops
 from .integration import field_of
 from .methods import with_tolerance
 from .tolerance import plan_steps
@@ -188,10 +188,10 @@ def count_work(
     if hasattr(finding, "root_finder"):
         counting = _CountingFinder(finding.root_finder)
         finding = eqx.tree_at(lambda s: s.root_finder, finding, counting)
-    stops, _ = stops_of(ts, scene.turning_points(), ts[-1], plan.shortest_step)
+    stops, _ = times_of_stops(ts, scene.turning_points(), ts[-1], plan.shortest_step)
     tally = _Tally(controller_of(plan))
-    start = front_at_start((field.start(scene.z0), _nothing()), plan, _nothing())
+    start = checkpoint_at_start((field.start(scene.z0), _nothing()), plan, _nothing())
     parts = stops, start, field, plan, _Counted(finding, field), tally
-    fronts = fronts_at(*parts, max_steps, tally=lambda state: state[1])
+    fronts = checkpoints_at(*parts, max_steps, tally=lambda state: state[1])
     last = jax.tree_util.tree_map(lambda leaf: leaf[-1], fronts)
     return Counts(last.steps, last.rejected, last.tally)

@@ -9,7 +9,7 @@ from numpy.polynomial import chebyshev
 _INVERSE, _SETTLED = 6, 1e-13
 
 
-class Curve(NamedTuple):
+class TransitTimes(NamedTuple):
     """Times of passage of one slide.
 
     `edges` (K+1,): numbers of lattice points. `starts` (K+1,): times there, s. `series`
@@ -26,17 +26,17 @@ class Curve(NamedTuple):
 
     def time_of(self, number: np.ndarray) -> np.ndarray:
         """Time in s at which each lattice point is passed, numbers need not be whole."""
-        return Curves([self]).time_of(np.zeros(number.size, dtype=int), number)
+        return ManyTransitTimes([self]).time_of(np.zeros(number.size, dtype=int), number)
 
     def number_at(self, time: np.ndarray) -> np.ndarray:
         """Lattice point that is passed at each time between the ends."""
-        return Curves([self]).number_at(np.zeros(time.size, dtype=int), time)
+        return ManyTransitTimes([self]).number_at(np.zeros(time.size, dtype=int), time)
 
 
-class Curves:
+class ManyTransitTimes:
     """Curves of many slides, asked all at once: a call for each took 0.2 ms."""
 
-    def __init__(self, curves: list[Curve]):
+    def __init__(self, curves: list[TransitTimes]):
         self.edges = np.concatenate([c.edges[:-1] for c in curves])
         self.wells = np.concatenate([np.diff(c.edges) for c in curves])
         self.starts = np.concatenate([c.starts[:-1] for c in curves])

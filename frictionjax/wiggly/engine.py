@@ -10,18 +10,18 @@ import numpy as np
 
 from ..scene import Scene
 from ..viscosity import quiet_where_extreme, viscosity_of
-from .evaluation import Answers, evaluate
+from .evaluation import CellResults, evaluate
 from .find_path import path_of
-from .lane import Cells, LaneScene, Sums
+from .lane import LaneCells, LaneScene, Sums
 from .lanes import Room, prepare
 from .layout import lay_out
-from .needs import AFFORDABLE, Needs
+from .needs import AFFORDABLE, Requirements
 from .path import Path
 from .planning import LOOSEST, TABLEAU, TILES, lane_scene, planned
-from .riding import find_rides
+from .riding import find_fast_slides
 from .rosenbrock import Tableau
-from .rounds import CLOSED, WORKERS, Report, Rounds, collect
-from .starts import Ground
+from .rounds import CLOSED, WORKERS, Report, BracketContext, close_brackets
+from .starts import CellBounds
 from .status import Status
 from .survey import NODES
 
@@ -33,17 +33,17 @@ class _Cellwise(NamedTuple):
     """What an attempt needs of each cell."""
 
     eps: np.ndarray
-    ground: Ground
-    cells: Cells
+    ground: CellBounds
+    cells: LaneCells
     brief: np.ndarray
-    needs: Needs
+    needs: Requirements
 
 
 def _some(parts: Any, chosen: np.ndarray) -> Any:
     return jax.tree_util.tree_map(lambda v: np.asarray(v)[chosen], parts)
 
 
-def _put(whole: Answers, part: Answers, chosen: np.ndarray) -> None:
+def _put(whole: CellResults, part: CellResults, chosen: np.ndarray) -> None:
     """The answers of another attempt; its steps are on top of those before."""
     steps = whole.steps[chosen], whole.rejected[chosen]
     part = part._replace(steps=part.steps + steps[0], rejected=part.rejected + steps[1])
@@ -66,22 +66,22 @@ class _Sweep(NamedTuple):
     report: Report
     workers: int = WORKERS
 
-    def rounds(self, every: _Cellwise) -> Rounds:
+    def rounds(self, every: _Cellwise) -> BracketContext:
         """What rounds of windows of some cells need."""
         fixed = self.scene, self.lanes, self.path
         parts = *fixed, every.ground, every.cells, self.tableau
         nothing = np.zeros((2, every.eps.size))
         told = self.wanted, self.accuracy, self.report
         waited = np.zeros(every.eps.size)
-        return Rounds(*parts, *told, nothing, waited, every.brief, self.workers)
+        return BracketContext(*parts, *told, nothing, waited, every.brief, self.workers)
 
-    def attempt(self, cells: _Cellwise) -> tuple[Answers, np.ndarray]:
+    def attempt(self, cells: _Cellwise) -> tuple[CellResults, np.ndarray]:
         """Answers of some cells, and which of them have a bracket that stays open."""
         rides, whole = cells.ground.rides, any(self.wanted) or self.every_slip
         cut = self.ts, cells.needs, rides, self.accuracy
         layout = lay_out(self.scene, self.path, cells.eps, *cut, whole)
         rounds = self.rounds(cells)
-        found, open_ = collect(rounds, layout, cells.needs)
+        found, open_ = close_brackets(rounds, layout, cells.needs)
         start = cells.ground.start_well, cells.ground.start_tip
         summed = layout, found, self.wanted, start, self.accuracy
         answers = evaluate(self.scene, self.path, cells.eps, self.ts, *summed)
@@ -89,7 +89,7 @@ class _Sweep(NamedTuple):
         never[layout.windows.cell[open_]] = True
         return answers, never
 
-    def is_rough(self, answers: Answers, eps: np.ndarray) -> np.ndarray:
+    def is_rough(self, answers: CellResults, eps: np.ndarray) -> np.ndarray:
         """Cells whose surveys are not good to the accuracy, or not known to be."""
         errors = [answers.survey_error / eps]
         if self.wanted.energies:
@@ -110,7 +110,7 @@ def integrate_cells(
     report: Report = lambda share: None,
     suprema: bool = True,
     tableau: Tableau = TABLEAU,
-) -> Answers | None:
+) -> CellResults | None:
     """Every cell (eps, gamma), shape (cells,): values at `ts` and sums over [0, T].
 
     "resolved" measures every slip, in tiles; "windowed" a few periods of every slide that
@@ -133,7 +133,7 @@ def integrate_cells(
     plan = planned(scene, lanes, path, eps, gamma, ts.size, accuracy, method)
     control, ground, needs, ridden = plan
     steering = control.tolerance, control.loosest, control.pace, control.reach
-    cells = Cells(eps, viscosity_of(eps, gamma), control.first_step, *steering)
+    cells = LaneCells(eps, viscosity_of(eps, gamma), control.first_step, *steering)
     parts = _Cellwise(eps, ground, cells, np.asarray(control.brief), needs)
     every = method == "resolved"
     sweep = _Sweep(scene, path, lanes, tableau, ts, accuracy, wanted, every, report)
@@ -165,7 +165,7 @@ def _surveyed_again(sweep: _Sweep, every: _Cellwise, answers, never, rough) -> b
     return True
 
 
-def _in_tiles(sweep: _Sweep, every: _Cellwise, answers: Answers, never: np.ndarray) -> None:
+def _in_tiles(sweep: _Sweep, every: _Cellwise, answers: CellResults, never: np.ndarray) -> None:
     """Every slip in longer tiles, for cells of which a bracket stays open.
 
     At gamma = 0.75, eps = 1e-4, accuracy 1e-6: 1.5 s, where one lane takes 30.
@@ -185,7 +185,7 @@ def _in_tiles(sweep: _Sweep, every: _Cellwise, answers: Answers, never: np.ndarr
 
 def _first_attempt(
     sweep: _Sweep, every: _Cellwise, ridden: np.ndarray
-) -> tuple[Answers, np.ndarray]:
+) -> tuple[CellResults, np.ndarray]:
     """Answers of all cells, and which have an open bracket: those without rides aside.
 
     Their lanes run while rides are found, which is mostly NumPy on one core.
@@ -199,7 +199,7 @@ def _first_attempt(
     # waiting for one core, a sweep took a tenth longer.
     lanes_run = threading.Event()
 
-    def aside() -> tuple[Answers, np.ndarray]:
+    def aside() -> tuple[CellResults, np.ndarray]:
         lanes_run.wait()
         # With both cores lanes would hold up every small program of the other thread.
         return sweep._replace(workers=1).attempt(_some(every, others))
@@ -219,7 +219,7 @@ def _first_attempt(
         columns.append(whole)
     for which, _, open_ in parts:
         never[which] = open_
-    return Answers(*columns), never
+    return CellResults(*columns), never
 
 
 def _with_rides(
@@ -227,11 +227,11 @@ def _with_rides(
     every: _Cellwise,
     chosen: np.ndarray,
     lanes_run: Callable[[], None] = lambda: None,
-) -> tuple[Answers, np.ndarray]:
+) -> tuple[CellResults, np.ndarray]:
     """An attempt at some cells after their rides have been found."""
     some = _some(every, chosen)
     rounds = sweep.rounds(some)._replace(lanes_run=lanes_run)
-    measured = find_rides(rounds, some.needs)
+    measured = find_fast_slides(rounds, some.needs)
     # The rides belong to the cells from here on: later attempts use them too.
     every.ground.rides[chosen] = some.ground.rides
     has = np.array([len(rides) > 0 for rides in some.ground.rides])
@@ -269,7 +269,7 @@ def _affordable(path: Path, cells: _Cellwise) -> np.ndarray:
 
 
 def _from_the_start(
-    sweep: _Sweep, every: _Cellwise, answers: Answers, open_: np.ndarray
+    sweep: _Sweep, every: _Cellwise, answers: CellResults, open_: np.ndarray
 ) -> None:
     """One lane from z0 through everything, for cells whose brackets stay open."""
     if open_.size == 0:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
-from .bracket_values import Found
+from .bracket_values import BracketValues
 from .cell_sums import (
     NOT_ASKED,
     CellWay,
@@ -18,12 +18,12 @@ from .lane import Sums
 from .layout import Layout
 from .path import Path, states_at
 from .status import Status
-from .stops import states_of, stops_of, surveys_at
+from .stops import states_at_stops, stop_values_of, sampled_slides_at
 
 _RESIDUAL_SHARE = 0.05  # of the energy dissipated; solutions leave about 1e-6 of it
 
 
-class Answers(NamedTuple):
+class CellResults(NamedTuple):
     """Values of all cells; (cells, n) at the requested times, else (cells,).
 
     `tolerance`: of steps, in periods. `how`: 0 where one lane has integrated every slip
@@ -66,23 +66,23 @@ def evaluate(
     eps: np.ndarray,
     ts: np.ndarray,
     layout: Layout,
-    found: Found,
+    found: BracketValues,
     wanted: Sums,
     start: tuple[np.ndarray, np.ndarray],
     accuracy: float,
-) -> Answers:
+) -> CellResults:
     """Values of all cells from what was found at the stops of the layout.
 
     Suprema are NaN where no extremes were `wanted`.
     """
-    stops = stops_of(scene, layout, found, eps)
+    stops = stop_values_of(scene, layout, found, eps)
     count = eps.size
     guide = np.full(count, path.states[0])
-    z_start, energy0, _ = states_of(scene, eps, *start, np.zeros(count), guide)
+    z_start, energy0, _ = states_at_stops(scene, eps, *start, np.zeros(count), guide)
     guides = states_at(scene, path, ts)
     of_path = _dissipation_of_path(path, ts, guides)
     whole = float(path.travel[-1])
-    surveys = surveys_at(layout.slides, stops)
+    surveys = sampled_slides_at(layout.slides, stops)
     rows = []
     for c in range(count):
         mine = [i for i, slide in enumerate(layout.slides) if slide.cell == c]
@@ -111,7 +111,7 @@ def evaluate(
             )
         )
     columns = [np.array(column) for column in zip(*rows, strict=True)]
-    return Answers._make([*columns, found.steps, found.rejected, np.zeros(count)])
+    return CellResults._make([*columns, found.steps, found.rejected, np.zeros(count)])
 
 
 def _share(cell: CellWay, path: Path, whole: float) -> float:

@@ -25,11 +25,11 @@ class Guide(NamedTuple):
 
     def way(self, t: Real) -> Real:
         """How far it has come at time `t`, in m."""
-        return hermite.way((t - self.start) / self.length, *self._ends())
+        return hermite.cubic((t - self.start) / self.length, *self._ends())
 
     def slope(self, t: Real) -> Real:
         """How fast it moves at time `t`, in m/s."""
-        return hermite.slope((t - self.start) / self.length, *self._ends()) / self.length
+        return hermite.cubic_slope((t - self.start) / self.length, *self._ends()) / self.length
 
     def _ends(self) -> tuple[Real, Real, Real]:
         """The rise, and the slopes at both ends over all of the length, in m."""
@@ -108,7 +108,7 @@ def _extremes(
     for top, bottom in ((q, a), (c, q)):
         inside = (top * bottom > 0) & (jnp.abs(top) < jnp.abs(bottom))
         s = jnp.where(inside, top / jnp.where(inside, bottom, 1.0), 0.0)
-        value = ends[0] + hermite.way(s, rise, *ways)
+        value = ends[0] + hermite.cubic(s, rise, *ways)
         high = jnp.maximum(high, jnp.minimum(value, top_most))
         low = jnp.minimum(low, jnp.maximum(value, bottom_most))
     return low, high

@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from ..potentials import AbstractPotential
 from ..programs import Program, in_chunks
-from .landscape import Folds
+from .landscape import WiggleFolds
 
 # Half of the grid over a well, graded towards the fold by e-folds that resolve folds down
 # to 1e-13 of a period.
@@ -17,7 +17,7 @@ _GRID = 0.5 * np.concatenate([-_GRADED[:0:-1], _GRADED])
 _STEPS = np.diff(_GRID)
 _THIN = 11  # 1023 is a multiple, so that the fold stays on the grid
 _THIN_STEPS = np.diff(_GRID[::_THIN])
-FORCES = np.logspace(-24, 4, 85)
+LAG_FORCES = np.logspace(-24, 4, 85)
 _ROWS = 8  # wells in a compiled call
 
 
@@ -75,7 +75,7 @@ def from_fold_to_fold(
 
 
 def lag_forces(
-    potential: AbstractPotential, eps: np.ndarray, folds: Folds, drag: np.ndarray
+    potential: AbstractPotential, eps: np.ndarray, folds: WiggleFolds, drag: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force in N beyond the fold that a steady slide needs, at most: right and left.
 
@@ -102,27 +102,27 @@ def _needed(wells: Wells, wanted: np.ndarray) -> np.ndarray:
     low = _below(wells.thinned(), wanted)
     while True:
         slow, fast = _speeds(wells, low), _speeds(wells, low + 1)
-        shift = ((fast <= wanted) & (low < FORCES.size - 2)).astype(int)
+        shift = ((fast <= wanted) & (low < LAG_FORCES.size - 2)).astype(int)
         shift -= (slow > wanted) & (low > 0)
         if not shift.any():
             break
         low = low + shift
     share = np.clip((wanted - slow) / np.maximum(fast - slow, 1e-300), 0.0, 1.0)
-    logs = np.log(FORCES)
+    logs = np.log(LAG_FORCES)
     return np.exp(logs[low] + share * (logs[low + 1] - logs[low]))
 
 
 def _speeds(wells: Wells, index: np.ndarray) -> np.ndarray:
     """Logarithms of speeds under some of `FORCES`, one for each well."""
-    return -np.log(wells.passages(FORCES[index][:, None])[:, 0])
+    return -np.log(wells.passages(LAG_FORCES[index][:, None])[:, 0])
 
 
 def _below(wells: Wells, wanted: np.ndarray) -> np.ndarray:
     """Index of the last force under which slides are not faster, by halving."""
     low = np.zeros(wanted.size, dtype=int)
-    high = np.full(wanted.size, FORCES.size - 1)
+    high = np.full(wanted.size, LAG_FORCES.size - 1)
     while np.any(high - low > 1):
         middle = (low + high) // 2
         below = _speeds(wells, middle) <= wanted
         low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return np.minimum(low, FORCES.size - 2)
+    return np.minimum(low, LAG_FORCES.size - 2)

@@ -11,14 +11,14 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int, PyTree
 
 from ..arguments import Real
-from .along import KnownSteps
+from .along import ReplaySteps
 from .field import TipField
 from .guard import WellGuard
-from .observed import observed_field
+from .observed import augmented_field
 from .rounded import RoundedSteps
 from .status import Status
-from .tolerance import Plan
-from .travel import travel
+from .tolerance import StepPlan
+from .travel import segment_adjoint
 
 # Steps of a piece, all of which are kept for derivatives in reverse mode, and how many more
 # there is room for when it is made again, with other roundings. Memory of all is cleared
@@ -26,7 +26,7 @@ from .travel import travel
 _STEPS, _MORE = 3840, 256
 
 
-class Front(NamedTuple):
+class Checkpoint(NamedTuple):
     """How far an integration has come: the last step's length opens the next interval.
 
     `tally`: what the controller has added up over all attempts, where it does.
@@ -41,7 +41,7 @@ class Front(NamedTuple):
     tally: PyTree = ()
 
 
-def front_at_start(y: tuple, plan: Plan, tally: PyTree = ()) -> Front:
+def checkpoint_at_start(y: tuple, plan: StepPlan, tally: PyTree = ()) -> Checkpoint:
     """The front at t = 0 with the tip and what follows it, `y`.
 
     Traced numbers are not looked at before: with an eps of -1 steps of NaN were made, and
@@ -51,10 +51,10 @@ def front_at_start(y: tuple, plan: Plan, tally: PyTree = ()) -> Front:
     numbers = jnp.stack([y[0], plan.first_step, plan.tolerance, plan.reach])
     known = jnp.all(jnp.isfinite(numbers))
     code = jnp.where(known, int(Status.OK), int(Status.NOT_FINITE))
-    return Front(zero, y, plan.first_step, code, none, none, tally)
+    return Checkpoint(zero, y, plan.first_step, code, none, none, tally)
 
 
-def stops_of(
+def times_of_stops(
     ts, turns, until, rounding: Real
 ) -> tuple[Float[Array, " m"], Int[Array, " n"]]:
     """Times at which steps end, sorted, and where in them the wanted ones are.
@@ -79,7 +79,7 @@ def _beside(ts, ends, rounding):
     return ts
 
 
-def controller_of(plan: Plan) -> RoundedSteps:
+def controller_of(plan: StepPlan) -> RoundedSteps:
     """What chooses steps."""
     controller = diffrax.PIDController(
         rtol=0.0,
@@ -95,17 +95,17 @@ def controller_of(plan: Plan) -> RoundedSteps:
     return RoundedSteps(WellGuard(controller, plan.reach))
 
 
-def fronts_at(
+def checkpoints_at(
     stops: Float[Array, " m"],
-    start: Front,
+    start: Checkpoint,
     field: TipField,
-    plan: Plan,
+    plan: StepPlan,
     solver: diffrax.AbstractSolver,
     controller: diffrax.AbstractAdaptiveStepSizeController,
     max_steps: int,
     adjoint: diffrax.AbstractAdjoint | None = None,
     tally: Callable[[PyTree], PyTree] | None = None,
-) -> Front:
+) -> Checkpoint:
     """Fronts at the stops, stacked; `solver` is of (y, ..., step).
 
     `tally`: what the controller's state has added up. One `diffeqsolve` for each piece, not
@@ -124,26 +124,26 @@ def fronts_at(
         for piece in (forth, partial(_again, field, solver, controller))
     )
     goes_on = jax.tree_util.Partial(_goes_on, plan.shortest_step)
-    return travel((*pieces, start, stops), goes_on)
+    return segment_adjoint((*pieces, start, stops), goes_on)
 
 
-def _goes_on(rounding: Real, front: Front, stop: Real) -> Array:
+def _goes_on(rounding: Real, front: Checkpoint, stop: Real) -> Array:
     """Not where it failed, or is a rounding away from the stop (written differently)."""
     return (front.code == Status.OK) & (stop - front.t > rounding)
 
 
 def _piece(
     field: TipField,
-    plan: Plan,
+    plan: StepPlan,
     solver: diffrax.AbstractSolver,
     controller: diffrax.AbstractAdaptiveStepSizeController,
     tally: Callable[[PyTree], PyTree] | None,
     max_steps: int,
     steps: int,
     adjoint: diffrax.AbstractAdjoint,
-    front: Front,
+    front: Checkpoint,
     stop: Real,
-) -> Front:
+) -> Checkpoint:
     """At most so many steps towards the stop; none where the front does not go on."""
     stop = jnp.where(_goes_on(plan.shortest_step, front, stop), stop, front.t)
     saveat = diffrax.SaveAt(t1=True, controller_state=tally is not None)
@@ -155,7 +155,7 @@ def _piece(
     goes_on = unfinished & (taken < max_steps)
     code = jnp.where(goes_on, int(Status.OK), _code(found.result))
     more = () if tally is None else tally(found.controller_state)
-    return Front(
+    return Checkpoint(
         t=jnp.where(unfinished, reached, stop),
         y=tuple(y),
         step=jax.lax.stop_gradient(step),
@@ -170,9 +170,9 @@ def _again(
     field: TipField,
     solver: diffrax.AbstractSolver,
     controller: diffrax.AbstractAdaptiveStepSizeController,
-    front: Front,
+    front: Checkpoint,
     end: Real,
-) -> Front:
+) -> Checkpoint:
     """All the way to where a piece has ended, for derivatives: steps are chosen, then made.
 
     Where there is no room for them all, `t` is NaN.
@@ -186,7 +186,7 @@ def _again(
     times_alone = diffrax.SaveAt(steps=True, fn=lambda t, y, args: t)
     chosen = _solved(room, every, times_alone, *still)
     assert chosen.ts is not None
-    known = KnownSteps(controller, chosen.ts)
+    known = ReplaySteps(controller, chosen.ts)
     last = diffrax.SaveAt(t1=True)
     found = _solved(room, every, last, field, solver, known, front, end)
     *y, _ = jax.tree_util.tree_map(lambda leaf: leaf[0], found.ys)
@@ -201,11 +201,11 @@ def _solved(
     field: TipField,
     solver: diffrax.AbstractSolver,
     controller: diffrax.AbstractAdaptiveStepSizeController,
-    front: Front,
+    front: Checkpoint,
     stop: Real,
 ) -> diffrax.Solution:
     return diffrax.diffeqsolve(
-        diffrax.ODETerm(observed_field(field)),
+        diffrax.ODETerm(augmented_field(field)),
         solver,
         front.t,
         stop,

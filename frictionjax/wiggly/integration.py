@@ -12,11 +12,11 @@ from ..coefficients import coefficients
 from ..scene import Scene
 from .balance import Balance, dissipated, errors_of_sums
 from .field import TipField
-from .fronts import controller_of, first_of, front_at_start, fronts_at, stops_of
+from .fronts import controller_of, first_of, checkpoint_at_start, checkpoints_at, times_of_stops
 from .methods import with_tolerance
-from .observed import AbstractWatch, Observed, Recorder
+from .observed import AbstractObserver, AugmentedSolver, Recorder
 from .status import Status
-from .tolerance import Plan
+from .tolerance import StepPlan
 
 MAX_STEPS = 2**30  # a bound, not a buffer: nothing is allocated for it
 _RESIDUAL_SHARE = 0.05  # of the energy dissipated; solutions leave about 1e-6 of it
@@ -46,12 +46,12 @@ def integrate(
     eps: Real,
     gamma: Real,
     ts: Float[Array, " n"],
-    plan: Plan,
+    plan: StepPlan,
     solver: diffrax.AbstractSolver,
     *,
     until: Real,
     balanced: bool = True,
-    watch: AbstractWatch | None = None,
+    watch: AbstractObserver | None = None,
     max_steps: int = MAX_STEPS,
     adjoint: diffrax.AbstractAdjoint | None = None,
 ) -> Trajectory:
@@ -65,11 +65,11 @@ def integrate(
     start_energy = field.energy(jnp.zeros_like(until), tip)
     recorder = Recorder(field, start_energy, balanced, watch)
     turns = scene.turning_points()
-    stops, wanted = stops_of(ts, turns, until, plan.shortest_step)
-    observed = Observed(with_tolerance(solver, plan.tolerance), recorder)
-    start = front_at_start((tip, *recorder.start(scene.z0)), plan)
+    stops, wanted = times_of_stops(ts, turns, until, plan.shortest_step)
+    observed = AugmentedSolver(with_tolerance(solver, plan.tolerance), recorder)
+    start = checkpoint_at_start((tip, *recorder.start(scene.z0)), plan)
     parts = stops, start, field, plan, observed, controller_of(plan)
-    fronts = fronts_at(*parts, max_steps, adjoint)
+    fronts = checkpoints_at(*parts, max_steps, adjoint)
     last = jax.tree_util.tree_map(lambda leaf: leaf[-1], fronts)
     fronts = jax.tree_util.tree_map(lambda leaf: leaf[wanted], fronts)
     tips, *memories = fronts.y

@@ -10,7 +10,7 @@ from ..programs import Program
 from .balance import Balance
 from .extent import Extent, Guide
 from .field import Point
-from .lane import Cells, LaneScene, Motion, Sums, Task, field_of, keep, step_of_lane
+from .lane import LaneCells, LaneScene, LaneState, Sums, LaneTask, field_of_lane, keep, step_of_lane
 from .rosenbrock import Tableau
 
 # Steps between two looks at which lanes are done: a look costs about two steps, and a
@@ -18,7 +18,7 @@ from .rosenbrock import Tableau
 _CHUNK = 16
 
 
-class Jobs(NamedTuple):
+class Lanes(NamedTuple):
     """Where lanes start, shape (jobs,), and the range of legs that each runs through.
 
     At the time `origin` (s) the tip is at `tip` in the well number `well`.
@@ -32,7 +32,7 @@ class Jobs(NamedTuple):
     past_leg: Any
 
 
-class Legs(NamedTuple):
+class Segments(NamedTuple):
     """Stretches of a lane's way between two stops, shape (legs,).
 
     `start`, `end`: times in s. The guide goes from the state `guide0` (m) with the slope
@@ -50,7 +50,7 @@ class Legs(NamedTuple):
     budget: Any
 
 
-def guide_of(legs: Legs, length: Any = None) -> Guide:
+def guide_of(legs: Segments, length: Any = None) -> Guide:
     """The cubics of legs, over their own lengths (s) where no others are given."""
     length = legs.end - legs.start if length is None else length
     rise = legs.guide1 - legs.guide0
@@ -58,7 +58,7 @@ def guide_of(legs: Legs, length: Any = None) -> Guide:
     return Guide(legs.start, length, legs.guide0, rise, *slopes, legs.friction)
 
 
-class Arrivals(NamedTuple):
+class SegmentEnds(NamedTuple):
     """What lanes found at the end of each leg and on the way, shape (legs,).
 
     `well`, `tip`, `speed` (m/s): at the stop. `work`: int l' (z - guide), `viscous` and
@@ -93,19 +93,19 @@ class Tables(NamedTuple):
 class _Work(NamedTuple):
     """All lanes under way, the next job of the queue, and what has been found."""
 
-    task: Task
-    motion: Motion
+    task: LaneTask
+    motion: LaneState
     next_job: Int[Array, ""]
     found: Float[Array, "legs 14"]
 
 
-def _idle(tables: Tables, width: int) -> tuple[Task, Motion]:
+def _idle(tables: Tables, width: int) -> tuple[LaneTask, LaneState]:
     zero, one = jnp.zeros(width), jnp.ones(width)
     none = jnp.full(width, tables.jobs.shape[0], dtype=int)
     past = jnp.full(width, tables.legs.shape[0], dtype=int)
-    cells, guide = Cells(*[one] * len(Cells._fields)), Guide(*[one] * 7)
-    task = Task(none, past, cells, zero, guide, zero, zero, budget=zero)
-    motion = Motion(
+    cells, guide = LaneCells(*[one] * len(LaneCells._fields)), Guide(*[one] * 7)
+    task = LaneTask(none, past, cells, zero, guide, zero, zero, budget=zero)
+    motion = LaneState(
         tip=zero,
         time=zero,
         unseen=zero,
@@ -121,7 +121,7 @@ def _idle(tables: Tables, width: int) -> tuple[Task, Motion]:
     return task, motion
 
 
-def _report(task: Task, motion: Motion) -> Float[Array, "width 14"]:
+def _report(task: LaneTask, motion: LaneState) -> Float[Array, "width 14"]:
     """Rows of `Arrivals` for all lanes; NaN where a lane has failed."""
     blank = jnp.where(motion.code == 0, 0.0, jnp.nan)
     speed = task.cell.eps * motion.point.stretch * motion.point.velocity
@@ -130,7 +130,7 @@ def _report(task: Task, motion: Motion) -> Float[Array, "width 14"]:
     return jnp.stack([*(v + blank for v in values), *counts], axis=-1)
 
 
-def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
+def _refill(tables: Tables, work: _Work) -> tuple[LaneTask, LaneState, Int[Array, ""]]:
     """Give lanes that are through their leg the next one, or the next job."""
     task, motion = work.task, work.motion
     jobs, legs, cells, count = tables.jobs, tables.legs, tables.cells, tables.waiting
@@ -144,11 +144,11 @@ def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
     fresh = wants & (job < count)
     next_job = jnp.minimum(work.next_job + jnp.sum(wants), count)
     cell, origin, well, tip, first_leg, _ = jobs[jnp.minimum(job, jobs.shape[0] - 1)].T
-    cell_row = Cells(*cells[cell.astype(int)].T)
+    cell_row = LaneCells(*cells[cell.astype(int)].T)
     leg = jnp.where(same_job, task.leg + 1, task.leg)
     leg = jnp.where(fresh, first_leg.astype(int), leg)
     leg = jnp.where(wants & ~fresh, legs.shape[0], leg)
-    own = Legs(*legs[jnp.minimum(leg, legs.shape[0] - 1)].T)
+    own = Segments(*legs[jnp.minimum(leg, legs.shape[0] - 1)].T)
     change = same_job | fresh
     origin = jnp.where(fresh, origin, task.origin)
     length = jnp.where(own.end > own.start, own.end - own.start, 1.0)
@@ -157,7 +157,7 @@ def _refill(tables: Tables, work: _Work) -> tuple[Task, Motion, Int[Array, ""]]:
     # Positions are counted from the nearest well, so that `tip` keeps its digits.
     tip = jnp.where(fresh, tip, motion.tip)
     shift = jnp.where(jnp.isfinite(tip), jnp.round(tip), 0.0)
-    moved = Task(
+    moved = LaneTask(
         job=job,
         leg=leg,
         cell=keep(fresh, cell_row, task.cell),
@@ -212,7 +212,7 @@ def run_queue(
     scene: LaneScene, tableau: Tableau, wanted: Sums, width: int, tables: Tables
 ) -> Float[Array, "legs 14"]:
     step = jax.vmap(lambda task, motion: step_of_lane(scene, tableau, wanted, task, motion))
-    point = jax.vmap(lambda task, time, tip: field_of(scene, task).point(time, tip))
+    point = jax.vmap(lambda task, time, tip: field_of_lane(scene, task).point(time, tip))
 
     def look(work: _Work) -> _Work:
         task, motion, next_job = _refill(tables, work)
@@ -231,6 +231,6 @@ def run_queue(
         ended = (task.job >= tables.waiting) | (stands & (task.leg + 1 >= past_leg))
         return (work.next_job < tables.waiting) | ~jnp.all(ended)
 
-    found = jnp.full((tables.legs.shape[0], len(Arrivals._fields)), jnp.nan)
+    found = jnp.full((tables.legs.shape[0], len(SegmentEnds._fields)), jnp.nan)
     start = _Work(*_idle(tables, width), jnp.zeros((), dtype=int), found)
     return jax.lax.while_loop(go_on, look, start).found

@@ -12,7 +12,7 @@ from ..extrema import periodic_extrema, slope_of
 from ..potentials import AbstractPotential
 
 
-class Folds(NamedTuple):
+class WiggleFolds(NamedTuple):
     """Extreme folds in the tip coordinate of well 0, where slides hang before a slip.
 
     `place_*`: periods, `state_*`: z in m, `force_*`: V_eps' in N, at its maximum (plus)
@@ -41,7 +41,7 @@ class Landscape(eqx.Module):
     steepest: Real
     branch: Real
     stretch: Real
-    folds: Folds
+    folds: WiggleFolds
 
 
 def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
@@ -68,7 +68,7 @@ def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
         steepest=jnp.max(jnp.abs(slopes)),
         branch=jnp.minimum(_narrowest_run(slopes) / points, 0.5),
         stretch=jnp.max(stretches),
-        folds=Folds(top, states[0], extrema.max, bottom, states[1], extrema.min),
+        folds=WiggleFolds(top, states[0], extrema.max, bottom, states[1], extrema.min),
     )
 
 

@@ -15,16 +15,16 @@ from .balance import Balance, advance, arrival, slopes_between
 from .extent import Extent, Guide, leave, spend, widen
 from .field import Point, TipField
 from .fold_steps import Foothold, foothold, pause_of
-from .once import once
+from .once import materialise
 from .rosenbrock import Linearised, Tableau, rosenbrock_step
 from .status import Status
-from .step_control import Control, Verdict, judge
+from .step_control import Control, StepVerdict, judge
 from .step_sizes import PER_OCTAVE, step_of
 
 _LOWEST_LEVEL = -900 * PER_OCTAVE
 
 
-class Cells(NamedTuple):
+class LaneCells(NamedTuple):
     """What all lanes of a cell share, shape (cells,): eps, eps^gamma and step control."""
 
     eps: Any
@@ -61,12 +61,12 @@ class Sums(NamedTuple):
     extremes: bool = True
 
 
-class Task(NamedTuple):
+class LaneTask(NamedTuple):
     """What stays the same on a leg; `stop` in s since `origin`, `budget` in steps."""
 
     job: Int[Array, ""]
     leg: Int[Array, ""]
-    cell: Cells
+    cell: LaneCells
     origin: Real
     guide: Guide
     well: Real
@@ -74,7 +74,7 @@ class Task(NamedTuple):
     budget: Real
 
 
-class Motion(NamedTuple):
+class LaneState(NamedTuple):
     """What moves on a leg; `time` in s since the task's origin, `unseen`: what rounding has
     left out of it."""
 
@@ -91,7 +91,7 @@ class Motion(NamedTuple):
     code: Real
 
 
-def field_of(scene: LaneScene, task: Task) -> TipField:
+def field_of_lane(scene: LaneScene, task: LaneTask) -> TipField:
     cell, parts = task.cell, (scene.potential, scene.support, scene.load)
     return TipField(*parts, cell.eps, cell.viscosity, well=task.well, origin=task.origin)
 
@@ -109,13 +109,13 @@ class _Trial(NamedTuple):
     time: Real
     unseen: Real
     end: Point
-    judged: Verdict
+    judged: StepVerdict
     cut: Bool[Array, ""]
     live: Bool[Array, ""]
 
 
-def _try_step(scene: LaneScene, tableau: Tableau, task: Task, motion: Motion) -> _Trial:
-    field = field_of(scene, task)
+def _try_step(scene: LaneScene, tableau: Tableau, task: LaneTask, motion: LaneState) -> _Trial:
+    field = field_of_lane(scene, task)
     live = (motion.time < task.stop) & (motion.code == 0)
     full = step_of(motion.level, task.cell.first_step)
     pause = pause_of(motion.point, task.origin + motion.time, _drag(task, motion.point))
@@ -123,7 +123,7 @@ def _try_step(scene: LaneScene, tableau: Tableau, task: Task, motion: Motion) ->
     full = jnp.where(waits, pause, full)
     left = task.stop - motion.time - motion.unseen
     cut = full >= left
-    step = once(jnp.where(live, jnp.where(cut, left, full), 1.0), task.cell.eps)
+    step = materialise(jnp.where(live, jnp.where(cut, left, full), 1.0), task.cell.eps)
     place = _foothold(scene, task, motion, step)
     start = Linearised(place.velocity(), *motion.point[1:3])
     tip, stages = rosenbrock_step(
@@ -132,7 +132,7 @@ def _try_step(scene: LaneScene, tableau: Tableau, task: Task, motion: Motion) ->
     tip = jnp.where(waits, motion.tip, tip)
     time, unseen = _later(motion, step)
     time = jnp.where(cut, task.stop, time)
-    end = once(field.point(time, tip), task.cell.eps)
+    end = materialise(field.point(time, tip), task.cell.eps)
     moved = jnp.abs(tip - motion.tip)
     error = jnp.where(waits, 0.0, place.beyond_rounding(jnp.abs(stages[-1]), end))
     branches = place.overgrown(), place.resolves(end)
@@ -143,10 +143,10 @@ def _try_step(scene: LaneScene, tableau: Tableau, task: Task, motion: Motion) ->
 
 
 def step_of_lane(
-    scene: LaneScene, tableau: Tableau, wanted: Sums, task: Task, motion: Motion
-) -> Motion:
+    scene: LaneScene, tableau: Tableau, wanted: Sums, task: LaneTask, motion: LaneState
+) -> LaneState:
     """One step of one lane; a lane that has reached its stop stays as it is."""
-    field = field_of(scene, task)
+    field = field_of_lane(scene, task)
     step, tip, time, unseen, end, judged, cut, live = _try_step(
         scene, tableau, task, motion
     )
@@ -172,7 +172,7 @@ def step_of_lane(
         )
     if wanted.extremes:
         extent = _extent(scene, task, motion, step, time, tip, arrived, sums)
-    after = Motion(
+    after = LaneState(
         tip=tip,
         time=time,
         unseen=unseen,
@@ -195,7 +195,7 @@ def step_of_lane(
     )
 
 
-def _later(motion: Motion, step: Real) -> tuple[Real, Real]:
+def _later(motion: LaneState, step: Real) -> tuple[Real, Real]:
     """The time after a step, and what rounding leaves out of it.
 
     Short steps add up: at a fold, eps = 1e-12, the load was never seen to go on, where
@@ -206,21 +206,21 @@ def _later(motion: Motion, step: Real) -> tuple[Real, Real]:
     return time, gone - (time - motion.time)
 
 
-def _foothold(scene: LaneScene, task: Task, motion: Motion, step: Real) -> Foothold:
+def _foothold(scene: LaneScene, task: LaneTask, motion: LaneState, step: Real) -> Foothold:
     point, width = motion.point, scene.rho_plus - scene.rho_minus
     since = task.origin + motion.time
     return foothold(step, point, since, _drag(task, point), width)
 
 
-def _drag(task: Task, point: Point) -> Real:
+def _drag(task: LaneTask, point: Point) -> Real:
     """N over periods a second."""
     return task.cell.viscosity * task.cell.eps * point.stretch
 
 
 def _extent(
     scene: LaneScene,
-    task: Task,
-    motion: Motion,
+    task: LaneTask,
+    motion: LaneState,
     step: Real,
     time: Real,
     tip: Real,
@@ -251,7 +251,7 @@ def _extent(
 
 
 def _outside(
-    scene: LaneScene, cell: Cells, point: Point, guide: Real, speed: Real
+    scene: LaneScene, cell: LaneCells, point: Point, guide: Real, speed: Real
 ) -> tuple[Real, Real]:
     """How far z is outside the strip in m, negative inside, and how fast it goes away."""
     support, z = scene.support, point.state

@@ -10,8 +10,8 @@ import numpy as np
 from jaxtyping import Array
 
 from ..programs import flattened
-from .job_queue import Arrivals, Jobs, Legs, Tables, run_queue
-from .lane import Cells, LaneScene, Sums
+from .job_queue import SegmentEnds, Lanes, Segments, Tables, run_queue
+from .lane import LaneCells, LaneScene, Sums
 from .rosenbrock import Tableau
 
 # Lanes side by side. Microseconds of a step of the loop: 0.72 at 4, 0.92 at 8, 1.43 at 16,
@@ -123,7 +123,7 @@ class _Loops:
 
 
 def _nothing(room: Room) -> Tables:
-    widths = (len(Cells._fields), len(Jobs._fields), len(Legs._fields))
+    widths = (len(LaneCells._fields), len(Lanes._fields), len(Segments._fields))
     tables = (np.ones((n, w)) for n, w in zip(room, widths, strict=True))
     return Tables(*tables, waiting=np.asarray(0))
 
@@ -145,13 +145,13 @@ def prepare(scene: LaneScene, tableau: Tableau, needed: Room, wanted: Sums) -> N
 
 def march(
     scene: LaneScene,
-    cells: Cells,
-    jobs: Jobs,
-    legs: Legs,
+    cells: LaneCells,
+    jobs: Lanes,
+    legs: Segments,
     tableau: Tableau,
     wanted: Sums,
     work: np.ndarray | None = None,
-) -> Arrivals:
+) -> SegmentEnds:
     """Run all jobs side by side; each lane takes the next job when it is through.
 
     NumPy arrays in and out. What a lane finds does not depend on the others. `work`
@@ -171,10 +171,10 @@ def march(
     if narrow < wide:
         width = _LOOPS.width_for(program, needed, max(wells.max(), wells.sum() / NARROW))
     found = _LOOPS.run((*program, width), needed, fill)
-    return Arrivals(*np.asarray(found)[: needed.legs].T)
+    return SegmentEnds(*np.asarray(found)[: needed.legs].T)
 
 
-def _wells(cells: Cells, jobs: Jobs, legs: Legs) -> np.ndarray:
+def _wells(cells: LaneCells, jobs: Lanes, legs: Segments) -> np.ndarray:
     """Wells that each job goes through, (jobs,)."""
     eps = np.asarray(cells.eps)[np.asarray(jobs.cell, dtype=int)]
     way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])

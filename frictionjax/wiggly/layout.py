@@ -5,19 +5,19 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
-from .curve import Curves
-from .leg_ends import Cut, followed, segments_of
-from .needs import WELLS_A_LEG, Needs, wells_a_leg
+from .curve import ManyTransitTimes
+from .leg_ends import Cut, follow_path, segments_of
+from .needs import WELLS_A_LEG, Requirements, wells_a_leg
 from .path import Path, states_at, times_at
 from .rides import last_begun
 from .slide_parts import Parts, inner_parts, level_at, sampled, uneven_pieces
 from .starts import way_at
-from .windows import Windows
+from .windows import Brackets
 
 _APART = 1e-12  # of the duration: probes of which each ends a leg
 
 
-class Slide(NamedTuple):
+class SampledPeriods(NamedTuple):
     """The inner part of a slide of one cell, of which only some periods are measured.
 
     `low`, `high`: its ends, s. `starts`, `ends`: times of the periods, s. `stops`: where
@@ -42,14 +42,14 @@ class Layout(NamedTuple):
     each requested time. `whole`: whether chain and slides cover [0, T].
     """
 
-    windows: Windows
+    windows: Brackets
     chain: list[np.ndarray]
-    slides: list[Slide]
+    slides: list[SampledPeriods]
     output: np.ndarray
     whole: bool
 
 
-def _lattice(scene: Scene, path: Path, eps, needs: Needs, parts: Parts, chosen):
+def _lattice(scene: Scene, path: Path, eps, needs: Requirements, parts: Parts, chosen):
     """Cell and time of every leg's end on slides of chosen cells, outside inner parts."""
     legs = wells_a_leg(path, eps)
     lows, highs = (states_at(scene, path, t) for t in (parts.low, parts.high))
@@ -149,13 +149,13 @@ class _Rows:
         self._count += stops.size
         return np.arange(self._count - stops.size, self._count)
 
-    def windows(self) -> Windows:
+    def windows(self) -> Brackets:
         """All of them."""
         sizes = np.concatenate(self._sizes)
         owner = np.repeat(np.arange(sizes.size), sizes)
         parts = self._cells, self._begins, self._paired, self._stops
         cell, begin, paired, stops = (np.concatenate(part) for part in parts)
-        return Windows(cell, begin, paired, owner, stops)
+        return Brackets(cell, begin, paired, owner, stops)
 
 
 def lay_out(
@@ -163,7 +163,7 @@ def lay_out(
     path: Path,
     eps: np.ndarray,
     ts: np.ndarray,
-    needs: Needs,
+    needs: Requirements,
     rides: np.ndarray,
     accuracy: float,
     summed: bool = True,
@@ -191,7 +191,7 @@ def _chains(
     scene,
     path: Path,
     eps,
-    needs: Needs,
+    needs: Requirements,
     rides,
     accuracy,
     parts: Parts,
@@ -215,7 +215,7 @@ def _chains(
         _cut(parts, cell, fixed, lattice_time[lattice_cell == cell]) for cell in chained
     ]
     if summed:
-        cuts = followed(scene, path, eps[chained], accuracy, cuts)
+        cuts = follow_path(scene, path, eps[chained], accuracy, cuts)
     # Of all cells at once: a call each took 0.1 ms.
     times = [t for cut in cuts for t in cut]
     every = way_at(scene, path, np.concatenate([*times, np.zeros(0)]))
@@ -247,8 +247,8 @@ def _chains(
 
 
 def _slides(
-    scene, path: Path, eps, needs: Needs, rides, parts: Parts, rows: _Rows
-) -> list[Slide]:
+    scene, path: Path, eps, needs: Requirements, rides, parts: Parts, rows: _Rows
+) -> list[SampledPeriods]:
     """A window for each period that is measured inside a slide."""
     who, starts, ends = sampled(scene, path, eps, needs, parts, rides)
     lows, highs = (states_at(scene, path, t) for t in (parts.low, parts.high))
@@ -259,11 +259,11 @@ def _slides(
         stops = rows.add(parts.cell[i] * one, starts[own], True, ends[own], one)
         where = parts.cell[i], parts.piece[i], parts.low[i], parts.high[i]
         periods = starts[own], ends[own], stops
-        slides.append(Slide(*where, highs[i] - lows[i], *periods))
+        slides.append(SampledPeriods(*where, highs[i] - lows[i], *periods))
     return slides
 
 
-def _show(scene, path: Path, eps, needs: Needs, rides, ts, rows: _Rows, output) -> None:
+def _show(scene, path: Path, eps, needs: Requirements, rides, ts, rows: _Rows, output) -> None:
     """A window for each requested time that no other window holds."""
     cell, shown = np.nonzero((output < 0) & (ts > 0))
     begin = _period_before(scene, path, eps, needs, cell, ts[shown])
@@ -311,7 +311,7 @@ def _ridden_before(rides: np.ndarray, cell, times, begin) -> np.ndarray:
         return begin
     ends = np.array([ride.end for ride in every])
     mine = mine[times[mine] < ends[which[mine]]]
-    curves = Curves([ride.curve for ride in every])
+    curves = ManyTransitTimes([ride.curve for ride in every])
     number = np.floor(curves.number_at(which[mine], times[mine]))
     begin = begin.copy()
     begin[mine] = np.minimum(curves.time_of(which[mine], number), times[mine])

@@ -27,7 +27,7 @@ def segments_of(opening: np.ndarray, stops: np.ndarray) -> np.ndarray:
     return np.searchsorted(opening, stops, side="left") - 1
 
 
-def followed(
+def follow_path(
     scene: Scene, path: Path, eps: np.ndarray, accuracy: float, cuts: list[Cut]
 ) -> list[Cut]:
     """With more stops where the cubic of a leg would leave the path; a cut for each eps.

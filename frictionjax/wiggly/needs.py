@@ -13,7 +13,7 @@ AFFORDABLE = 2e5
 TAIL = 4  # wells before a turning point that are always measured
 
 
-class Needs(NamedTuple):
+class Requirements(NamedTuple):
     """What a cell's windows need, in wells, shape (cells,).
 
     `warm`: from a start to where it is forgotten. `settle`: from the start of a slide to
@@ -32,14 +32,14 @@ class Needs(NamedTuple):
     cut: np.ndarray
 
 
-def wells_of(path: Path, eps: np.ndarray, needs: Needs) -> tuple[np.ndarray, np.ndarray]:
+def wells_of(path: Path, eps: np.ndarray, needs: Requirements) -> tuple[np.ndarray, np.ndarray]:
     """Wells of the path in each cell: outside inner parts of slides, and inside."""
     ways = np.abs(np.diff(path.states))[None, :] / eps[:, None]
     inner = inner_wells(ways, needs)
     return np.sum(ways - inner, axis=1), np.sum(inner, axis=1)
 
 
-def cost_of(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray:
+def cost_of(path: Path, eps: np.ndarray, needs: Requirements, times: int) -> np.ndarray:
     """Wells that lanes pass through in each cell, about."""
     outer, inner = wells_of(path, eps, needs)
     slides = np.sum(inner_wells(np.abs(np.diff(path.states)) / eps[:, None], needs) > 0, 1)
@@ -51,7 +51,7 @@ def cost_of(path: Path, eps: np.ndarray, needs: Needs, times: int) -> np.ndarray
     return outer + run_ups + 2 * (needs.warm + 2) * windows
 
 
-def longest_lane(path: Path, eps: np.ndarray, needs: Needs) -> np.ndarray:
+def longest_lane(path: Path, eps: np.ndarray, needs: Requirements) -> np.ndarray:
     """Wells of a tile and its run-up, at most all of them between two cuts."""
     ends = np.where(needs.cut, path.travel[1:], 0.0)
     begins = np.maximum.accumulate(np.pad(ends, ((0, 0), (1, 0)))[:, :-1], axis=1)
@@ -65,7 +65,7 @@ def wells_a_leg(path: Path, eps: np.ndarray) -> np.ndarray:
     return np.clip(np.floor(_LEG * span / eps), 1, WELLS_A_LEG)
 
 
-def inner_wells(ways: np.ndarray, needs: Needs) -> np.ndarray:
+def inner_wells(ways: np.ndarray, needs: Requirements) -> np.ndarray:
     """Wells of each slide of which only some are measured, (cells, pieces)."""
     inner = np.floor(ways) - np.ceil(needs.settle)[:, None] - TAIL - 1
     nodes = needs.nodes[:, None]

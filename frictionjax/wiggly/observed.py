@@ -15,7 +15,7 @@ from .field import TipField
 from .wrapped import AbstractWrappedSolver
 
 
-class AbstractWatch(eqx.Module):
+class AbstractObserver(eqx.Module):
     """Something that looks at every accepted step, such as a running maximum.
 
     Its memory is a pytree of floats; `look` gives the memory after a step that ended at
@@ -38,7 +38,7 @@ class Recorder(eqx.Module):
     field: TipField
     start_energy: Real
     balanced: bool = eqx.field(static=True)
-    watch: AbstractWatch | None
+    watch: AbstractObserver | None
 
     def start(self, z: Real) -> tuple:
         balance = (at_rest(),) if self.balanced else ()
@@ -61,7 +61,7 @@ class Recorder(eqx.Module):
         return tuple(after)
 
 
-class Observed(AbstractWrappedSolver):
+class AugmentedSolver(AbstractWrappedSolver):
     """Wraps a solver of y' to one of (y, *memory, step): the rest only follows.
 
     `memory` is the recorder's; `step` the length in s of the longest recent step, at which
@@ -99,7 +99,7 @@ def _zeros_like(memory: PyTree) -> PyTree:
     return jax.tree_util.tree_map(jnp.zeros_like, memory)
 
 
-def observed_field(field: TipField):
+def augmented_field(field: TipField):
     """Vector field of (y, *memory, step), as diffrax wants it: only y moves."""
 
     def vector_field(t, state, args):

@@ -7,7 +7,7 @@ import jax
 from ..arguments import Real
 
 
-def once(values: Any, number: Real) -> Any:
+def materialise(values: Any, number: Real) -> Any:
     """`values` divided by 1, as `number / number`, for any finite number but 0.
 
     XLA's compiler for CPUs merges chains of cheap operations by copying them into each of

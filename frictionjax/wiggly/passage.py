@@ -59,7 +59,7 @@ def _primitive() -> np.ndarray:
 _PRIMITIVE = _primitive()
 
 
-class Track(NamedTuple):
+class WellPull(NamedTuple):
     """The wiggly force along one period, as a fast tip meets it; C cells, M nodes.
 
     Counted in the direction of motion, from a lattice point: at the extreme fold, where
@@ -79,7 +79,7 @@ class Track(NamedTuple):
         return self.against.max(axis=1)
 
 
-class Pull(NamedTuple):
+class SupportPull(NamedTuple):
     """Force on the flat surface near the lattice point, as Taylor series; shape (...,).
 
     `load`: of l in time, `support`: of Phi' in z, four derivatives each on the last axis.
@@ -89,7 +89,7 @@ class Pull(NamedTuple):
     support: np.ndarray
 
 
-class Passage(NamedTuple):
+class Transit(NamedTuple):
     """Passages over one well: `length` in s, `kept`, and `times` at the nodes (..., M).
 
     `kept`: the share of a shift in time at the start that is left at the end. All NaN
@@ -116,7 +116,7 @@ def wiggles_at(potential: AbstractPotential, eps: np.ndarray, places: np.ndarray
     return [v.reshape(places.shape) for v in found]
 
 
-class Stretch(NamedTuple):
+class WellArc(NamedTuple):
     """Parts of a period to be resolved, shape (C,).
 
     From the tip coordinate `start` on, `length` periods in the direction `sign`. `fold`:
@@ -138,7 +138,7 @@ class Stretch(NamedTuple):
         return self.start[cell][:, None] + way[:, None] * inside
 
 
-def _density(potential, some: Stretch, cell, places) -> np.ndarray:
+def _density(potential, some: WellArc, cell, places) -> np.ndarray:
     """`1/sqrt(force)` at tip coordinates (n, _POINTS), under the smallest pull."""
     force, _, _ = wiggles_at(potential, some.eps[cell][:, None], places)
     gaps = (some.sign * some.fold)[cell][:, None] - some.sign[cell][:, None] * force
@@ -177,7 +177,7 @@ class _Clock(NamedTuple):
         return self.left[panel] + width * 0.5 * (x + 1)
 
 
-def _clock(potential, some: Stretch) -> _Clock:
+def _clock(potential, some: WellArc) -> _Clock:
     """Panels are halved until the last Legendre coefficients are small."""
     count = some.eps.size
     cell = np.repeat(np.arange(count), 4)
@@ -209,7 +209,7 @@ def _clock(potential, some: Stretch) -> _Clock:
     return _Clock(cell, left, width, series, before, whole)
 
 
-def track_of(potential: AbstractPotential, some: Stretch, rough: float = ROUGH) -> Track:
+def well_pull_of(potential: AbstractPotential, some: WellArc, rough: float = ROUGH) -> WellPull:
     """The force along stretches of a period, resolved for the excess.
 
     Gauss panels of equal length in `s`, `dy/ds = sqrt(force)`: around a fold the force is
@@ -233,7 +233,7 @@ def track_of(potential: AbstractPotential, some: Stretch, rough: float = ROUGH) 
     force, stretch, offset = wiggles_at(potential, eps, places)
     origin = wiggles_at(potential, some.eps, some.start)[2]
     pace = 0.5 * clock.whole / panels * some.length
-    return Track(
+    return WellPull(
         way=eps * (places - some.start[:, None]) + offset - origin[:, None],
         against=some.sign[:, None] * force,
         weight=eps * stretch * pace[:, None] / density,
@@ -284,9 +284,9 @@ def _passages(sweeps, way, against, weight, sign, load, support, viscosity, time
     return length + blank, jnp.exp(grown) + blank, times
 
 
-def passages(
-    track: Track, pull: Pull, viscosity: np.ndarray, times=None, sweeps: int = _SWEEPS
-) -> Passage:
+def transit_times(
+    track: WellPull, pull: SupportPull, viscosity: np.ndarray, times=None, sweeps: int = _SWEEPS
+) -> Transit:
     """Passages of one well from n lattice points of each cell; `pull` has shape (C, n).
 
     `times` (C, n, M): a guess, from which one sweep is made; None where the pull stays the
@@ -299,21 +299,21 @@ def passages(
     else:
         sweeps = _AGAIN
     columns = *track, pull.load, pull.support, viscosity, times
-    return Passage(*in_chunks(_passages, _TRACKS, (sweeps,), columns))
+    return Transit(*in_chunks(_passages, _TRACKS, (sweeps,), columns))
 
 
-def steady_passages(track: Track, viscosity: np.ndarray, beyond: np.ndarray) -> np.ndarray:
+def steady_transit_times(track: WellPull, viscosity: np.ndarray, beyond: np.ndarray) -> np.ndarray:
     """Seconds of a passage under steady forces `beyond` (C, n) the fold's, in N."""
     gaps = track.fold[:, None] - track.against
     pace = viscosity[:, None] * track.weight * np.tile(_W, track.way.shape[1] // _POINTS)
     return np.einsum("cm,cnm->cn", pace, 1 / (beyond[..., None] + gaps[:, None]))
 
 
-def one_passage(track: Track, pull: Pull, viscosity: np.ndarray) -> np.ndarray:
+def one_transit_time(track: WellPull, pull: SupportPull, viscosity: np.ndarray) -> np.ndarray:
     """Seconds of one passage of each track, shape (C,); `pull` has that shape too."""
     # As many as `passages` is asked for elsewhere: no further program is compiled.
-    many = Pull(*(np.repeat(series[:, None], TOGETHER, axis=1) for series in pull))
-    return passages(track, many, viscosity, sweeps=_ALONE).length[:, 0]
+    many = SupportPull(*(np.repeat(series[:, None], TOGETHER, axis=1) for series in pull))
+    return transit_times(track, many, viscosity, sweeps=_ALONE).length[:, 0]
 
 
 @Program
@@ -329,8 +329,8 @@ def _series(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"])
     return load, support
 
 
-def pull_at(scene: Scene, times: np.ndarray, states: np.ndarray) -> Pull:
+def pull_at(scene: Scene, times: np.ndarray, states: np.ndarray) -> SupportPull:
     """Taylor series of l and Phi' at times in s and states in m of one shape."""
     columns = times.ravel(), states.ravel()
     found = in_chunks(_series, _NEAR, (scene,), columns)
-    return Pull(*(v.reshape(*times.shape, 4) for v in found))
+    return SupportPull(*(v.reshape(*times.shape, 4) for v in found))

@@ -15,17 +15,17 @@ from ..programs import Program, in_chunks
 from ..scene import Scene
 from ..viscosity import viscosity_of
 from .forgetting import lag_forces
-from .landscape import Folds
+from .landscape import WiggleFolds
 from .lane import LaneScene
-from .needs import AFFORDABLE, Needs, cost_of, wells_of
+from .needs import AFFORDABLE, Requirements, cost_of, wells_of
 from .path import Path
 from .rodas5p import RODAS5P
 from .rounds import LONG_MEMORY, MARGIN
-from .series_bristle import series_of
+from .series_bristle import power_series_of
 from .slow_ends import slow_ends
-from .starts import Ground
+from .starts import CellBounds
 from .survey import NODES
-from .tolerance import Plan as StepPlan
+from .tolerance import StepPlan as StepPlan
 from .tolerance import plan_steps, pull_of
 
 # Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as fast
@@ -84,14 +84,14 @@ def _tips(potential: AbstractPotential, z0: Real, eps: Array):
 
 
 def ground_of(
-    scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray, folds: Folds
-) -> Ground:
+    scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray, folds: WiggleFolds
+) -> CellBounds:
     """What windows need to know of each cell."""
     lags = lag_forces(scene.potential, eps, folds, path.speed * viscosity_of(eps, gamma))
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
     well, tip = in_chunks(_tips, _CELLS, (scene.potential, scene.z0), (eps,))
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
-    return Ground(
+    return CellBounds(
         eps,
         folds,
         lag_plus=lags[0] / path.stiffness,
@@ -129,13 +129,13 @@ def lane_scene(scene: Scene, highest: float) -> LaneScene:
     if isinstance(potential, BristlePotential):
         scan = np.arange(potential.points) / potential.points
         height = float(np.max(np.abs(_heights(potential.profile, scan))))
-        bristle = series_of(potential.bristle, 1.01 * highest * height)
+        bristle = power_series_of(potential.bristle, 1.01 * highest * height)
         potential = BristlePotential(potential.profile, bristle)
     law = coefficients_jit(scene.potential)
     return LaneScene(potential, scene.support, scene.load, law.rho_plus, law.rho_minus)
 
 
-def _needs(ground: Ground, path: Path, accuracy: float) -> Needs:
+def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
     """How far back windows start: until a bracket as wide as the lag has closed.
 
     Slides remember twice the wells that they lag by. (The closed form of step control is
@@ -149,10 +149,10 @@ def _needs(ground: Ground, path: Path, accuracy: float) -> Needs:
     settle = np.ceil(lag + warm + 2)
     offset, none = _offsets(ground, path), np.zeros(lag.size)
     cut = np.zeros(offset.shape, dtype=bool)
-    return Needs(warm, settle, _TILE * slow, none, offset, cut)
+    return Requirements(warm, settle, _TILE * slow, none, offset, cut)
 
 
-def _resting(ground: Ground, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
+def _resting(ground: CellBounds, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
     """Wells back to a start between slips, from which a bracket closes at rest.
 
     Windows begin half a period behind slips. Where tips lag by less than that, both lanes
@@ -166,7 +166,7 @@ def _resting(ground: Ground, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray
     return np.where(rest > _SHORT_REST, wells, np.inf)
 
 
-def _offsets(ground: Ground, path: Path) -> np.ndarray:
+def _offsets(ground: CellBounds, path: Path) -> np.ndarray:
     """From each slide's start to half a period behind a fold, in wells, (cells, pieces)."""
     folds, up = ground.folds, path.direction > 0
     fold = np.where(up, folds.state_plus[:, None], folds.state_minus[:, None])
@@ -174,7 +174,7 @@ def _offsets(ground: Ground, path: Path) -> np.ndarray:
     return np.mod(0.5 - past, 1.0)
 
 
-def _choose(path: Path, eps: np.ndarray, needs: Needs, times: int, method: str) -> Needs:
+def _choose(path: Path, eps: np.ndarray, needs: Requirements, times: int, method: str) -> Requirements:
     """Per cell, the way that passes through fewer wells."""
     nodes = np.full(eps.size, NODES)
     if method == "resolved":
@@ -197,11 +197,11 @@ def _long_memories(
     scene: Scene,
     control: StepPlan,
     path: Path,
-    ground: Ground,
-    needs: Needs,
+    ground: CellBounds,
+    needs: Requirements,
     follows: np.ndarray,
     method: str,
-) -> tuple[np.ndarray, Needs]:
+) -> tuple[np.ndarray, Requirements]:
     """Which cells follow slip maps: where windows would remember too many slips.
 
     With few slips altogether one lane goes through all from z0, needing no bracket; others
@@ -248,8 +248,8 @@ class Planned(NamedTuple):
     """
 
     control: StepPlan
-    ground: Ground
-    needs: Needs
+    ground: CellBounds
+    needs: Requirements
     ridden: np.ndarray
 
 

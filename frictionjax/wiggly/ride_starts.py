@@ -11,7 +11,7 @@ import numpy as np
 
 from .passage import pull_at
 from .path import Path, arrivals_at, slopes_at, states_at
-from .rides import Candidates, Look, Ride, Rider
+from .rides import Candidates, Look, FastSlide, FastSlideFinder
 from .set_off import first_wells
 
 # Wells behind the tip where the slip map takes over: passages change slowly enough for
@@ -24,11 +24,11 @@ _LONG = 100.0  # wells of lag that are worth a slip map after the turn
 _FAST = 0.9  # share that a well leaves of a shift, where lags are many wells
 
 # Rides of cells and the gaps at their starts -> for each, what waits for its errors.
-Check = Callable[[list[int], list[Ride], list[float]], list[Callable[[], np.ndarray]]]
-Keep = Callable[[int, Ride], None]
+Check = Callable[[list[int], list[FastSlide], list[float]], list[Callable[[], np.ndarray]]]
+Keep = Callable[[int, FastSlide], None]
 
 
-def _set_off(rider: Rider, cell: np.ndarray, piece: np.ndarray) -> np.ndarray:
+def _set_off(rider: FastSlideFinder, cell: np.ndarray, piece: np.ndarray) -> np.ndarray:
     """Seconds from touches of the strip's edge until the first wells are passed, (n,)."""
     path, scene = rider.path, rider.scene
     own, which = np.unique(piece, return_inverse=True)
@@ -48,7 +48,7 @@ def _set_off(rider: Rider, cell: np.ndarray, piece: np.ndarray) -> np.ndarray:
     return times
 
 
-def _touches(rider: Rider, look: Look, cell: np.ndarray, piece: np.ndarray) -> np.ndarray:
+def _touches(rider: FastSlideFinder, look: Look, cell: np.ndarray, piece: np.ndarray) -> np.ndarray:
     """When the pull reaches the fold where each tip rests before the slide of a piece, s.
 
     The path's own touch comes earlier where the slide before has lagged: the tip then
@@ -63,7 +63,7 @@ def _touches(rider: Rider, look: Look, cell: np.ndarray, piece: np.ndarray) -> n
 
 
 def _starting(
-    rider: Rider, look: Look, cell: np.ndarray, piece: np.ndarray, lags: np.ndarray
+    rider: FastSlideFinder, look: Look, cell: np.ndarray, piece: np.ndarray, lags: np.ndarray
 ) -> tuple[Candidates | None, np.ndarray]:
     """Candidates at the starts of the slides of pieces, and which these are of.
 
@@ -88,7 +88,7 @@ def _starting(
 
 
 def _overshooting(
-    rider: Rider, look: Look, cells: np.ndarray, piece: int, last: dict[int, Ride]
+    rider: FastSlideFinder, look: Look, cells: np.ndarray, piece: int, last: dict[int, FastSlide]
 ) -> Candidates | None:
     """Candidates that slide on through the start of a piece, as before it."""
     edge = rider.path.edges[piece]
@@ -124,14 +124,14 @@ def _overshooting(
     return every.chosen(on)
 
 
-def _pace(ride: Ride) -> float:
+def _pace(ride: FastSlide) -> float:
     """Seconds a well at the end of a ride."""
     last = ride.curve.edges[-1]
     times = ride.curve.time_of(np.array([last - 1, last]))
     return float(times[1] - times[0])
 
 
-def _joins(ride: Ride | None, piece: int, direction: float, path: Path) -> bool:
+def _joins(ride: FastSlide | None, piece: int, direction: float, path: Path) -> bool:
     """Whether a ride through the piece's start already is the piece's slide."""
     if ride is None or ride.piece != piece or ride.sign != direction:
         return False
@@ -140,7 +140,7 @@ def _joins(ride: Ride | None, piece: int, direction: float, path: Path) -> bool:
     )
 
 
-def _foreseen(rider: Rider, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _foreseen(rider: FastSlideFinder, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Cells and pieces of slides whose slide before should end slow, or has none before."""
     path = rider.path
     slides = np.flatnonzero(path.direction)
@@ -150,7 +150,7 @@ def _foreseen(rider: Rider, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return cells[cell], slides[which]
 
 
-def _followed(rider: Rider, some: Candidates, check: Check) -> list[Ride | None]:
+def _followed(rider: FastSlideFinder, some: Candidates, check: Check) -> list[FastSlide | None]:
     """The rides of candidates; their errors are measured meanwhile."""
     rides = rider.rides(some)
     rows = zip(some.cell, rides, some.gap, strict=True)
@@ -162,7 +162,7 @@ def _followed(rider: Rider, some: Candidates, check: Check) -> list[Ride | None]
     return [r if r is None else r._replace(measured=next(measured)) for r in rides]
 
 
-def _at_once(rider: Rider, cells: np.ndarray, look: Look, check: Check) -> dict:
+def _at_once(rider: FastSlideFinder, cells: np.ndarray, look: Look, check: Check) -> dict:
     """Rides, or None, of cells and pieces that are found without those before."""
     cell, piece = _foreseen(rider, cells)
     some, which = _starting(rider, look, cell, piece, np.zeros(cell.size, dtype=bool))
@@ -172,17 +172,17 @@ def _at_once(rider: Rider, cells: np.ndarray, look: Look, check: Check) -> dict:
     return dict(zip(zip(cell[which], piece[which], strict=True), rides, strict=True))
 
 
-def ride_through(
-    rider: Rider, cells: np.ndarray, look: Look, check: Check, keep: Keep
+def fast_slide_through(
+    rider: FastSlideFinder, cells: np.ndarray, look: Look, check: Check, keep: Keep
 ) -> None:
     """Find the rides of some cells; `keep` is told each, those of a cell in time.
 
     `look` sees the rides kept before.
     """
-    last: dict[int, Ride] = {}
+    last: dict[int, FastSlide] = {}
     path = rider.path
 
-    def go_on(cell: np.ndarray, rides: list[Ride | None]) -> None:
+    def go_on(cell: np.ndarray, rides: list[FastSlide | None]) -> None:
         for c, ride in zip(cell, rides, strict=True):
             if ride is not None:
                 keep(c, ride)

@@ -11,14 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
-from .curve import Curve
+from .curve import TransitTimes
 from .passage import (
     ROUGH,
-    Stretch,
-    Track,
-    one_passage,
+    WellArc,
+    WellPull,
+    one_transit_time,
     pull_at,
-    track_of,
+    well_pull_of,
     wiggles_at,
 )
 from .path import Path
@@ -34,7 +34,7 @@ _NARROW = 0.2  # of the force beyond the fold at the start: the smallest one on 
 _OF_ACCURACY, _ROUGHEST = 0.3, 1e-3
 
 
-class Ride(NamedTuple):
+class FastSlide(NamedTuple):
     """A fast slide of one cell.
 
     `curve`: when the tip passes its lattice points. At the number n the tip is at `tip` in
@@ -42,7 +42,7 @@ class Ride(NamedTuple):
     measure the errors.
     """
 
-    curve: Curve
+    curve: TransitTimes
     sign: float
     well: float
     tip: float
@@ -76,7 +76,7 @@ def _not_measured() -> np.ndarray:
 
 def last_begun(rides: np.ndarray, cell: np.ndarray, time: np.ndarray):
     """Rides of the cells, and which of them each cell began last before a time; else -1."""
-    every: list[Ride] = []
+    every: list[FastSlide] = []
     which = np.full(cell.size, -1)
     for c in np.unique(cell):
         mine = cell == c
@@ -86,7 +86,7 @@ def last_begun(rides: np.ndarray, cell: np.ndarray, time: np.ndarray):
     return every, which
 
 
-class Seen(NamedTuple):
+class FoundTips(NamedTuple):
     """Tips that lanes found at wanted times, shape (n,).
 
     `gap`: how closely brackets have closed, in wells of time: near a fold a small way
@@ -100,7 +100,7 @@ class Seen(NamedTuple):
 
 # Cells, begins and stops in s -> tips at the stops, by lanes that set off from the last
 # ride or from brackets.
-Look = Callable[[np.ndarray, np.ndarray, np.ndarray], Seen]
+Look = Callable[[np.ndarray, np.ndarray, np.ndarray], FoundTips]
 
 
 class Candidates(NamedTuple):
@@ -125,7 +125,7 @@ class Candidates(NamedTuple):
         return Candidates(*(column[which] for column in self))
 
 
-class Rider(NamedTuple):
+class FastSlideFinder(NamedTuple):
     """What rides of a sweep are made from.
 
     `eps`, `viscosity`, `lag` (wells, of the fastest slide): shape (cells,). `folds`: tip
@@ -150,9 +150,9 @@ class Rider(NamedTuple):
         place, force = (np.where(sign > 0, a[cell], b[cell]) for a, b in pairs)
         return place, force
 
-    def _stretch(self, some: Candidates, start, length, excess) -> Stretch:
+    def _stretch(self, some: Candidates, start, length, excess) -> WellArc:
         _, force = self.fold(some.cell, some.sign)
-        return Stretch(self.eps[some.cell], start, length, some.sign, force, excess)
+        return WellArc(self.eps[some.cell], start, length, some.sign, force, excess)
 
     def states(self, cell: np.ndarray, well: np.ndarray, tip: np.ndarray) -> np.ndarray:
         """z in m of tips."""
@@ -171,7 +171,7 @@ class Rider(NamedTuple):
         place, _ = self.fold(some.cell, some.sign)
         return place, np.mod(some.sign * (place - some.tip), 1.0)
 
-    def _tracks(self, some: Candidates, excess: np.ndarray) -> tuple[Track, Track]:
+    def _tracks(self, some: Candidates, excess: np.ndarray) -> tuple[WellPull, WellPull]:
         """Force on the ways to the next fold, and through the wells from there on."""
         place, way = self._way(some)
         parts = (
@@ -179,10 +179,10 @@ class Rider(NamedTuple):
             self._stretch(some, place, np.ones_like(way), excess),
         )
         # Both at once: each took 4 ms of a sweep for its small programs.
-        both = Stretch(*(np.concatenate(pair) for pair in zip(*parts, strict=True)))
-        track = track_of(self.scene.potential, both, self._rough(some.cell))
+        both = WellArc(*(np.concatenate(pair) for pair in zip(*parts, strict=True)))
+        track = well_pull_of(self.scene.potential, both, self._rough(some.cell))
         count = some.cell.size
-        return Track(*(c[:count] for c in track)), Track(*(c[count:] for c in track))
+        return WellPull(*(c[:count] for c in track)), WellPull(*(c[count:] for c in track))
 
     def _rough(self, cell: np.ndarray) -> float:
         """How roughly passages may be resolved, so that errors that add up stay small."""
@@ -190,21 +190,21 @@ class Rider(NamedTuple):
         allowed = np.sqrt(_OF_ACCURACY * self.accuracy / max(memory, 1.0))
         return float(np.clip(allowed, ROUGH, _ROUGHEST))
 
-    def _to_fold(self, some: Candidates, track: Track):
+    def _to_fold(self, some: Candidates, track: WellPull):
         """Time of the next passage of a fold, and the well of that fold."""
         place, way = self._way(some)
         states = self.states(some.cell, some.well, some.tip)
         pull = pull_at(self.scene, some.time, states)
-        length = one_passage(track, pull, self.viscosity[some.cell])
+        length = one_transit_time(track, pull, self.viscosity[some.cell])
         well = np.round(some.well + some.tip + some.sign * way - place)
         return some.time + length, well
 
-    def rides(self, some: Candidates) -> list[Ride | None]:
+    def rides(self, some: Candidates) -> list[FastSlide | None]:
         """Follow the candidates; None where a slide is slow or short."""
         beyond = self.beyond(some)
         least = np.where(some.least > 0, some.least, _NARROW * beyond)
         able = np.flatnonzero((beyond > 0) & (least > 0))
-        found: list[Ride | None] = [None] * some.cell.size
+        found: list[FastSlide | None] = [None] * some.cell.size
         if able.size == 0:
             return found
         some = some.chosen(able)
@@ -214,7 +214,7 @@ class Rider(NamedTuple):
         if not fits.any():
             return found
         able, some, time, well = able[fits], some.chosen(fits), time[fits], well[fits]
-        track = Track(*(column[fits] for column in track))
+        track = WellPull(*(column[fits] for column in track))
         place, _ = self.fold(some.cell, some.sign)
         eps, one = self.eps[some.cell], np.ones(able.size)
         origin = self.states(some.cell, well, place)
@@ -225,5 +225,5 @@ class Rider(NamedTuple):
             if curve is not None:
                 sign, piece = float(some.sign[i]), int(some.piece[i])
                 where = float(well[i]), float(place[i]), piece
-                found[able[i]] = Ride(curve, sign, *where, _not_measured)
+                found[able[i]] = FastSlide(curve, sign, *where, _not_measured)
         return found

@@ -7,15 +7,15 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from .brackets import wells_between
-from .curve import Curves
-from .job_queue import Arrivals
-from .needs import Needs
-from .ride_starts import ride_through
-from .rides import Ride, Rider, Seen
-from .rounds import EARLIER, ROUNDS, Rounds, run_ups
+from .curve import ManyTransitTimes
+from .job_queue import SegmentEnds
+from .needs import Requirements
+from .ride_starts import fast_slide_through
+from .rides import FastSlide, FastSlideFinder, FoundTips
+from .rounds import EARLIER, ROUNDS, BracketContext, run_ups
 from .slip_map import BARE_TAIL, TAIL
 from .starts import Starts
-from .windows import Plan, Windows
+from .windows import BracketPlan, Brackets
 
 # Tolerance of the lanes that measure a slip map, of the tolerance of others, and the
 # tightest that is of use. (gamma = 1/2, eps 1e-3 to 1e-4, accuracy 1e-3: the same errors of
@@ -39,7 +39,7 @@ _NOISE, _MOST_CHECKED, _OF_LOADS = 0.03, 400.0, 0.05
 _ASIDE = ThreadPoolExecutor(1)
 
 
-def find_rides(rounds: Rounds, needs: Needs) -> Callable[[], None]:
+def find_fast_slides(rounds: BracketContext, needs: Requirements) -> Callable[[], None]:
     """Put the rides of all cells into the ground of the rounds.
 
     Returns what waits for the lanes that measure them, and adds up their steps.
@@ -55,13 +55,13 @@ def find_rides(rounds: Rounds, needs: Needs) -> Callable[[], None]:
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     of_cells = ground.eps, cells_.viscosity, lag, sides
     tail = (TAIL if any(rounds.wanted) else BARE_TAIL) * rounds.accuracy
-    rider = Rider(rounds.scene, rounds.path, *of_cells, needs.cut, tail, rounds.accuracy)
+    rider = FastSlideFinder(rounds.scene, rounds.path, *of_cells, needs.cut, tail, rounds.accuracy)
 
-    def look(cell: np.ndarray, begin: np.ndarray, stop: np.ndarray) -> Seen:
+    def look(cell: np.ndarray, begin: np.ndarray, stop: np.ndarray) -> FoundTips:
         paired, one = np.ones(cell.size, dtype=bool), np.arange(cell.size)
-        windows = Windows(cell, np.minimum(begin, stop), paired, one, stop)
+        windows = Brackets(cell, np.minimum(begin, stop), paired, one, stop)
         wells, back = run_ups(rounds, windows, needs.warm), np.ones(cell.size)
-        found, open_ = Seen(*np.empty((3, cell.size))), one
+        found, open_ = FoundTips(*np.empty((3, cell.size))), one
         for _ in range(ROUNDS):
             some = windows.chosen(open_)
             plan, arrived = closer.run(some, wells[open_], back[open_])
@@ -73,12 +73,12 @@ def find_rides(rounds: Rounds, needs: Needs) -> Callable[[], None]:
             wells[open_], back[open_] = wells[open_] * EARLIER, back[open_] * EARLIER
         return found
 
-    def keep(cell: int, ride: Ride) -> None:
+    def keep(cell: int, ride: FastSlide) -> None:
         ground.rides[cell] = (*ground.rides[cell], ride)
 
     spent: list[np.ndarray] = []
 
-    def check(cells: list[int], rides: list[Ride], gaps: list[float]) -> list:
+    def check(cells: list[int], rides: list[FastSlide], gaps: list[float]) -> list:
         blank = np.zeros_like(rounds.spent), np.zeros_like(rounds.waited)
         own = rounds._replace(spent=blank[0], waited=blank[1])
         spent.append(own.spent)
@@ -91,11 +91,11 @@ def find_rides(rounds: Rounds, needs: Needs) -> Callable[[], None]:
                 ride.measured()
         rounds.spent[:] += sum(spent)
 
-    ride_through(rider, np.arange(ground.eps.size), look, check, keep)
+    fast_slide_through(rider, np.arange(ground.eps.size), look, check, keep)
     return wait
 
 
-def _at_stops(rounds: Rounds, plan: Plan, found: Arrivals):
+def _at_stops(rounds: BracketContext, plan: BracketPlan, found: SegmentEnds):
     """Well, tip and gap in wells of time at the one stop of each window."""
     a, b = plan.behind, np.maximum(plan.ahead, 0)
     way = wells_between(found.well[a], found.tip[a], found.well[b], found.tip[b])
@@ -105,7 +105,7 @@ def _at_stops(rounds: Rounds, plan: Plan, found: Arrivals):
     return found.well[a], found.tip[a], gap
 
 
-def _wells_checked(rounds: Rounds, cell: int, ride: Ride) -> np.ndarray:
+def _wells_checked(rounds: BracketContext, cell: int, ride: FastSlide) -> np.ndarray:
     """Wells that lanes go through on each panel: more where rounding adds up."""
     curve = ride.curve
     length = np.diff(curve.starts) / np.diff(curve.edges)
@@ -116,7 +116,7 @@ def _wells_checked(rounds: Rounds, cell: int, ride: Ride) -> np.ndarray:
 
 
 def _errors(
-    rounds: Rounds, cells: list[int], rides: list[Ride], gaps: list[float]
+    rounds: BracketContext, cells: list[int], rides: list[FastSlide], gaps: list[float]
 ) -> Callable[[], list[np.ndarray]]:
     """Errors in the tip on the panels of rides: what lanes find in some wells, summed up.
 
@@ -128,7 +128,7 @@ def _errors(
     sizes = [own.size for own in wells]
     count, who = np.concatenate(wells), np.repeat(np.arange(len(rides)), sizes)
     number = np.concatenate([ride.curve.edges[:-1] for ride in rides])
-    curves = Curves([ride.curve for ride in rides])
+    curves = ManyTransitTimes([ride.curve for ride in rides])
     both, late = curves.rounded_times(np.tile(who, 2), np.append(number, number + count))
     begin, stop = np.split(both, 2)
     sign, first, tip = np.array([(r.sign, r.well, r.tip) for r in rides])[who].T
@@ -139,7 +139,7 @@ def _errors(
     usual = np.asarray(rounds.cells.tolerance)
     tight = np.minimum(np.maximum(_TIGHT_RIDE * usual, _TIGHTEST_RIDE), usual)
     exact = rounds._replace(cells=rounds.cells._replace(tolerance=tight, loosest=tight))
-    windows = Windows(whose, begin, known, np.arange(tip.size), stop)
+    windows = Brackets(whose, begin, known, np.arange(tip.size), stop)
     # Planned here: two threads that plan wait for each other.
     plan = exact.planned(windows, starts)
     lanes = _ASIDE.submit(exact.through, plan)
@@ -160,7 +160,7 @@ def _errors(
     return summed
 
 
-def _summed(rounds: Rounds, ride: Ride, drift, pace, gap: float) -> np.ndarray:
+def _summed(rounds: BracketContext, ride: FastSlide, drift, pace, gap: float) -> np.ndarray:
     """Errors that grow by `drift` a well and are forgotten as shifts in time are."""
     curve = ride.curve
     error, errors = max(gap, _SET_OFF * rounds.accuracy), []

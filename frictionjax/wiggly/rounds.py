@@ -7,18 +7,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
-from .bracket_values import Found
+from .bracket_values import BracketValues
 from .brackets import gaps_of, shifts_of
-from .job_queue import Arrivals, Jobs, Legs
-from .lane import Cells, LaneScene, Sums
+from .job_queue import SegmentEnds, Lanes, Segments
+from .lane import LaneCells, LaneScene, Sums
 from .lanes import WIDTH, march
 from .layout import Layout
-from .needs import AFFORDABLE, Needs
+from .needs import AFFORDABLE, Requirements
 from .path import Path, states_at
 from .rosenbrock import Tableau
-from .starts import Ground, Starts, slow_share, starts_of
+from .starts import CellBounds, Starts, slow_share, starts_of
 from .status import Status
-from .windows import Plan, Windows, plan_windows
+from .windows import BracketPlan, Brackets, plan_brackets
 
 WORKERS = 2  # XLA runs each queue of lanes on one core
 CLOSED = 0.5  # of the accuracy: gaps of brackets accepted
@@ -63,20 +63,20 @@ def _batches(work: np.ndarray, workers: int) -> int:
     return max(min(int(np.ceil(work.sum() / _BATCH)), most), 1)
 
 
-def _of_jobs(plan: Plan, of_legs: np.ndarray) -> np.ndarray:
+def _of_jobs(plan: BracketPlan, of_legs: np.ndarray) -> np.ndarray:
     """Sums over the legs of each job, (jobs,)."""
     so_far = np.concatenate([[0.0], np.cumsum(of_legs)])
     return so_far[plan.jobs.past_leg] - so_far[plan.jobs.first_leg]
 
 
-class Round(NamedTuple):
+class BracketRound(NamedTuple):
     """What one round of windows has found."""
 
-    plan: Plan
-    found: Arrivals
+    plan: BracketPlan
+    found: SegmentEnds
 
 
-class Rounds(NamedTuple):
+class BracketContext(NamedTuple):
     """What all rounds of one sweep share.
 
     `brief` (cells,): tolerances of lanes on rides through a few wells; None: those of the
@@ -88,8 +88,8 @@ class Rounds(NamedTuple):
     scene: Scene
     lanes: LaneScene
     path: Path
-    ground: Ground
-    cells: Cells
+    ground: CellBounds
+    cells: LaneCells
     tableau: Tableau
     wanted: Sums
     accuracy: float
@@ -100,21 +100,21 @@ class Rounds(NamedTuple):
     workers: int = WORKERS
     lanes_run: Callable[[], None] = lambda: None
 
-    def run(self, windows: Windows, wells: np.ndarray, back: np.ndarray) -> Round:
+    def run(self, windows: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
         """March all windows, from `wells` of the path or `back` of a ride before them."""
         where = windows.cell, windows.begin, wells, back
         starts = starts_of(self.scene, self.path, self.ground, *where)
         return self.march_from(windows, starts)
 
-    def march_from(self, windows: Windows, starts: Starts) -> Round:
+    def march_from(self, windows: Brackets, starts: Starts) -> BracketRound:
         """March all windows from their starts."""
         return self.through(self.planned(windows, starts))
 
-    def planned(self, windows: Windows, starts: Starts) -> Plan:
+    def planned(self, windows: Brackets, starts: Starts) -> BracketPlan:
         """What lanes are to do for windows, from their starts."""
-        return plan_windows(self.scene, self.path, self.ground, windows, starts)
+        return plan_brackets(self.scene, self.path, self.ground, windows, starts)
 
-    def through(self, plan: Plan) -> Round:
+    def through(self, plan: BracketPlan) -> BracketRound:
         """March all windows of a plan."""
         able, plan = self._within_patience(plan)
         found = self._march(plan, able)
@@ -122,9 +122,9 @@ class Rounds(NamedTuple):
         owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
         for total, steps in zip(self.spent, (found.steps, found.rejected), strict=True):
             total += np.bincount(owner, np.nan_to_num(steps), total.size)
-        return Round(plan, found)
+        return BracketRound(plan, found)
 
-    def _within_patience(self, plan: Plan) -> tuple[np.ndarray, Plan]:
+    def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
         """Which jobs their cells can still wait for, and the plan with what is left."""
         jobs, legs = plan.jobs, plan.legs
         left = np.where(self._alone(plan), np.inf, PATIENCE - self.waited[jobs.cell])
@@ -134,7 +134,7 @@ class Rounds(NamedTuple):
         legs = legs._replace(budget=np.minimum(legs.budget, allowed))
         return left > 0, plan._replace(legs=legs)
 
-    def _wait(self, plan: Plan, found: Arrivals) -> None:
+    def _wait(self, plan: BracketPlan, found: SegmentEnds) -> None:
         """Add up what the longest lane has taken beyond its share, for each cell.
 
         Of one that gave up everything counts: it would take its share again in each march.
@@ -147,19 +147,19 @@ class Rounds(NamedTuple):
         np.maximum.at(longest, cell, np.where(self._alone(plan), 0.0, beyond))
         self.waited[:] += longest
 
-    def _alone(self, plan: Plan) -> np.ndarray:
+    def _alone(self, plan: BracketPlan) -> np.ndarray:
         """Jobs from a known start, in cells that one lane can go through, (jobs,)."""
         known = np.zeros(plan.jobs.cell.size, dtype=bool)
         known[: plan.known.size] = plan.known
         wells = self.path.travel[-1] / self.ground.eps[plan.jobs.cell]
         return known & (wells <= AFFORDABLE)
 
-    def _wells(self, plan: Plan) -> np.ndarray:
+    def _wells(self, plan: BracketPlan) -> np.ndarray:
         """Wells of the path that jobs go through, (jobs,)."""
         ways = _of_jobs(plan, np.abs(plan.legs.guide1 - plan.legs.guide0))
         return ways / self.ground.eps[plan.jobs.cell]
 
-    def _march(self, plan: Plan, able: np.ndarray) -> Arrivals:
+    def _march(self, plan: BracketPlan, able: np.ndarray) -> SegmentEnds:
         """Deal the jobs that are `able` to the cores, the longest first.
 
         Others end as lanes do that give up.
@@ -171,27 +171,27 @@ class Rounds(NamedTuple):
         order = np.argsort(-work, kind="stable")
         order = order[able[order]]
         batches = _batches(work[able], self.workers)
-        found = np.full((len(Arrivals._fields), legs.start.size), np.nan)
+        found = np.full((len(SegmentEnds._fields), legs.start.size), np.nan)
         # Overwritten by lanes that run.
-        found[Arrivals._fields.index("code")] = int(Status.MAX_STEPS)
+        found[SegmentEnds._fields.index("code")] = int(Status.MAX_STEPS)
         seat = _seats(order.size, batches * self.workers)
         for batch in range(batches):
             queues = [order[seat == batch + i * batches] for i in range(self.workers)]
             for rows, part in self._through(cells, jobs, legs, queues, work):
                 found[:, rows] = part
             self.report(1 / batches)
-        return Arrivals(*found)
+        return SegmentEnds(*found)
 
-    def _steered(self, jobs: Jobs, brief: np.ndarray) -> tuple[Jobs, Cells]:
+    def _steered(self, jobs: Lanes, brief: np.ndarray) -> tuple[Lanes, LaneCells]:
         """Jobs that are `brief` in cells of their own, with their tolerance."""
         if self.brief is None or not brief.any():
             return jobs, self.cells
         loosest = np.maximum(self.brief, self.cells.loosest)
         others = self.cells._replace(tolerance=self.brief, loosest=loosest)
         both = (np.concatenate(pair) for pair in zip(self.cells, others, strict=True))
-        return jobs._replace(cell=jobs.cell + brief * self.brief.size), Cells(*both)
+        return jobs._replace(cell=jobs.cell + brief * self.brief.size), LaneCells(*both)
 
-    def _through(self, cells: Cells, jobs: Jobs, legs: Legs, queues: list, work):
+    def _through(self, cells: LaneCells, jobs: Lanes, legs: Segments, queues: list, work):
         """Legs of each queue and what is found there; the first is run by this thread.
 
         Beside other cells' lanes two of the pool's would wait for each other.
@@ -204,23 +204,23 @@ class Rounds(NamedTuple):
 
     def _queue(self, cells, jobs, legs, chosen: np.ndarray, work: np.ndarray) -> tuple:
         """Legs of some jobs, and what is found there."""
-        mine = Jobs(*(np.asarray(column)[chosen] for column in jobs))
+        mine = Lanes(*(np.asarray(column)[chosen] for column in jobs))
         # Rows of this queue's legs only, in the order of its jobs.
         count = mine.past_leg - mine.first_leg
         past = np.cumsum(count)
         rows = np.repeat(mine.first_leg - (past - count), count) + np.arange(count.sum())
         mine = mine._replace(first_leg=past - count, past_leg=past)
-        some = Legs(*(column[rows] for column in legs))
+        some = Segments(*(column[rows] for column in legs))
         fixed = self.tableau, self.wanted
         return rows, march(self.lanes, cells, mine, some, *fixed, work[chosen])
 
 
-def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.ndarray]:
+def close_brackets(rounds: BracketContext, layout: Layout, needs: Requirements) -> tuple[BracketValues, np.ndarray]:
     """Rounds of windows, further back each time; and windows that never closed."""
     windows = layout.windows
     size = windows.stop.size
-    values = np.full((len(Arrivals._fields), size), np.nan)
-    legs = np.full((len(Legs._fields), size), np.nan)
+    values = np.full((len(SegmentEnds._fields), size), np.nan)
+    legs = np.full((len(Segments._fields), size), np.nan)
     gap, how = np.full(size, np.inf), np.zeros(size, dtype=int)
     open_ = np.arange(windows.cell.size)
     wells = run_ups(rounds, windows, needs.warm)
@@ -256,11 +256,11 @@ def collect(rounds: Rounds, layout: Layout, needs: Needs) -> tuple[Found, np.nda
             break
         wells[open_] = np.maximum(EARLIER * wells[open_], MARGIN + 1)
         back[open_] = EARLIER * np.maximum(back[open_], 1)
-    result = Found(Arrivals(*values), Legs(*legs), gap, how, *rounds.spent)
+    result = BracketValues(SegmentEnds(*values), Segments(*legs), gap, how, *rounds.spent)
     return result, open_
 
 
-def run_ups(rounds: Rounds, windows: Windows, warm: np.ndarray) -> np.ndarray:
+def run_ups(rounds: BracketContext, windows: Brackets, warm: np.ndarray) -> np.ndarray:
     """Wells that each window starts earlier: fewer where its slide is slow, (W,).
 
     Slides remember in proportion to the square of their speed.

@@ -49,7 +49,7 @@ def _slopes(bristle: AbstractBristle, etas: Array) -> tuple[Array, Array]:
     )
 
 
-def series_of(bristle: AbstractBristle, highest: float) -> AbstractBristle:
+def power_series_of(bristle: AbstractBristle, highest: float) -> AbstractBristle:
     """The bristle as a series for |eta| <= `highest` (m); itself where none converges."""
     nodes = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
     values = [np.asarray(v) for v in _slopes(bristle, nodes * highest)]

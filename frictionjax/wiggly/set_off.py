@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..potentials import AbstractPotential
-from .forgetting import FORCES, from_fold_to_fold
+from .forgetting import LAG_FORCES, from_fold_to_fold
 
 _GRID = np.concatenate([np.logspace(-9, 0, 400), np.linspace(1.05, 25.0, 480)])
 
@@ -28,14 +28,14 @@ def first_wells(
     sides = np.stack([eps, side])
     _, first, which = np.unique(sides, axis=1, return_index=True, return_inverse=True)
     one = from_fold_to_fold(potential, eps[first], fold[first], side[first]).thinned()
-    passages = one.passages(np.tile(FORCES, (first.size, 1)))[which]
+    passages = one.passages(np.tile(LAG_FORCES, (first.size, 1)))[which]
     speeds = -np.log(viscosity[:, None] * passages)
     return _waits(eps, speeds, rate, stiffness, wells)
 
 
 def _waits(eps, speeds, rate, stiffness, wells: float) -> np.ndarray:
     """The same of slides whose logarithms of speeds, (n, forces), belong to `FORCES`."""
-    logs, wanted = np.log(FORCES), np.log(rate / stiffness)
+    logs, wanted = np.log(LAG_FORCES), np.log(rate / stiffness)
     rows = zip(wanted, speeds, strict=True)
     steady = np.array([np.interp(speed, row, logs) for speed, row in rows])
     pace = np.exp(_between(speeds, steady[:, None] + np.log(-np.expm1(-_GRID))))
@@ -49,9 +49,9 @@ def _waits(eps, speeds, rate, stiffness, wells: float) -> np.ndarray:
 
 def _between(rows: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Linear between the values of each row at the logarithms of `FORCES`: even steps."""
-    first, pitch = np.log(FORCES[0]), np.log(FORCES[1] / FORCES[0])
-    place = np.clip((at - first) / pitch, 0.0, FORCES.size - 1.0)
-    left = np.minimum(place.astype(int), FORCES.size - 2)
+    first, pitch = np.log(LAG_FORCES[0]), np.log(LAG_FORCES[1] / LAG_FORCES[0])
+    place = np.clip((at - first) / pitch, 0.0, LAG_FORCES.size - 1.0)
+    left = np.minimum(place.astype(int), LAG_FORCES.size - 2)
     low = np.take_along_axis(rows, left, axis=1)
     rise = np.take_along_axis(rows, left + 1, axis=1) - low
     return low + (place - left) * rise

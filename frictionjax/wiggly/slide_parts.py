@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
-from .needs import TAIL, Needs, inner_wells
+from .needs import TAIL, Requirements, inner_wells
 from .path import Path, speeds_at, states_at, times_at
 from .probes import FEWER, nodes_inside, probes_of, strictly_between, unseen_of
 from .survey import nodes_of
@@ -37,13 +37,13 @@ class Parts(NamedTuple):
     nodes: np.ndarray
 
 
-def level_at(path: Path, eps: np.ndarray, needs: Needs, cell, piece, well) -> np.ndarray:
+def level_at(path: Path, eps: np.ndarray, needs: Requirements, cell, piece, well) -> np.ndarray:
     """The path's state in m at a lattice point of a slide."""
     way = (well + needs.offset[cell, piece]) * eps[cell]
     return path.states[piece] + path.direction[piece] * way
 
 
-def _path_parts(scene: Scene, path: Path, eps, needs: Needs, rides) -> Parts:
+def _path_parts(scene: Scene, path: Path, eps, needs: Requirements, rides) -> Parts:
     """Inner parts of slides that are known from brackets: all but those with rides."""
     ways = np.abs(np.diff(path.states))[None, :] / eps[:, None]
     inner = inner_wells(ways, needs)
@@ -56,7 +56,7 @@ def _path_parts(scene: Scene, path: Path, eps, needs: Needs, rides) -> Parts:
     return _between(scene, path, eps, needs, cell, piece, first, last, nodes)
 
 
-def _between(scene, path, eps, needs: Needs, cell, piece, first, last, nodes) -> Parts:
+def _between(scene, path, eps, needs: Requirements, cell, piece, first, last, nodes) -> Parts:
     """Parts between wells of the path."""
     levels = [level_at(path, eps, needs, cell, piece, well) for well in (first, last)]
     both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
@@ -65,7 +65,7 @@ def _between(scene, path, eps, needs: Needs, cell, piece, first, last, nodes) ->
     return Parts(cell, piece, first, last, low, high, none, nodes)
 
 
-def _ridden_parts(needs: Needs, rides: np.ndarray) -> list[tuple]:
+def _ridden_parts(needs: Requirements, rides: np.ndarray) -> list[tuple]:
     """Each panel of a ride that is long enough to be known from some of its wells."""
     rows = []
     for c in range(needs.nodes.size):
@@ -79,7 +79,7 @@ def _ridden_parts(needs: Needs, rides: np.ndarray) -> list[tuple]:
     return rows
 
 
-def _rests_of_slides(scene: Scene, path: Path, eps, needs: Needs, rides) -> list[tuple]:
+def _rests_of_slides(scene: Scene, path: Path, eps, needs: Requirements, rides) -> list[tuple]:
     """Where rides end because slides turn slow: the path's wells from there on."""
     cells = [c for c in range(eps.size) if needs.nodes[c] > 0]
     last = [(c, ride) for c in cells for ride in _last_of_pieces(path, rides[c])]
@@ -104,7 +104,7 @@ def _last_of_pieces(path: Path, rides: tuple) -> list:
     return [r for r in last.values() if path.direction[r.piece] == r.sign]
 
 
-def inner_parts(scene: Scene, path: Path, eps, needs: Needs, rides: np.ndarray) -> Parts:
+def inner_parts(scene: Scene, path: Path, eps, needs: Requirements, rides: np.ndarray) -> Parts:
     """All inner parts; on slides without rides none hides a fast stretch between nodes.
 
     (Rides are known from panels that follow the slide wherever they are fast.)
@@ -138,7 +138,7 @@ def _chosen(parts: Parts, which: np.ndarray) -> Parts:
     return Parts(*(column[which] for column in parts))
 
 
-def _graded(scene: Scene, path: Path, eps, needs: Needs, some: Parts) -> list[Parts]:
+def _graded(scene: Scene, path: Path, eps, needs: Requirements, some: Parts) -> list[Parts]:
     """Parts halved until their nodes see the path's speed; short ones are left out.
 
     A load that rises by 0.04 N within 6 ms of 3 s was stepped over by all 17 nodes, and
@@ -176,7 +176,7 @@ def _is_known(scene: Scene, path: Path, some: Parts) -> np.ndarray:
     return (unseen <= _EVEN) & (sizes.max(axis=1) <= _STEADY * sizes.min(axis=1))
 
 
-def sampled(scene: Scene, path: Path, eps, needs: Needs, parts: Parts, rides: np.ndarray):
+def sampled(scene: Scene, path: Path, eps, needs: Requirements, parts: Parts, rides: np.ndarray):
     """Wells whose passage is measured in each inner part, and times before and after."""
     wells, owner = [], []
     nodes = [

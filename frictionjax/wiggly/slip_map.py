@@ -17,9 +17,9 @@ from numpy.polynomial import chebyshev
 
 from ..scene import Scene
 from .averaged import Lags, lags_of
-from .curve import Curve
+from .curve import TransitTimes
 from .panels import SMALLEST, edges_of
-from .passage import TOGETHER, Pull, Track, passages, pull_at, steady_passages
+from .passage import TOGETHER, SupportPull, WellPull, transit_times, pull_at, steady_transit_times
 from .path import arrivals_at, state_under
 
 DEGREE = TOGETHER
@@ -64,7 +64,7 @@ class Slides(NamedTuple):
     lattice point at which it sets off, at `time` (s); `late`: end of the piece of the load.
     """
 
-    track: Track
+    track: WellPull
     eps: np.ndarray
     viscosity: np.ndarray
     origin: np.ndarray
@@ -105,7 +105,7 @@ class _Solved(NamedTuple):
     tail: np.ndarray
 
 
-def _pull(scene: Scene, slides: Slides, number: np.ndarray, times: np.ndarray) -> Pull:
+def _pull(scene: Scene, slides: Slides, number: np.ndarray, times: np.ndarray) -> SupportPull:
     states = slides.origin[:, None] + (slides.track.sign * slides.eps)[:, None] * number
     return pull_at(scene, times, states)
 
@@ -144,7 +144,7 @@ def _newton(scene: Scene, slides: Slides, panels: _Panels, times: np.ndarray):
     guess, before = None, np.full(span.size, np.nan)
     for _ in range(_NEWTON):
         pull = _pull(scene, some, number[:, 1:], times[:, 1:])
-        found = passages(some.track, pull, some.viscosity, guess)
+        found = transit_times(some.track, pull, some.viscosity, guess)
         since = times - times[:, :1]
         left = np.einsum("cij,cj->ci", shift, since) - found.length
         matrix = shift[:, :, 1:] + np.eye(DEGREE) * (1 - found.kept)[:, :, None]
@@ -181,7 +181,7 @@ def _horizon(scene: Scene, slides: Slides, first, time, force) -> np.ndarray:
     end = state_under(scene, slides.late, sign * fold)
     held = sign * (end - slides.origin) / slides.eps - first
     beyond = np.maximum(force, 1e-300)[:, None]
-    length = steady_passages(slides.track, slides.viscosity, beyond)[:, 0]
+    length = steady_transit_times(slides.track, slides.viscosity, beyond)[:, 0]
     return np.where(held >= SMALLEST, held, _SLOWING * (slides.late - time) / length)
 
 
@@ -226,7 +226,7 @@ def _guess(scene: Scene, slides: Slides, panels: _Panels, force, time) -> np.nda
     return guess
 
 
-def follow(scene: Scene, slides: Slides, tail: float) -> list[Curve | None]:
+def follow(scene: Scene, slides: Slides, tail: float) -> list[TransitTimes | None]:
     """Times of passage of every slide, from where it sets off to its end or until slow.
 
     `tail`: last coefficients of panels, in wells.
@@ -288,7 +288,7 @@ def follow(scene: Scene, slides: Slides, tail: float) -> list[Curve | None]:
     return [_curve(rows) for rows in found]
 
 
-def _curve(panels: list[tuple]) -> Curve | None:
+def _curve(panels: list[tuple]) -> TransitTimes | None:
     if not panels:
         return None
     columns = [np.array(c) for c in zip(*panels, strict=True)]
@@ -296,10 +296,10 @@ def _curve(panels: list[tuple]) -> Curve | None:
     series = (times - times[:, :1]) @ _TO_SERIES.T
     edges = np.append(first, first[-1] + span[-1])
     starts = np.append(time, times[-1, -1])
-    return Curve(edges, starts, series, tail, kept, float(last[-1]))
+    return TransitTimes(edges, starts, series, tail, kept, float(last[-1]))
 
 
 def _chosen(slides: Slides, which: np.ndarray) -> Slides:
     """Some slides."""
-    track = Track(*(column[which] for column in slides.track))
+    track = WellPull(*(column[which] for column in slides.track))
     return Slides(track, *(column[which] for column in slides[1:]))

@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
-from .curve import Curves
-from .landscape import Folds
+from .curve import ManyTransitTimes
+from .landscape import WiggleFolds
 from .path import Path, slopes_at, states_at, times_at
-from .rides import Ride, last_begun
+from .rides import FastSlide, last_begun
 
 ASIDE = 1e-6  # of a stretch of time: where one-sided slopes are taken
 _GAP = 1e-6  # of a well: rounding of z/eps
@@ -19,7 +19,7 @@ _LONG_LAG = 5.0
 _WHOLE = 1e-4  # wells: rounding of times, in numbers of wells
 
 
-class Ground(NamedTuple):
+class CellBounds(NamedTuple):
     """What windows need to know of each cell, shape (cells,) each.
 
     `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
@@ -29,7 +29,7 @@ class Ground(NamedTuple):
     """
 
     eps: np.ndarray
-    folds: Folds
+    folds: WiggleFolds
     lag_plus: np.ndarray
     lag_minus: np.ndarray
     shift_plus: np.ndarray
@@ -84,7 +84,7 @@ def _run_up(path: Path) -> np.ndarray:
 def starts_of(
     scene: Scene,
     path: Path,
-    ground: Ground,
+    ground: CellBounds,
     cell: np.ndarray,
     begin: np.ndarray,
     wells,
@@ -134,7 +134,7 @@ def starts_of(
     return _ridden(scene, path, before, begin, plain, back, reach, measured)
 
 
-def _still_lagging(path: Path, rides: list[Ride], which: np.ndarray, time: np.ndarray):
+def _still_lagging(path: Path, rides: list[FastSlide], which: np.ndarray, time: np.ndarray):
     """Whether a slide that its ride left at full speed may still lag as that did, (W,).
 
     Lags are not those of the moment there. (Brackets of these left the tip out: 6e-2 eps,
@@ -170,10 +170,10 @@ def _ridden(
     return starts
 
 
-def _on_rides(rides: list[Ride], which: np.ndarray, begin, back, measured: bool):
+def _on_rides(rides: list[FastSlide], which: np.ndarray, begin, back, measured: bool):
     """Starts at lattice points of rides, their errors behind and ahead; and what holds
     `begin`."""
-    curves = Curves([ride.curve for ride in rides])
+    curves = ManyTransitTimes([ride.curve for ride in rides])
     rows = [(r.sign, r.well, r.tip, r.curve.edges[0], r.end) for r in rides]
     sign, well, tip, first, end = np.array(rows)[which].T
     number = np.floor(curves.number_at(which, np.minimum(begin, end)) + _WHOLE) - back
@@ -200,7 +200,7 @@ def slow_share(scene: Scene, path: Path, time: np.ndarray, state: np.ndarray) ->
     return np.minimum(FASTER * share**2, 1.0)
 
 
-def _brackets(ground: Ground, cell, direction, level, known, share):
+def _brackets(ground: CellBounds, cell, direction, level, known, share):
     """Well and tip of the lanes behind and ahead of the edge at `level`."""
     up, eps, folds = direction > 0, ground.eps[cell], ground.folds
 

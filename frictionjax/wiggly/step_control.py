@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Array, Bool
 
 from ..arguments import Real
-from .once import once
+from .once import materialise
 from .step_sizes import PER_OCTAVE, log2
 
 _SAFE = np.log2(0.9)
@@ -43,7 +43,7 @@ class Control(NamedTuple):
     reach: Any
 
 
-class Verdict(NamedTuple):
+class StepVerdict(NamedTuple):
     """Whether a step is accepted, the next one's level, and the trend to be kept."""
 
     accepted: Bool[Array, ""]
@@ -67,7 +67,7 @@ def judge(
     error: Real,
     overgrown: Real | float = 0.0,
     shifts: Bool[Array, ""] | bool = True,
-) -> Verdict:
+) -> StepVerdict:
     """Judge a step of `step` s that has moved the tip by `moved` periods.
 
     `order`: of the error in the step. `trend`: what the last accepted step has left, 0 at
@@ -83,7 +83,7 @@ def judge(
     share = jnp.where(finite, jnp.maximum(error / tolerance, _TINY), 1.0)
     # One logarithm of both: each costs as much as a stage's sine.
     share = log2(jnp.maximum(share, _power(excess, order))) / order
-    share = once(share, control.tolerance)
+    share = materialise(share, control.tolerance)
     size = log2(step / control.first_step)
     accepted = share <= 0
     allowed = _SAFE - _GAIN * share
@@ -91,4 +91,4 @@ def judge(
     change = jnp.where(accepted, jnp.minimum(allowed + _AHEAD, foreseen), allowed)
     change = jnp.clip(change, _LEAST, jnp.where(accepted, _MOST, _REJECTED))
     level = jnp.floor(PER_OCTAVE * (size + change) + 1e-4)
-    return Verdict(accepted, level, share - size)
+    return StepVerdict(accepted, level, share - size)

@@ -28,7 +28,7 @@ def log2(x: Real) -> Real:
     return exponent.astype(jnp.float64) + _horner(_LOG2, mantissa - 1)
 
 
-def exp2(x: Real) -> Real:
+def exp2_in_bits(x: Real) -> Real:
     """`2^x` to 1e-8 for |x| < 1020, the same bits for the same x."""
     whole = jnp.floor(x)
     power = lax.bitcast_convert_type((whole.astype(jnp.int64) + _BIAS) << 52, jnp.float64)
@@ -37,4 +37,4 @@ def exp2(x: Real) -> Real:
 
 def step_of(level: Real, first: Real) -> Real:
     """The step in s at a level of the grid that starts at the step `first`."""
-    return first * exp2(level / PER_OCTAVE)
+    return first * exp2_in_bits(level / PER_OCTAVE)

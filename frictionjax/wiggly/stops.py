@@ -9,9 +9,9 @@ import numpy as np
 from ..arguments import Real
 from ..programs import Program, in_chunks
 from ..scene import Scene
-from .bracket_values import Found
-from .layout import Layout, Slide
-from .survey import SURPLUS, WORK, Survey, surveys_of
+from .bracket_values import BracketValues
+from .layout import Layout, SampledPeriods
+from .survey import SURPLUS, WORK, SampledSlide, sampled_slides_of
 
 _CHUNK = 2048  # stops of one compiled call
 
@@ -31,12 +31,12 @@ def _energies(scene: Scene, eps, well, tip, t, guide):
     return jax.vmap(one)(eps, well, tip, t, guide)
 
 
-def states_of(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, ...]:
+def states_at_stops(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, ...]:
     """z in m at stops, E_eps of z less E of the guide, and the size of its parts, in J."""
     return tuple(in_chunks(_energies, _CHUNK, (scene,), (eps, well, tip, t, guide)))
 
 
-class Stops(NamedTuple):
+class StopValues(NamedTuple):
     """What the sums need of every stop, shape (S,); `sums` (3, S), `extremes` (5, S).
 
     `size`: of the energies whose differences `energy` is, J.
@@ -51,15 +51,15 @@ class Stops(NamedTuple):
     extremes: np.ndarray
 
 
-def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Stops:
+def stop_values_of(scene: Scene, layout: Layout, found: BracketValues, eps: np.ndarray) -> StopValues:
     """What was found at every stop of a layout."""
     windows, a, legs = layout.windows, found.arrivals, found.legs
     own = eps[windows.cell[windows.owner]]
-    z, energy, size = states_of(scene, own, a.well, a.tip, windows.stop, legs.guide1)
+    z, energy, size = states_at_stops(scene, own, a.well, a.tip, windows.stop, legs.guide1)
     rise = legs.guide1 - legs.guide0
     moved = legs.end > legs.start
     ways, surpluses = (a.ahead, a.behind, a.outside), (a.surplus, a.deficit)
-    return Stops(
+    return StopValues(
         time=windows.stop,
         z=z,
         energy=energy,
@@ -70,9 +70,9 @@ def stops_of(scene: Scene, layout: Layout, found: Found, eps: np.ndarray) -> Sto
     )
 
 
-def surveys_at(slides: list[Slide], stops: Stops) -> dict[int, Survey]:
+def sampled_slides_at(slides: list[SampledPeriods], stops: StopValues) -> dict[int, SampledSlide]:
     """Curves through the periods measured in each slide, by the number of the slide."""
-    found: dict[int, Survey] = {}
+    found: dict[int, SampledSlide] = {}
     counts = np.array([slide.stops.size for slide in slides])
     for count in np.unique(counts):
         mine = np.flatnonzero(counts == count)
@@ -85,6 +85,6 @@ def surveys_at(slides: list[Slide], stops: Stops) -> dict[int, Survey]:
         low, high = np.array([(slide.low, slide.high) for slide in some]).T
         starts = np.stack([slide.starts for slide in some])
         ends = np.stack([slide.ends for slide in some])
-        fits = surveys_of(low, high, starts, ends, sums, extremes)
+        fits = sampled_slides_of(low, high, starts, ends, sums, extremes)
         found |= zip(mine.tolist(), fits, strict=True)
     return found

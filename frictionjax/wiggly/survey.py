@@ -16,7 +16,7 @@ WORK, VISCOUS, RESIDUAL = range(3)  # rows of what is summed
 AHEAD, BEHIND, OUTSIDE, SURPLUS, DEFICIT = range(5)  # rows of what has extremes
 
 
-class Survey(NamedTuple):
+class SampledSlide(NamedTuple):
     """Curves over a slide, fitted in time to what was measured in whole slip periods.
 
     `low`, `high`: ends in s. `primitives` (3, n + 1): Chebyshev series of the sums since
@@ -135,14 +135,14 @@ def _densities(means: np.ndarray, scaled, length, fits) -> np.ndarray:
     return means - bent * (length**2 / 24)[:, None]
 
 
-def surveys_of(
+def sampled_slides_of(
     low: np.ndarray,
     high: np.ndarray,
     starts: np.ndarray,
     ends: np.ndarray,
     sums: np.ndarray,
     extremes: np.ndarray,
-) -> list[Survey]:
+) -> list[SampledSlide]:
     """Fit curves through n slip periods [starts, ends] (s) of slides over [low, high].
 
     `low`, `high` (slides,); `starts`, `ends` (slides, n). `sums` (slides, 3, n): over each
@@ -169,7 +169,7 @@ def surveys_of(
     errors = 2 * half[:, None] * tails[:, :RESIDUAL] / count
     extreme, surplus = tails[:, 3:6].max(axis=1), tails[:, 6:].max(axis=1)
     return [
-        Survey(*row)
+        SampledSlide(*row)
         for row in zip(
             low.tolist(),
             high.tolist(),

@@ -11,7 +11,7 @@ from ..arguments import Real, known_numbers, require, require_real
 from ..coefficients import Coefficients, coefficients
 from ..loads.steep import steep_times
 from ..scene import Scene, load_range
-from .landscape import Folds, Landscape, landscape
+from .landscape import WiggleFolds, Landscape, landscape
 
 # At 100 and 0.1 below, errors at gamma = 0.65 were 1.6 times as large, and 3e-3 eps where
 # 1e-3 was asked for, for 7% fewer steps.
@@ -73,7 +73,7 @@ def accuracies_of(accuracies: Any, least: float = _LEAST_ASKED) -> np.ndarray:
     return np.unique(known.astype(float))
 
 
-class Plan(NamedTuple):
+class StepPlan(NamedTuple):
     """Step control of one trajectory: tolerances and reach in periods, steps in s.
 
     `loosest`: tolerance in the middle of a slip; `pace`: periods a second of the fastest
@@ -88,11 +88,11 @@ class Plan(NamedTuple):
     reach: Real
     first_step: Real
     shortest_step: Real
-    folds: Folds
+    folds: WiggleFolds
     unit: Real
 
 
-class Pull(NamedTuple):
+class PullRange(NamedTuple):
     """How hard a scene pulls: largest |l'| on [0, T] in N/s, smallest Phi'' in N/m.
 
     `way`: the most that its limit moves one way, m.
@@ -103,7 +103,7 @@ class Pull(NamedTuple):
     way: Real
 
 
-def pull_of(scene: Scene, found: Coefficients) -> Pull:
+def pull_of(scene: Scene, found: Coefficients) -> PullRange:
     """The same for all cells: sampled between turning points, and over reached states."""
     ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
     edges = jnp.sort(jnp.concatenate([ends, scene.turning_points()]))
@@ -116,10 +116,10 @@ def pull_of(scene: Scene, found: Coefficients) -> Pull:
     softest = jnp.min(stiffness)
     beyond = high - low - (found.rho_plus - found.rho_minus)
     way = jnp.maximum(beyond, 0.0) / softest
-    return Pull(jnp.max(jnp.abs(slopes)), softest, way)
+    return PullRange(jnp.max(jnp.abs(slopes)), softest, way)
 
 
-def remembered_slips(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real:
+def remembered_slips(ground: Landscape, pull: PullRange, eps: Real, gamma: Real) -> Real:
     """How many slips back a disturbance still matters, in the scene's fastest slide.
 
     Averaging over a well, a slide at speed v lags by a force that is quadratic in
@@ -133,7 +133,7 @@ def remembered_slips(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> R
     return 4 * jnp.pi**2 * speed**2 * eps ** (2 * gamma - 1) / (bend * pull.softest)
 
 
-def _way_to_fold(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real:
+def _way_to_fold(ground: Landscape, pull: PullRange, eps: Real, gamma: Real) -> Real:
     """How near in periods the tip is to a fold when its slip is half a percent away.
 
     At rest the force is quadratic in the distance, which so shrinks like sqrt(eps). Where
@@ -145,13 +145,13 @@ def _way_to_fold(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real:
     return jnp.maximum(at_rest, 0.3 * _width_of_fold(ground, pull, eps, gamma))
 
 
-def _width_of_fold(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real:
+def _width_of_fold(ground: Landscape, pull: PullRange, eps: Real, gamma: Real) -> Real:
     """Of the passage, in periods: `(eps^(gamma+1) l')^(1/3) b^(-2/3)`."""
     bend = jnp.maximum(0.5 * ground.fold_curvature, 1e-300)
     return jnp.cbrt(eps ** (gamma + 1) * pull.fastest / bend**2)
 
 
-def _pace_at_fold(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real:
+def _pace_at_fold(ground: Landscape, pull: PullRange, eps: Real, gamma: Real) -> Real:
     """Speed of a tip that passes a fold, in periods a slip, in the fastest slide.
 
     From the scales of time and place of `eps^(gamma+1) y' = l' t + b y^2`.
@@ -161,7 +161,7 @@ def _pace_at_fold(ground: Landscape, pull: Pull, eps: Real, gamma: Real) -> Real
     return pull.softest * jnp.cbrt(eps ** (2 - gamma) / (bend * rate))
 
 
-def _adding(ground: Landscape, pull: Pull, eps: Real, gamma: Real, memory: Real) -> Real:
+def _adding(ground: Landscape, pull: PullRange, eps: Real, gamma: Real, memory: Real) -> Real:
     """How many times an error of a step at a fold comes up in the state.
 
     Errors of the slips remembered add up with mixed signs: as the root of their number.
@@ -189,8 +189,8 @@ def _of_few_wells(way: Real, start: Real, accuracy: Real) -> Real:
 
 
 def plan_steps(
-    scene: Scene, eps: Real, gamma: Real, accuracy: Real, pull: Pull | None = None
-) -> Plan:
+    scene: Scene, eps: Real, gamma: Real, accuracy: Real, pull: PullRange | None = None
+) -> StepPlan:
     """Step control for an error of `accuracy` eps in z at times outside slips.
 
     `pull`: that of the scene, where it is known.
@@ -212,7 +212,7 @@ def plan_steps(
         jnp.clip(jnp.minimum(share / many, at_folds), _TIGHTEST, _LOOSEST)
         for many in (adding, jnp.minimum(adding, _FEW_ADD))
     )
-    plan = Plan(
+    plan = StepPlan(
         tolerance=tolerance,
         loosest=jnp.maximum(tolerance, _IN_SLIPS * few * accuracy / stretch),
         brief=brief,

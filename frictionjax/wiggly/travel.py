@@ -17,7 +17,7 @@ from jaxtyping import Array, Float, Int, PyTree
 
 from ..arguments import Real
 
-PIECES = 2**12  # kept for derivatives; through more than that they are NaN
+MOST_PIECES = 2**12  # kept for derivatives; through more than that they are NaN
 
 
 class Log(NamedTuple):
@@ -30,7 +30,7 @@ class Log(NamedTuple):
 
 
 @eqx.filter_custom_vjp
-def travel(parts: tuple, goes_on: Callable[[PyTree, Real], Array]) -> PyTree:
+def segment_adjoint(parts: tuple, goes_on: Callable[[PyTree, Real], Array]) -> PyTree:
     """Fronts at the stops, stacked. `parts`: (piece, piece again, front, stops).
 
     `piece(front, stop)` goes towards the stop as far as it may, `again(front, end)` all the
@@ -40,16 +40,16 @@ def travel(parts: tuple, goes_on: Callable[[PyTree, Real], Array]) -> PyTree:
     return _forth(parts, goes_on, None)[0]
 
 
-@travel.def_fwd
+@segment_adjoint.def_fwd
 def _travel_and_log(perturbed: PyTree, parts: tuple, goes_on: Any) -> tuple:
     _, _, front, stops = parts
     begins = jax.tree_util.tree_map(_room, front)
-    where = jnp.zeros(PIECES, int)
+    where = jnp.zeros(MOST_PIECES, int)
     return _forth(parts, goes_on, Log(begins, _room(stops[0]), where, jnp.asarray(0)))
 
 
 def _room(leaf: Array) -> Array:
-    return jnp.zeros((PIECES, *leaf.shape), leaf.dtype)
+    return jnp.zeros((MOST_PIECES, *leaf.shape), leaf.dtype)
 
 
 def _forth(parts: tuple, goes_on: Any, log: Log | None) -> tuple[PyTree, Log | None]:
@@ -82,7 +82,7 @@ def _noted(log: Log, front: PyTree, end: Real, stop: Int[Array, ""]) -> Log:
     )
 
 
-@travel.def_bwd
+@segment_adjoint.def_bwd
 def _back(log: Log, by_fronts: PyTree, perturbed: PyTree, parts: tuple, _: Any) -> tuple:
     _, again, front, stops = parts
     wanted, fixed = eqx.partition(again, perturbed[1])
@@ -116,11 +116,11 @@ def _back(log: Log, by_fronts: PyTree, perturbed: PyTree, parts: tuple, _: Any) 
 
     moving = eqx.filter(front, eqx.is_inexact_array)
     none = jax.tree_util.tree_map(jnp.zeros_like, (moving, wanted))
-    start = *none, jnp.where(log.pieces > PIECES, 0, log.pieces)
+    start = *none, jnp.where(log.pieces > MOST_PIECES, 0, log.pieces)
     given = jnp.arange(stops.shape[0]), _whole(by_fronts, moving, stops.shape[0])
     (*found, _), by_stops = jax.lax.scan(over_stop, start, given, reverse=True)
     # Where room ran out, for pieces or for the steps of one, there is no derivative.
-    bad = (log.pieces > PIECES) | jnp.any(jnp.isnan(by_stops))
+    bad = (log.pieces > MOST_PIECES) | jnp.any(jnp.isnan(by_stops))
     by_front, by_wanted, by_stops = jax.tree_util.tree_map(
         lambda leaf: jnp.where(bad, jnp.nan, leaf), (*found, by_stops)
     )

@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene import Scene
-from .job_queue import Jobs, Legs
+from .job_queue import Lanes, Segments
 from .needs import AFFORDABLE
 from .path import Path, slopes_at, states_at
-from .starts import ASIDE, FASTER, Ground, Starts
+from .starts import ASIDE, FASTER, CellBounds, Starts
 
 # Steps are 10 to 200 a well; lags let lanes pass through more wells than the path.
 _STEPS_A_WELL, _SOME_WELLS = 2000, 100
@@ -16,7 +16,7 @@ _STEPS_BEHIND = 500  # a well that tips are behind by, which took 130 (gamma = 3
 _BRIEF = 20.0  # wells of a lane whose errors hardly add up, or that it remembers, twice
 
 
-class Windows(NamedTuple):
+class Brackets(NamedTuple):
     """Stretches of time to be measured, W of them, each with its stops.
 
     `cell`, `begin` (s), shape (W,); `owner` and `stop` (s), shape (S,), sorted by owner and
@@ -38,10 +38,10 @@ class Windows(NamedTuple):
         owner, stop = place[self.owner[mine]], self.stop[mine]
         order = np.argsort(owner, kind="stable")
         rows = self.cell[which], self.begin[which], self.paired[which]
-        return Windows(*rows, owner[order], stop[order])
+        return Brackets(*rows, owner[order], stop[order])
 
 
-class Plan(NamedTuple):
+class BracketPlan(NamedTuple):
     """Jobs and legs of windows, and where each window's stops are among the legs.
 
     `behind`, `ahead` (S,): leg of each stop in either lane, -1 where the second does not
@@ -50,8 +50,8 @@ class Plan(NamedTuple):
     `calm` (J,): in a part of a slide where few wells are remembered.
     """
 
-    jobs: Jobs
-    legs: Legs
+    jobs: Lanes
+    legs: Segments
     behind: np.ndarray
     ahead: np.ndarray
     meet_behind: np.ndarray
@@ -71,7 +71,7 @@ def points_between(points: np.ndarray, low: np.ndarray, high: np.ndarray):
     return owner, points[first[owner] + offset]
 
 
-def _lane_legs(windows: Windows, starts: Starts, kinks: np.ndarray, whole: np.ndarray):
+def _lane_legs(windows: Brackets, starts: Starts, kinks: np.ndarray, whole: np.ndarray):
     """Legs of one lane for each window: owner, start, end, stop's index or -1 or -2.
 
     Legs end at kinks of the load on the way, where the window begins (-1), and at its
@@ -90,9 +90,9 @@ def _lane_legs(windows: Windows, starts: Starts, kinks: np.ndarray, whole: np.nd
     return owner, start, end, mark
 
 
-def plan_windows(
-    scene: Scene, path: Path, ground: Ground, windows: Windows, starts: Starts
-) -> Plan:
+def plan_brackets(
+    scene: Scene, path: Path, ground: CellBounds, windows: Brackets, starts: Starts
+) -> BracketPlan:
     """Jobs and legs: one lane of the bracket each; one alone from a known start."""
     kinks = path.edges[1:-1]
     count = windows.cell.size
@@ -107,7 +107,7 @@ def plan_windows(
     job = np.concatenate([lanes[0][0], count + lanes[1][0]])
     first = np.searchsorted(job, np.arange(count + second.size))
     past = np.searchsorted(job, np.arange(count + second.size), side="right")
-    jobs = Jobs(
+    jobs = Lanes(
         cell=np.concatenate([windows.cell, some.cell]),
         origin=np.concatenate([starts.time, part.time]),
         well=np.concatenate([starts.behind_well, part.ahead_well]),
@@ -145,10 +145,10 @@ def plan_windows(
     brief = np.concatenate([inside, inside[second]])
     brief &= np.bincount(job, wells, brief.size) <= _BRIEF
     calm = _calm(path, ground, jobs, legs)
-    return Plan(jobs, legs, *marks, starts.known, starts.ridden, brief, calm)
+    return BracketPlan(jobs, legs, *marks, starts.known, starts.ridden, brief, calm)
 
 
-def _calm(path: Path, ground: Ground, jobs: Jobs, legs: Legs) -> np.ndarray:
+def _calm(path: Path, ground: CellBounds, jobs: Lanes, legs: Segments) -> np.ndarray:
     """Jobs inside a piece, on a slide that grows slower, which is slow at their start.
 
     Of cells with rides: tolerances of others are for what they remember there anyway.
@@ -166,7 +166,7 @@ def _calm(path: Path, ground: Ground, jobs: Jobs, legs: Legs) -> np.ndarray:
     return rides[jobs.cell] & inside & slower & (memory <= 0.5 * _BRIEF)
 
 
-def legs_of(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Legs:
+def legs_of(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Segments:
     """Legs with the path as their guide; slopes from inside each leg."""
     length = np.maximum(end - start, 0.0)
     guides = states_at(scene, path, np.concatenate([start, end]))
@@ -177,4 +177,4 @@ def legs_of(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Leg
     middle = path.piece_of(0.5 * (start + end))
     friction = np.where(path.direction[middle] != 0, path.rho[middle], 0.0)
     none = np.zeros(start.size)
-    return Legs(start, end, guide0, guide1, slope0, slope1, friction, budget=none)
+    return Segments(start, end, guide0, guide1, slope0, slope1, friction, budget=none)

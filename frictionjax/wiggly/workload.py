@@ -10,11 +10,11 @@ from ..scene import Scene
 from ..viscosity import quiet_where_extreme, viscosity_of
 from .find_path import path_of
 from .lane import LaneScene
-from .needs import Needs, cost_of, longest_lane, wells_a_leg, wells_of
+from .needs import Requirements, cost_of, longest_lane, wells_a_leg, wells_of
 from .path import Path
 from .planning import LOOSEST, WIDEST, lane_scene, planned, slides_of
 from .series_bristle import SeriesBristle
-from .tolerance import Plan as StepPlan
+from .tolerance import StepPlan as StepPlan
 
 # Steps a well: exp of a polynomial in the orders of magnitude of tolerance, drag and reach,
 # and in the lag, with knees at drags of 0.1 and 1. 280 cells of two scenes (vertical and
@@ -120,7 +120,7 @@ def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.nd
 
 
 def _rows(
-    path: Path, eps: np.ndarray, needs: Needs, times: int
+    path: Path, eps: np.ndarray, needs: Requirements, times: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Jobs and legs: two lanes for each window, legs of the first one between its stops."""
     outer, inner = wells_of(path, eps, needs)
