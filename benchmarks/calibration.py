@@ -23,8 +23,8 @@ import numpy as np
 import taylor_truth
 
 import frictionjax as fx
-from frictionjax.instants import Instants, instants
-from frictionjax.wiggly.status import status_of
+from frictionjax.cost.instants import Instants, instants
+from frictionjax.wiggly.equation.status import status_of
 
 fx.use_fast_cpu()
 jax.config.update("jax_enable_x64", True)

@@ -15,7 +15,7 @@ import numpy as np
 from scenes import NAMES, scene
 
 import frictionjax as fx
-from frictionjax.machine_cost import machine_cost
+from frictionjax.cost.machine_cost import machine_cost
 
 fx.use_fast_cpu()
 jax.config.update("jax_enable_x64", True)

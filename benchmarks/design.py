@@ -22,15 +22,19 @@ from clock import timed
 from scipy.optimize import Bounds, LinearConstraint, minimize, nnls
 
 import frictionjax as fx
-from frictionjax.design.constraints import FitShape, basis, waves_of_heights
-from frictionjax.design.extreme_slopes import reach
-from frictionjax.design.interior import (
+from frictionjax.design.surface.barrier.constraints import (
+    FitShape,
+    basis,
+    waves_of_heights,
+)
+from frictionjax.design.surface.barrier.extreme_slopes import reach
+from frictionjax.design.surface.barrier.iterates import (
     barrier_of,
     follow_barrier,
     stop_before_walls,
 )
-from frictionjax.design.profile_fit import surface_problem
-from frictionjax.design.starts import random_start
+from frictionjax.design.surface.fit import surface_problem
+from frictionjax.design.surface.starts import random_start
 
 jax.config.update("jax_enable_x64", True)
 
@@ -140,7 +144,9 @@ def starts_of(problem):
     """The same random surfaces for everybody."""
     keys = jax.random.split(jax.random.PRNGKey(0), STARTS)
     none = jnp.zeros((STARTS, 0))
-    make = jax.vmap(lambda key, none: random_start(problem.layout, problem.task, key, none, none))
+    make = jax.vmap(
+        lambda key, none: random_start(problem.layout, problem.task, key, none, none)
+    )
     return make(keys, none)
 
 

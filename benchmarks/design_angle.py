@@ -19,7 +19,7 @@ from clock import timed
 from scipy.optimize import brentq, minimize
 
 import frictionjax as fx
-from frictionjax.design.quantities import Slopes, on_slopes, quantity_of
+from frictionjax.design.common.quantities import Slopes, on_slopes, quantity_of
 
 jax.config.update("jax_enable_x64", True)
 

@@ -12,8 +12,8 @@ import jax
 import numpy as np
 
 import frictionjax as fx
-from frictionjax.design.free_parameter import free_parameter, with_arrays
-from frictionjax.design.targets import Geometry, coefficients_of, geometry
+from frictionjax.design.common.free_numbers import free_parameter, with_arrays
+from frictionjax.design.common.targets import Geometry, coefficients_of, geometry
 
 NAMES = {
     fx.bristles.SlantedSpring: ("stiffness", "rest_length", "height", "angle"),

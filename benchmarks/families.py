@@ -16,9 +16,9 @@ import numpy as np
 from numba import njit
 from scalar import SLIPS, integrator, lanes, load, rate
 
-from frictionjax.wiggly.rodas4p2 import RODAS4P2
-from frictionjax.wiggly.rodas5p import RODAS5P
-from frictionjax.wiggly.rosenbrock import Tableau
+from frictionjax.wiggly.rosenbrock.rodas4p2 import RODAS4P2
+from frictionjax.wiggly.rosenbrock.rodas5p import RODAS5P
+from frictionjax.wiggly.rosenbrock.step import Tableau
 
 LANES = 256
 

@@ -16,7 +16,7 @@ from design_trace import PERIOD, SAMPLES, scene_of, surface
 from variation import slanted_variation
 
 import frictionjax as fx
-from frictionjax.design.trace_flow import flow, plan_of
+from frictionjax.design.trace.flow import flow, plan_of
 
 jax.config.update("jax_enable_x64", True)
 

@@ -21,12 +21,11 @@ import jax
 import numpy as np
 
 import frictionjax as fx
-from frictionjax.instants import slips_of
-from frictionjax.strip import strips_at
-from frictionjax.wiggly.general import SCIPY, run_scipy
+from frictionjax.cost.instants import slips_of
+from frictionjax.cost.scipy_solvers import SCIPY, run_scipy
+from frictionjax.model.strip import strips_at
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "hard"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 from catalogue import HARD
 from hard_picture import draw

@@ -8,8 +8,8 @@ from entry import pull
 from matplotlib.figure import Figure
 
 import frictionjax as fx
+from frictionjax.model.strip import strips_at
 from frictionjax.plot.style import COLOURS, GUIDE, LIMIT, STRIP, styled
-from frictionjax.strip import strips_at
 
 _COLUMNS = 6
 _SAMPLES = 600

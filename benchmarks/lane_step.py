@@ -22,12 +22,12 @@ from scalar import REACH, SLIPS, integrator, lanes, load, point, rate
 from scenes import AMPLITUDE, EDGES, PERIOD, SLOPE, TWO_PI, scene
 
 import frictionjax as fx
-from frictionjax.wiggly.field import TipField
-from frictionjax.wiggly.job_queue import Lanes, Segments
-from frictionjax.wiggly.lane import LaneCells, LaneScene, Sums
-from frictionjax.wiggly.lanes import WIDTH, march
-from frictionjax.wiggly.rodas4p2 import RODAS4P2
-from frictionjax.wiggly.rosenbrock import Linearised, rosenbrock_step
+from frictionjax.wiggly.equation.field import TipField
+from frictionjax.wiggly.lanes.lane import LaneCells, LaneScene, Sums
+from frictionjax.wiggly.lanes.loops import WIDTH, march
+from frictionjax.wiggly.lanes.queue import Lanes, Segments
+from frictionjax.wiggly.rosenbrock.rodas4p2 import RODAS4P2
+from frictionjax.wiggly.rosenbrock.step import Linearised, rosenbrock_step
 
 # Before JAX starts its threads, which it does with the first computation.
 os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})

@@ -9,8 +9,8 @@ import numpy as np
 from scenes import TIMES
 
 import frictionjax as fx
-from frictionjax.wiggly.engine import integrate_cells
-from frictionjax.wiggly.lanes import LOADER
+from frictionjax.wiggly.batch import integrate_cells
+from frictionjax.wiggly.lanes.loops import LOADER
 
 fx.use_fast_cpu()
 jax.config.update("jax_enable_x64", True)

@@ -14,12 +14,12 @@ import numpy as np
 from scenes import AMPLITUDE, EDGES, PERIOD, SLOPE, TWO_PI, scene
 
 import frictionjax as fx
-from frictionjax.wiggly.job_queue import Lanes, Segments
-from frictionjax.wiggly.lane import LaneCells, LaneScene, Sums
-from frictionjax.wiggly.lanes import march
-from frictionjax.wiggly.rodas4p2 import RODAS4P2
-from frictionjax.wiggly.rodas5p import RODAS5P
-from frictionjax.wiggly.rosenbrock import Tableau
+from frictionjax.wiggly.lanes.lane import LaneCells, LaneScene, Sums
+from frictionjax.wiggly.lanes.loops import march
+from frictionjax.wiggly.lanes.queue import Lanes, Segments
+from frictionjax.wiggly.rosenbrock.rodas4p2 import RODAS4P2
+from frictionjax.wiggly.rosenbrock.rodas5p import RODAS5P
+from frictionjax.wiggly.rosenbrock.step import Tableau
 
 fx.use_fast_cpu()  # before JAX computes anything
 jax.config.update("jax_enable_x64", True)

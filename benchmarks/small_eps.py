@@ -20,7 +20,7 @@ from scenes import AMPLITUDE, PERIOD, scene
 from truth import ACCURACY, error_of, own
 
 import frictionjax as fx
-from frictionjax.wiggly.status import status_of
+from frictionjax.wiggly.equation.status import status_of
 
 LOADS = {
     "sine": fx.loads.Sine(AMPLITUDE, PERIOD),

@@ -24,9 +24,9 @@ import jax
 import numpy as np
 
 import frictionjax as fx
-from frictionjax.coefficients import coefficients_jit as coefficients
+from frictionjax.model.friction_coefficients import coefficients_jit as coefficients
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 import guarantees
 import hard_scenes

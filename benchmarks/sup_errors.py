@@ -22,7 +22,7 @@ from peers import lsoda_states
 from scenes import AMPLITUDE, FASTEST, PERIOD, SLOPE, scene
 from truth import ACCURACY
 
-from frictionjax.wiggly.status import status_of
+from frictionjax.wiggly.equation.status import status_of
 
 _A_SLIP = 16  # times
 _COLUMNS = "gamma | eps | windows | s | gap/eps | status | every slip | s | apart"

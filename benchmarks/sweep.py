@@ -22,7 +22,7 @@ from peers import COMPILED, PEERS, installed
 from scenes import NAMES, scene
 from truth import ACCURACY, error_of, own
 
-from frictionjax.wiggly.status import status_of
+from frictionjax.wiggly.equation.status import status_of
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10)
 _A_WELL = 0.5  # eps: an error that means another well

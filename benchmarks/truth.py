@@ -19,7 +19,7 @@ def outside_slips(states: Callable[[np.ndarray], np.ndarray], eps: float):
 
 def own(one, eps: float, gamma: float, accuracy: float = 1e-6):
     """From our own method on the scene `one`; a peer that agrees with it confirms it."""
-    from frictionjax.wiggly.engine import integrate_cells
+    from frictionjax.wiggly.batch import integrate_cells
 
     cell = np.array([eps]), np.array([gamma])
 

@@ -5,7 +5,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from frictionjax.wiggly.integration import field_of
+from frictionjax.wiggly.sequential.integration import field_of
 
 _STEPS = 200_000
 

@@ -41,7 +41,7 @@ class OneLineErrors(click.Group):
         except ValueError as error:
             message = str(error)
         except RuntimeError as error:
-            from .surroundings import SurroundingsError
+            from ._checks import SurroundingsError
 
             if not isinstance(error, SurroundingsError):
                 raise
@@ -52,7 +52,7 @@ class OneLineErrors(click.Group):
 
 def _of_file(error: OSError) -> tuple[str, int]:
     """Message and exit status of a file that cannot be read or written."""
-    from .whole_files import FULL
+    from .io import FULL
 
     status = 1 if error.errno in FULL else 2
     # Whoever writes a file names it: what is left is what is printed.
@@ -129,13 +129,13 @@ def main(context: click.Context) -> None:
 
 
 def _start() -> None:
-    from .compilation import keep_compiled, use_fast_cpu
+    from ._compile import keep_compiled, use_fast_cpu
 
     use_fast_cpu()
     os.environ["MPLBACKEND"] = "Agg"  # heard when it is imported, which can wait
     import jax
 
-    from .wiggly.status import FailedCells
+    from .wiggly import FailedCells
 
     warnings.simplefilter("once", FailedCells)  # a sweep and its study say the same
     # `keep_compiled` has its own: JAX warns anew for every program.
@@ -154,7 +154,7 @@ def _show_warning(message: Any, *_: Any) -> None:
 
 def _write(folder: Path, work: Callable[[Path], str]) -> None:
     """Run `work` on a place for its files, and print the tables that it returns."""
-    from .report.place import filled
+    from .report import filled
 
     with filled(folder) as place:
         text = _interruptible(lambda: work(place))
@@ -190,9 +190,15 @@ def _interruptible(work: Callable[[], Any]) -> Any:
 def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
     """Friction coefficients of a scene, in each direction."""
     _start()
-    from .friction_law import friction as friction_of
-    from .report.job import joined, read_job
-    from .report.tables import coefficient_table, coefficients_by_name, errors_by_name, row_table
+    from .model import friction as friction_of
+    from .report import (
+        coefficient_table,
+        coefficients_by_name,
+        errors_by_name,
+        joined,
+        read_job,
+        row_table,
+    )
 
     job = read_job(scene, **surface)
     law = friction_of(job.scene)
@@ -247,9 +253,15 @@ def study(
 ) -> None:
     """Convergence to the limit: tables, NetCDF data and pictures in a folder."""
     _start()
-    from .report.job import number_list, read_job
-    from .report.place import require_folder
-    from .report.study import expectation, prepare_study, run_study, within_budget
+    from .report import (
+        expectation,
+        number_list,
+        prepare_study,
+        read_job,
+        require_folder,
+        run_study,
+        within_budget,
+    )
 
     folder = require_folder(out)
     given = {"eps": eps, "gamma": gamma}
@@ -317,10 +329,14 @@ def cost(
 ) -> None:
     """What accuracy costs in time: this library's methods and general solvers."""
     _start()
-    from .report.cost import chosen_eps, run_cost
-    from .report.job import number_list, read_job
-    from .report.order_cost import run_order_cost
-    from .report.place import require_folder
+    from .report import (
+        chosen_eps,
+        number_list,
+        read_job,
+        require_folder,
+        run_cost,
+        run_order_cost,
+    )
 
     if order_within is not None:
         _refuse("--order-within", "methods", "accuracies", "seconds", "out", "progress")
@@ -400,9 +416,7 @@ def design(
     pictures into a folder.
     """
     _start()
-    from .report.design import DesignRequest, run_design
-    from .report.job import read_job
-    from .report.place import require_folder
+    from .report import DesignRequest, read_job, require_folder, run_design
 
     folder = require_folder(out)
     job = read_job(scene, bristle)
@@ -416,8 +430,7 @@ def design(
 def figures(out: str) -> None:
     """Figures of the paper: coefficients against the angle of the bristle."""
     _start()
-    from .report.folder import paper_figures, write_figures
-    from .report.place import require_folder
+    from .report import paper_figures, require_folder, write_figures
 
     def draw(place: Path) -> str:
         return "\n".join(path.name for path in write_figures(place, paper_figures()))

@@ -4,6 +4,7 @@ import atexit
 import os
 import shutil
 import tempfile
+from pathlib import Path
 
 # Two thirds of the suite are compilation, which takes half as long without LLVM's passes
 # and XLA's newer emitters: whole files 138 s of CPU for 252, 147 for 195. Has to stand
@@ -24,30 +25,31 @@ jax.config.update("jax_enable_x64", True)
 
 # Files that take longest, first: the last one under way then leaves no worker idle.
 _LONGEST = (
-    "test_gradients",
-    "test_strip_excess",
-    "test_survey",
-    "test_fit_trace",
-    "test_guarantees",
-    "test_cost",
-    "test_few_wells",
-    "test_sweep",
-    "test_fit_profile",
-    "test_certificate",
-    "test_slide_profile",
-    "test_potential",
-    "test_fit_angle",
-    "test_friction",
-    "test_wells",
-    "test_windows",
-    "test_hard_flags",
-    "test_hard_accuracy",
+    "wiggly/sequential/test_gradients",
+    "wiggly/sums/test_strip_excess",
+    "wiggly/sums/test_sampled_slides",
+    "design/trace/test_fit",
+    "wiggly/test_guarantees",
+    "cost/test_measurement",
+    "wiggly/sums/test_few_wells",
+    "sweeps/test_sweep_cells",
+    "design/surface/test_fit",
+    "certificate/test_certification",
+    "design/slide/test_surface_fit",
+    "model/test_potentials",
+    "design/bristle/test_angle",
+    "model/test_friction_coefficients",
+    "wiggly/sequential/test_well_guard",
+    "wiggly/enclosure/test_brackets",
+    "hard/test_hard_flags",
+    "hard/test_hard_accuracy",
 )
+_HERE = Path(__file__).parent
 
 
 def pytest_collection_modifyitems(items):
     def turn(item):
-        name = item.path.stem
+        name = str(item.path.relative_to(_HERE).with_suffix(""))
         return _LONGEST.index(name) if name in _LONGEST else len(_LONGEST)
 
     items.sort(key=turn)  # stable: the order inside files stays

@@ -11,9 +11,9 @@ import xarray as xr
 from command_line import error_line, run
 
 import frictionjax as fx
-from frictionjax.machine_cost import MachineCost
-from frictionjax.scene_files import default_study, scene_document
-from frictionjax.wiggly.status import warn_of_failed
+from frictionjax.cost.machine_cost import MachineCost
+from frictionjax.io.scene_files import default_study, scene_document
+from frictionjax.wiggly.equation.status import warn_of_failed
 
 SMALL = ["--eps", "0.097:0.031:4", "--gamma", "1,2", "--no-progress"]
 
@@ -42,7 +42,7 @@ def test_a_budget_is_told_before_anything_runs(tmp_path, monkeypatch):
     monkeypatch.setattr("frictionjax.report.study.run_study", stop)
     machine = MachineCost(0.02, 0.01, 1e-4, 1e-7, 1e-6, 10.0, 5e8)
     for name in ("machine_cost", "known_machine"):
-        monkeypatch.setattr(f"frictionjax.cost_prediction.{name}", lambda *_: machine)
+        monkeypatch.setattr(f"frictionjax.cost.prediction.{name}", lambda *_: machine)
     result = run("study", *SMALL, "--budget", "1000", "--out", tmp_path / "there")
     first, last = result.stderr.splitlines()
     assert first.startswith("Budget of 1000 s: accuracy")

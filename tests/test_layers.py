@@ -1,7 +1,9 @@
-"""Imports go down only: the floors of the library, from the bottom."""
+"""Rooms and floors of the library: imports go down, and through the doors of packages."""
 
 import ast
 import tomllib
+from collections import Counter
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -10,52 +12,47 @@ import frictionjax
 
 ROOT = Path(frictionjax.__file__).parent
 
-# Units on one floor know nothing of each other; a folder is one unit.
-FLOORS = [
-    {"surroundings"},
-    {"arguments", "progress", "asymptotes", "whole_files"},
-    {"grids", "viscosity", "parts", "text_units", "thousands"},
-    {"text_tables"},
-    {"kept_programs"},
-    {"outcomes", "compilation", "programs"},
-    {"roots", "taylor", "extrema", "trigonometry"},
-    {"intervals"},
-    {"profiles", "bristles", "supports", "loads"},
-    {"potentials"},
-    {"coefficients", "clearance", "digits"},
-    {"given_rest"},
-    {"admissibility"},
-    {"friction_law"},
-    {"scene", "measured"},
-    {"strip"},
-    {"slide_laws"},
-    {"certificate_curve"},
-    {"certificate_passages", "certificate_tube"},
-    {"limit_system", "wiggly", "certificate"},
-    {"provenance", "selected_cells"},
-    {"cells"},
-    {"blocks"},
-    {"sweeps"},
-    {"orders"},
-    {"law_orders"},
-    {"instants", "timed_runs", "machine_cost"},
-    {"cost_prediction"},
-    {"eps_grids"},
-    {"error_measures"},
-    {"references"},
-    {"cost_of_accuracy"},
-    {"plot"},
-    {"design"},
-    {"studies"},
-    {"scene_files"},
-    {"report"},
-    {"cli"},
-    {"__main__"},
-]
-LEVEL = {unit: level for level, floor in enumerate(FLOORS) for unit in floor}
+# Of every package that holds packages: its floors from the bottom. Units on one floor know
+# nothing of each other.
+FLOORS = {
+    "": [
+        {"_checks"},
+        {"_compile", "_text", "numerics", "intervals"},
+        {"profiles", "bristles", "supports", "loads"},
+        {"model"},
+        {"measured", "limit", "wiggly", "certificate", "slide_laws"},
+        {"io", "sweeps", "convergence"},
+        {"cost"},
+        {"plot"},
+        {"design"},
+        {"studies"},
+        {"report"},
+        {"cli"},
+        {"__main__"},
+    ],
+    "wiggly": [
+        {"equation", "rosenbrock"},
+        {"sequential", "lanes", "limit_path"},
+        {"slip_map"},
+        {"enclosure"},
+        {"sums", "plan"},
+        {"predicted_work", "batch"},
+        {"trajectory"},
+    ],
+    "design": [{"common"}, {"bristle", "surface"}, {"slide", "measured_trace"}, {"trace"}],
+    "design.surface": [
+        {"barrier", "status"},
+        {"starts", "open_directions", "reachable", "history"},
+        {"multistart", "json"},
+        {"least_bent", "result"},
+        {"report"},
+        {"fit"},
+    ],
+}
+MOST_FILES = 16  # in one folder
 ROOF = {"plot", "report", "cli"}  # where matplotlib may be imported
-HELPERS = {("extrema", "roots")}  # one helper built on another, on the same floor
 FILES = sorted(ROOT.rglob("*.py"))
+STUBS = sorted(ROOT.rglob("*.pyi"))
 
 
 def module_of(path):
@@ -65,12 +62,11 @@ def module_of(path):
 
 
 MODULES = {module_of(path) for path in FILES}
+PACKAGES = {module_of(path) for path in FILES if path.name == "__init__.py"}
 
 
 def imported(path):
-    """Modules of the library, and packages outside, that a file names anywhere."""
-    module = module_of(path)
-    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    """What a file names anywhere: modules of the library, and packages outside."""
     inside, outside = set(), set()
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
@@ -78,8 +74,13 @@ def imported(path):
         elif isinstance(node, ast.ImportFrom) and not node.level:
             outside.add(node.module.split(".")[0])
         elif isinstance(node, ast.ImportFrom):
-            inside |= targets(node, package)
+            inside |= targets(node, package_of(path))
     return inside, outside
+
+
+def package_of(path):
+    """Where relative imports of a file start."""
+    return ".".join(path.relative_to(ROOT).parent.parts)
 
 
 def targets(node, package):
@@ -91,46 +92,129 @@ def targets(node, package):
     return {name if name in MODULES else base for name in names} - {""}
 
 
-def unit_of(module):
-    return module.split(".")[0]
+def fork(one, other):
+    """Where two dotted names part: the package of both, and the next name in each."""
+    a, b = one.split("."), other.split(".")
+    same = 0
+    while same < min(len(a), len(b)) and a[same] == b[same]:
+        same += 1
+    return ".".join(a[:same]), a[same : same + 1], b[same : same + 1]
+
+
+def level_in(package, unit):
+    levels = [level for level, floor in enumerate(FLOORS[package]) if unit in floor]
+    assert len(levels) == 1, f"{package}.{unit} has no floor: add it to FLOORS"
+    return levels[0]
 
 
 @pytest.mark.parametrize("path", FILES, ids=module_of)
 def test_a_file_imports_from_floors_below(path):
     module = module_of(path)
-    if not module:
-        return  # the package itself opens every floor, lazily
-    unit = unit_of(module)
-    assert unit in LEVEL, f"{module} has no floor: add it to FLOORS"
     inside, outside = imported(path)
     assert "frictionjax" not in outside, "import relatively"
-    for target in inside:
-        other = unit_of(target)
-        if other != unit and (unit, other) not in HELPERS:
-            assert other in LEVEL, f"{target} has no floor: add it to FLOORS"
-            assert LEVEL[other] < LEVEL[unit], f"{module} imports {target}"
+    for target in inside if path.name != "__init__.py" else ():
+        package, (unit,), rest = fork(module, target)
+        if rest and package in FLOORS:
+            below = level_in(package, rest[0]) < level_in(package, unit)
+            assert below, f"{module} imports {target}"
+
+
+def namespaces():
+    """Files that a face offers as they are: `from . import interval as interval`."""
+    for path in FILES:
+        for node in ast.parse(path.read_text()).body if path.name == "__init__.py" else ():
+            if isinstance(node, ast.ImportFrom) and node.level == 1 and not node.module:
+                yield from (f"{module_of(path)}.{alias.name}" for alias in node.names)
+
+
+@pytest.mark.parametrize("path", FILES, ids=module_of)
+def test_other_packages_are_entered_by_their_doors(path):
+    """What is imported is a file of the same folder, or the face of another package."""
+    home = package_of(path)
+    for target in imported(path)[0] - set(namespaces()):
+        if target not in PACKAGES:
+            assert target.rpartition(".")[0] == home, f"import the package of {target}"
+        elif target != home:
+            above, _, below = fork(home, target) if home else ("", [], [target])
+            assert below, f"{target} holds {home}: import what it takes it from"
+            door = ".".join([*filter(None, [above]), below[0]])
+            assert target == door, f"{target}: import from {door}"
+
+
+def test_faces_say_what_they_hold():
+    for path in FILES:
+        if path.name == "__init__.py":
+            assert ast.get_docstring(ast.parse(path.read_text())), path
+
+
+@pytest.mark.parametrize("path", STUBS, ids=lambda path: module_of(path) or "frictionjax")
+def test_every_name_of_a_face_can_be_imported(path):
+    package = __import__(f"frictionjax.{package_of(path)}".rstrip("."), fromlist=["_"])
+    for node in ast.parse(path.read_text()).body:
+        for alias in getattr(node, "names", ()):
+            value = getattr(package, alias.asname or alias.name)
+            assert value is not None
+            submodule = f"{package.__name__}.{alias.name}".partition(".")[2]
+            assert submodule not in MODULES or submodule in PACKAGES, "name of a file"
+
+
+def test_no_folder_holds_many_files():
+    sizes = Counter(package_of(path) for path in FILES if path.name != "__init__.py")
+    assert max(sizes.values()) <= MOST_FILES, sizes.most_common(3)
+    assert {path.name for path in ROOT.glob("*.py")} == {
+        "__init__.py",
+        "__main__.py",
+        "cli.py",
+    }
+
+
+def public_names(path):
+    for node in ast.parse(path.read_text()).body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            names = [node.name]
+        elif isinstance(node, ast.Assign):
+            names = [target.id for target in node.targets if isinstance(target, ast.Name)]
+        else:
+            names = []
+        yield from (name for name in names if not name.startswith("_"))
+
+
+# Names of the library's face that stand for two things by design, each in its own package.
+SHARED = {"Custom", "Sine", "fit_profile"}
+
+
+def test_a_public_name_stands_for_one_thing():
+    """`intervals` is left out: its files are arithmetics, used as namespaces; so are the
+    shell's commands, named as what they call."""
+    left_out = {"intervals", "cli"}
+    homes = {}
+    for path in FILES:
+        if module_of(path).split(".")[0] not in left_out:
+            for name in public_names(path):
+                homes.setdefault(name, []).append(module_of(path))
+    twice = {name: places for name, places in homes.items() if len(places) > 1}
+    assert twice.keys() <= SHARED, twice
 
 
 @pytest.mark.parametrize("path", FILES, ids=module_of)
 def test_matplotlib_stays_under_the_roof(path):
     outside = imported(path)[1]
-    assert "matplotlib" not in outside or unit_of(module_of(path)) in ROOF
+    assert "matplotlib" not in outside or module_of(path).split(".")[0] in ROOF
 
 
 def test_imports_never_loop():
-    below = {module_of(path): imported(path)[0] for path in FILES if module_of(path)}
-    below = {module: needs & below.keys() for module, needs in below.items()}
-    done = set()
-    while len(done) < len(below):
-        ready = {m for m, needs in below.items() if m not in done and needs <= done | {m}}
-        assert ready, f"a loop among {sorted(set(below) - done)}"
-        done |= ready
-
-
-def test_public_names_are_where_the_package_says():
-    for name, home in frictionjax._HOME.items():
-        if home in MODULES:
-            assert getattr(frictionjax, name) is not None
+    """Neither among files nor among the packages of a package."""
+    files = {module_of(p): imported(p)[0] for p in FILES if module_of(p)}
+    files = {module: needs - {module} for module, needs in files.items()}
+    assert list(TopologicalSorter(files).static_order())
+    for package in FLOORS:
+        units = {}
+        for module, needs in files.items():
+            for target in needs:
+                where, unit, rest = fork(module, target)
+                if where == package and unit and rest:
+                    units.setdefault(unit[0], set()).add(rest[0])
+        assert list(TopologicalSorter(units).static_order())
 
 
 def test_types_of_every_benchmark_are_checked():

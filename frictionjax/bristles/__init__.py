@@ -2,7 +2,12 @@
 
 from .angular_spring import AngularSpring as AngularSpring
 from .bristle import AbstractBristle as AbstractBristle
+from .bristle import Rod as Rod
 from .custom import Custom as Custom
 from .homothetic import Homothetic as Homothetic
+from .pulling import normal_force as normal_force
+from .pulling import pulling_note as pulling_note
+from .pulling import pulling_text as pulling_text
+from .pulling import swapped_text as swapped_text
 from .slanted_spring import SlantedSpring as SlantedSpring
 from .vertical_spring import VerticalSpring as VerticalSpring

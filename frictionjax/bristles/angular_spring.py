@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, as_real, is_known, require, require_real
+from .._checks import Real, as_real, is_known, require, require_real
 from .bristle import AbstractBristle, Rod, SlopeBounds
 
 

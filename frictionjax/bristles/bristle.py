@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 
-from ..arguments import Real
-from ..parts import Part
+from .._checks import Part, Real
 
 
 class SlopeBounds(NamedTuple):

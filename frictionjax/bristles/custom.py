@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, is_concrete, require, require_function
+from .._checks import Real, is_concrete, require, require_function
 from .bristle import AbstractBristle
 
 

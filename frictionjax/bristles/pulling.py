@@ -6,7 +6,7 @@ import equinox as eqx
 import jax
 import numpy as np
 
-from ..arguments import as_text, is_concrete
+from .._checks import as_text, is_concrete
 from .bristle import AbstractBristle
 from .slanted_spring import SlantedSpring
 from .vertical_spring import VerticalSpring

@@ -3,7 +3,7 @@
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..arguments import Real, as_real, require_real
+from .._checks import Real, as_real, require_real
 from .bristle import AbstractBristle, SlopeBounds
 
 

@@ -1,5 +1,6 @@
 """Bounds of functions over whole intervals: what samples cannot prove."""
 
+from . import interval as interval
 from .enclosure import Enclosure as Enclosure
 from .enclosure import NoRuleError as NoRuleError
 from .enclosure import TooMuchWorkError as TooMuchWorkError

@@ -6,4 +6,5 @@ from .load import AbstractLoad as AbstractLoad
 from .piecewise_linear import PiecewiseLinear as PiecewiseLinear
 from .ramp import Ramp as Ramp
 from .sine import Sine as Sine
+from .steep import steep_times as steep_times
 from .triangle import Triangle as Triangle

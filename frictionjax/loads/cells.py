@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arguments import require
+from .._checks import require
 from ..intervals import Enclosure, Interval, Jet, TooMuchWorkError
 from ..intervals import interval as iv
 

@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arguments import Real
+from .._checks import Real
 from ..intervals import Enclosure, NoRuleError, TooMuchWorkError, enclosure_of
 from .cells import (
     MOST_NUMBERS,
     STEEPEST_SHARE,
-    LoadCells,
     Kind,
+    LoadCells,
     LoadPoint,
     by_bounds,
     halves,
@@ -89,7 +89,9 @@ def _sampled_course(fn: Callable, duration: float, why: str) -> Course:
     return Course(turns, kinks, steepest, why, hidden, cells.size, samples)
 
 
-def _events(cells: LoadCells, at: LoadPoint, duration: float) -> tuple[np.ndarray, np.ndarray]:
+def _events(
+    cells: LoadCells, at: LoadPoint, duration: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Turning points, and kinks at which the load does not turn."""
     kinks = kinks_of(cells, at, duration)
     cells = _unbent(cells, at)

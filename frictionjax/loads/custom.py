@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from ..arguments import (
+from .._checks import (
     Real,
     as_real,
     in_64_bits,

@@ -6,8 +6,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..arguments import Real
-from ..parts import Part
+from .._checks import Part, Real
 
 
 class AbstractLoad(Part):

@@ -6,9 +6,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, require
+from .._checks import Real, require
 from ..intervals import Enclosure
-from .cells import KINK, LoadCells, Kind, LoadPoint, halves, needle
+from .cells import KINK, Kind, LoadCells, LoadPoint, halves, needle
 
 _JUMP = 1e-6  # of max |l|: what a load may change by within a few spacings of floats
 # Changes that the slopes on either side explain: one of them holds at least half way.

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_known, known_numbers, require
+from .._checks import Real, as_real, is_known, known_numbers, require
 from .load import AbstractLoad, listed_turning_points
 
 

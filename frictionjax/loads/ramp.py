@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, require_real
+from .._checks import Real, as_real, require_real
 from .load import AbstractLoad
 
 

@@ -7,9 +7,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, require
+from .._checks import Real, require
 from ..intervals import work_of
-from .cells import LoadCells, Kind, halves, needle
+from .cells import Kind, LoadCells, halves, needle
 
 # Cells of which each is looked at from its ends and at two places inside. A pulse that
 # lasts longer than one is seen; of shorter ones, one in the share of its cell.

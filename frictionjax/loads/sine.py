@@ -3,8 +3,8 @@
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, require_real
-from ..trigonometry import sin_cos
+from .._checks import Real, as_real, require_real
+from ..numerics import sin_cos
 from .load import AbstractLoad, periodic_turning_count, periodic_turning_points
 
 

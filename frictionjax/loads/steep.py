@@ -4,7 +4,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..arguments import Real
+from .._checks import Real
 from .load import AbstractLoad
 
 _SAMPLES = 64

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, require_real
+from .._checks import Real, as_real, require_real
 from .load import AbstractLoad, periodic_turning_count, periodic_turning_points
 
 # A kink computed as (2k+1) period/4 must already lie on the piece to its right, or an

@@ -2,6 +2,7 @@
 
 from .files import Measured as Measured
 from .files import MeasuredWarning as MeasuredWarning
+from .files import heights_of as heights_of
 from .files import read_heights as read_heights
 from .fit import fit_profile as fit_profile
 from .rows import RowCoefficients as RowCoefficients

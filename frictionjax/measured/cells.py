@@ -5,8 +5,8 @@ import math
 import re
 from typing import NamedTuple
 
-from ..arguments import require
-from ..thousands import BOTH_WAYS, is_grouped, ungrouped
+from .._checks import require
+from .._text import BOTH_WAYS, is_grouped, ungrouped
 from .units import cell_unit
 
 _MISSING = re.compile(

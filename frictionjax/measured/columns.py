@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arguments import require
+from .._checks import require
 from .axes import axis_of
 from .entries import Size, Stated
 from .headings import Headings, read_headings
@@ -95,7 +95,9 @@ def _pairs(table: NumberTable, headings: Headings, asked: GivenUnits) -> _Raw:
     return _Raw(samples, scale, f"line {line}, columns 1 and 2")
 
 
-def _counted(samples: HeightSamples, headings: Headings, asked: GivenUnits, line: int) -> _Raw:
+def _counted(
+    samples: HeightSamples, headings: Headings, asked: GivenUnits, line: int
+) -> _Raw:
     """A trace whose first column counts samples: the pixel says how far they are."""
     x, place = samples.x, f"line {line}, column 1"
     pixel = _pixel(headings, asked, x.size)
@@ -125,7 +127,9 @@ def _counts(x: np.ndarray) -> bool:
     return first in (0, 1) and x.size > 3 and np.array_equal(x, first + np.arange(x.size))
 
 
-def _trace(table: NumberTable, x: np.ndarray, heights: np.ndarray, column: int) -> HeightSamples:
+def _trace(
+    table: NumberTable, x: np.ndarray, heights: np.ndarray, column: int
+) -> HeightSamples:
     lines = table.lines[None, :]
     return HeightSamples(x, heights[None, :], [], lines, np.full_like(lines, column))
 
@@ -162,7 +166,9 @@ def _grid(table: NumberTable, headings: Headings, asked: GivenUnits) -> _Raw:
     place = f"line {int(table.lines[0])}, columns 1 to 3"
     scale, notes = scale_of(asked.length, headings.length, "length_unit")
     note = f"{place}: x, y and z, {rows} rows of {across.shape[1]}"
-    samples = HeightSamples(across[0], heights, [note, *notes], lines, np.full_like(lines, 3))
+    samples = HeightSamples(
+        across[0], heights, [note, *notes], lines, np.full_like(lines, 3)
+    )
     return _Raw(samples, scale, place)
 
 

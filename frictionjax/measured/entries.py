@@ -3,7 +3,7 @@
 import re
 from typing import NamedTuple
 
-from ..arguments import require
+from .._checks import require
 from .units import ALLOWED, metres
 
 _ENTRY = re.compile(r"\s*([^=:]+?)\s*[=:]\s*(.*?)\s*")

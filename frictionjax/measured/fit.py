@@ -2,11 +2,9 @@
 
 from collections.abc import Sequence
 
-from ..arguments import as_real, require, require_whole
-from ..profiles import Fourier
-from ..profiles.heights import HeightsFit, SeriesFit
-from ..profiles.rows import fit_rows_in_phase as fit_rows_of
-from ..profiles.rows import mean_in_phase, complex_series
+from .._checks import as_real, require, require_whole
+from ..profiles import Fourier, HeightsFit, SeriesFit, complex_series, mean_in_phase
+from ..profiles import fit_rows_in_phase as fit_rows_of
 from .files import Measured
 
 

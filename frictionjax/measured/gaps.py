@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..arguments import no_more, require
-from ..profiles.heights import find_period
+from .._checks import no_more, require
+from ..profiles import find_period
 from .samples import HeightSamples
 
 # A straight line over a tenth of a period misleads the steepest slopes by 1 to 2% in a

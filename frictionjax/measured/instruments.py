@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import require
+from .._checks import require
 from .axes import axis_of
 from .samples import HeightSamples
 from .scales import GivenUnits, Scale, completed, require_metres

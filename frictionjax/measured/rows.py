@@ -5,11 +5,10 @@ from typing import NamedTuple
 import jax
 import numpy as np
 
-from ..arguments import require
+from .._checks import require
 from ..bristles import AbstractBristle
-from ..friction_law import friction
-from ..profiles import Fourier
-from ..profiles.heights import SeriesFit
+from ..model import friction
+from ..profiles import Fourier, SeriesFit
 from .files import Measured
 from .fit import fit_rows, mean_profile, row_profile
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arguments import require
+from .._checks import require
 from .entries import Stated
 from .units import ALLOWED, metres, require_unit
 

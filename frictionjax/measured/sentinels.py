@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arguments import require
+from .._checks import require
 from .samples import HeightSamples
 
 _BITS = (32767.0, 32768.0, 65535.0, 2.0**31 - 1, 2.0**31, 2.0**32 - 1)

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arguments import require
+from .._checks import require
 from .cells import Dialect, find_dialect, only_marks
 
 _COMMENTS = ("#", "%", ";", "//", "!")

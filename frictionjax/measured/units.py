@@ -2,7 +2,7 @@
 
 import re
 
-from ..arguments import require
+from .._checks import require
 
 ALLOWED = "a unit of length (m, mm, um, nm, pm, angstrom, inch, ...)"
 _MICRO = "[\u00b5\u03bcu]"  # micro sign, Greek mu, and the letter where neither is there

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..arguments import require
+from .._checks import require
 from .design_maps import number_label
 from .style import GUIDE, LIMIT, colour, new_figure, styled
 

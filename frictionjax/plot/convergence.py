@@ -7,8 +7,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from ..orders import Verdict
-from ..selected_cells import whole_grid
+from ..convergence import Verdict
+from ..sweeps import whole_grid
 from .style import GUIDE, colour, marker, new_figure, styled
 
 _PANELS = (

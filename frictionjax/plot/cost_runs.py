@@ -5,8 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..wiggly.own_methods import is_ours
-from ..wiggly.status import ENDED
+from ..wiggly import ENDED, is_ours
 from .style import LIMIT, colour, marker
 
 MOST = 1e3  # eps: further off is as wrong

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ..arguments import require
+from .._checks import require
 from .style import GUIDE, new_figure, styled
 
 _UNITS = {"asymmetry": "1", "steepness": "1", "angle": "rad", "rest_angle": "rad"}

@@ -5,8 +5,8 @@ from typing import Any
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..arguments import require
-from ..selected_cells import whole_grid
+from .._checks import require
+from ..sweeps import whole_grid
 from .style import (
     LIMIT,
     choose_eps,
@@ -19,7 +19,9 @@ from .style import (
 
 
 @styled
-def draw_dissipation(dataset: xr.Dataset, gamma: float | None = None, eps: Any = None) -> Figure:
+def draw_dissipation(
+    dataset: xr.Dataset, gamma: float | None = None, eps: Any = None
+) -> Figure:
     """Draw `int_0^t eps^gamma z'^2` (J) for a few eps of one gamma, and the limit's.
 
     Raises `ValueError` for a data set without dissipation.

@@ -7,10 +7,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..coefficients import Coefficients
-from ..programs import Program
-from ..selected_cells import whole_grid
+from .._compile import Program
+from ..model import Coefficients
 from ..supports import AbstractSupport
+from ..sweeps import whole_grid
 from .style import (
     GUIDE,
     LIMIT,

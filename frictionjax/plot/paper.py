@@ -9,8 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..bristles import AbstractBristle, AngularSpring, SlantedSpring
-from ..coefficients import Coefficients
-from ..friction_law import friction
+from ..model import Coefficients, friction
 from ..profiles import Sine
 from .style import GUIDE, colour, new_figure, styled
 

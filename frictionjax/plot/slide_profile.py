@@ -30,7 +30,9 @@ def draw_slide_profile_fit(fit: Any) -> Figure:
 
 
 def _surfaces(axes: Any, fit: Any, order: int, label: str, title: str) -> None:
-    axes.plot(*drawn_series(fit.profile, order), color=colour(0), linewidth=2, label="its slides")
+    axes.plot(
+        *drawn_series(fit.profile, order), color=colour(0), linewidth=2, label="its slides"
+    )
     limit = {"color": LIMIT, "linestyle": "--", "linewidth": 1}
     axes.plot(*drawn_series(fit.limit.profile, order), **limit, label="limit only")
     axes.set(xlabel="y (periods)", ylabel=label)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..arguments import as_text, require
+from .._checks import as_text, require
 
 # Told apart by colour-blind readers, in this order: Okabe and Ito's, then Tol's muted
 # indigo, wine and olive, darker than all of those.

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from ..selected_cells import whole_grid
+from ..sweeps import whole_grid
 from .style import (
     LIMIT,
     STRIP,
@@ -24,7 +24,9 @@ _RESOLVED = 8  # samples a slip, or the inset would show the sampling
 
 
 @styled
-def draw_trajectories(dataset: xr.Dataset, gamma: float | None = None, eps: Any = None) -> Figure:
+def draw_trajectories(
+    dataset: xr.Dataset, gamma: float | None = None, eps: Any = None
+) -> Figure:
     """Draw `z_eps` for a few eps of one gamma over the limit `z`, the strip shaded.
 
     `gamma`: the nearest to 1 where None; `eps`: largest, middle and smallest where None.

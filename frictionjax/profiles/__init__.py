@@ -2,9 +2,17 @@
 
 from .custom import Custom as Custom
 from .fourier import Fourier as Fourier
+from .heights import HeightsFit as HeightsFit
+from .heights import SeriesFit as SeriesFit
+from .heights import find_period as find_period
 from .polyline import Polyline as Polyline
 from .profile import AbstractProfile as AbstractProfile
+from .profile import require_smooth as require_smooth
+from .rows import complex_series as complex_series
+from .rows import fit_rows_in_phase as fit_rows_in_phase
+from .rows import mean_in_phase as mean_in_phase
 from .sine import Sine as Sine
+from .slope_errors import AbstractSampled as AbstractSampled
 from .slope_errors import SlopeErrors as SlopeErrors
 from .slope_errors import SlopesUndetermined as SlopesUndetermined
 from .spline import Spline as Spline

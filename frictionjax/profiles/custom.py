@@ -5,7 +5,7 @@ from collections.abc import Callable
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..arguments import Real, as_plain, require_function, require_whole
+from .._checks import Real, as_plain, require_function, require_whole
 from .profile import AbstractProfile, require_smooth
 
 

@@ -7,8 +7,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_concrete, is_known, known_numbers, require
-from ..trigonometry import fourier_sum
+from .._checks import Real, as_real, is_concrete, is_known, known_numbers, require
+from ..numerics import fourier_sum
 from .heights import HeightsFit, fit_heights
 from .rows import fit_map
 from .slope_errors import (

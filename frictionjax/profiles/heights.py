@@ -4,7 +4,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from ..arguments import (
+from .._checks import (
     no_more,
     numbers_of,
     require,
@@ -168,7 +168,9 @@ def _complex(solution: np.ndarray) -> np.ndarray:
     return cos - 1j * sin
 
 
-def _waves(x: np.ndarray, heights: np.ndarray, period: float, harmonics: int) -> SampledWaves:
+def _waves(
+    x: np.ndarray, heights: np.ndarray, period: float, harmonics: int
+) -> SampledWaves:
     """All waves that the samples tell apart, and their noise, from what these leave."""
     harmonics = min(harmonics, max(1, (x.size - 3) // 3))
     design = _design(x, period, harmonics)
@@ -177,7 +179,9 @@ def _waves(x: np.ndarray, heights: np.ndarray, period: float, harmonics: int) ->
     free = max(1, x.size - design.shape[1])
     rounding = _ROUNDING * float(np.ptp(heights))
     noise = max(np.sqrt(left / free), rounding) * np.sqrt(2 / x.size) / period
-    return SampledWaves(_complex(solution) / period, np.full(harmonics, noise), np.ones(harmonics))
+    return SampledWaves(
+        _complex(solution) / period, np.full(harmonics, noise), np.ones(harmonics)
+    )
 
 
 def require_left(name: str, masked: int, left: int) -> None:

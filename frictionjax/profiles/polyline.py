@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import (
+from .._checks import (
     Real,
     as_real,
     is_known,

@@ -8,9 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..arguments import Real, in_64_bits, is_concrete, require
-from ..parts import Part
-from ..surroundings import with_nan
+from .._checks import Part, Real, in_64_bits, is_concrete, require, with_nan
 
 
 class AbstractProfile(Part):

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import is_masked, known_numbers, numbers_of, require, require_whole
+from .._checks import is_masked, known_numbers, numbers_of, require, require_whole
 from .heights import SeriesFit, find_period, fit_heights, require_left
 from .steepest import SampledWaves
 

@@ -3,8 +3,8 @@
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..arguments import Real, as_real, require_real
-from ..trigonometry import sin_cos
+from .._checks import Real, as_real, require_real
+from ..numerics import sin_cos
 from .profile import AbstractProfile
 
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arguments import as_text, is_known, known_numbers, require
+from .._checks import as_text, is_known, known_numbers, require
 from .filtered import taken_off
 from .profile import AbstractProfile
 from .steepest import SampledWaves, error_of, noise_of, series_values, steepest

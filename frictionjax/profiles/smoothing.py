@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import no_more, require, require_real
+from .._checks import no_more, require, require_real
 
 _LEAST = 1e-2  # of the fundamental: what a longer filter leaves is no surface any more
 

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..arguments import Real, as_real, is_concrete, is_known, known_numbers, require
+from .._checks import Real, as_real, is_concrete, is_known, known_numbers, require
 from .slope_errors import (
     AbstractSampled,
     SlopeErrors,

@@ -40,7 +40,7 @@ class SampledWaves(NamedTuple):
     noise: np.ndarray
     gain: np.ndarray
 
-    def mirrored(self) -> "Waves":
+    def mirrored(self) -> "SampledWaves":
         """Of the surface upside down."""
         return self._replace(c=-self.c)
 

@@ -1,1 +1,5 @@
-"""Reports: plain-text tables and the folder that a study leaves behind."""
+"""What commands leave behind: tables, folders, pictures."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -6,11 +6,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..cost_of_accuracy import MEASURED_ACCURACIES, METHODS, work_precision
-from ..instants import slips_of
+from ..cost import MEASURED_ACCURACIES, METHODS, slips_of, work_precision
+from ..io import scene_document
+from ..model import Scene
 from ..plot import draw_work_precision
-from ..scene import Scene
-from ..scene_files import scene_document
 from .folder import write_figures, write_record
 from .job import Job, joined
 from .tables import flag_names, formatted, table

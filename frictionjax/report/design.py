@@ -8,23 +8,25 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import plot
-from ..arguments import as_text, require
+from .._checks import as_text, require
 from ..bristles import AbstractBristle
-from ..design.angle import fit_angle
-from ..design.angle_fit import AngleFit, intervals_text
-from ..design.design_check import check_design
-from ..design.heights import surface_heights, write_heights
-from ..design.maps import design_map
-from ..design.profile_fit import fit_profile
-from ..design.targets import Target
-from ..friction_law import friction
+from ..design import (
+    AngleFit,
+    Target,
+    check_design,
+    design_map,
+    fit_angle,
+    fit_profile,
+    intervals_text,
+    surface_heights,
+    write_heights,
+)
+from ..io import scene_document, write_whole
+from ..model import Scene, friction
 from ..profiles import AbstractProfile
-from ..scene import Scene
-from ..scene_files import scene_document
 from ..supports import Spring
-from ..whole_files import write_whole
 from .folder import write_figures
-from .job import Job, with_surface, joined
+from .job import Job, joined, with_surface
 from .tables import coefficient_table, table
 
 _MAP = 121  # values of an axis

@@ -7,10 +7,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .. import plot
-from ..coefficients import Coefficients
-from ..scene import Scene
+from ..io import naming, write_whole
+from ..model import Coefficients, Scene
 from ..studies import Study
-from ..whole_files import naming, write_whole
 
 
 def study_figures(

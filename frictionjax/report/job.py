@@ -8,19 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arguments import require
-from ..bristles import AbstractBristle, AngularSpring, SlantedSpring
-from ..bristles.pulling import pulling_note
-from ..measured import (
-    Measured,
-    RowCoefficients,
-    fit_profile,
-    row_coefficients,
-)
-from ..measured.files import heights_of
+from .._checks import require
+from ..bristles import AbstractBristle, AngularSpring, SlantedSpring, pulling_note
+from ..io import default_study, load_study
+from ..measured import Measured, RowCoefficients, fit_profile, heights_of, row_coefficients
+from ..model import Scene
 from ..profiles import SlopesUndetermined
-from ..scene import Scene
-from ..scene_files import default_study, load_study
 
 _FEW_PERIODS = 2.0
 _BRISTLES: dict[str, tuple[Any, dict[str, float]]] = {  # as the command line names them
@@ -108,7 +101,9 @@ def _read_job(
         fit = {"period": period, "harmonics": harmonics, "row": row, "smoothing": smoothing}
         for name, value in {**file, **fit}.items():
             require(value is None, name, value, "--heights FILE beside it")
-        return Job(with_surface(known.scene, known.scene.profile, chosen), study, warned, None)
+        return Job(
+            with_surface(known.scene, known.scene.profile, chosen), study, warned, None
+        )
     measured = heights_of(heights, **file)
     harmonics = 8 if harmonics is None else harmonics
     try:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..eps_grids import OrderCost, order_cost
+from ..cost import OrderCost, order_cost
 from .job import Job, joined
 from .tables import table
 

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ..arguments import require
-from ..whole_files import FULL
+from .._checks import require
+from ..io import FULL
 
 
 def require_folder(path: Any) -> Path:

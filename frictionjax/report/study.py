@@ -7,14 +7,11 @@ from pathlib import Path
 import jax.numpy as jnp
 import numpy as np
 
-from ..admissibility import require_reach
-from ..cost_prediction import PREDICTED_ACCURACIES, CostPrediction, fit_budget, predict_cost
-from ..grids import cells_of, grid_of
+from .._checks import cells_of, grid_of
+from ..cost import PREDICTED_ACCURACIES, CostPrediction, fit_budget, predict_cost
+from ..model import require_reach
 from ..sweeps import sweep
-from ..wiggly.engine import prepare_cells
-from ..wiggly.methods import solver_of
-from ..wiggly.own_methods import is_ours
-from ..wiggly.tolerance import require_accuracy
+from ..wiggly import is_ours, prepare_cells, require_accuracy, solver_of
 from .job import Job
 
 _TIMES = 401  # pictures follow the slips of the larger eps

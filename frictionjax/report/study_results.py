@@ -4,8 +4,8 @@ from pathlib import Path
 
 import xarray as xr
 
-from ..friction_law import friction
-from ..scene_files import scene_document
+from ..io import scene_document
+from ..model import friction
 from ..studies import study
 from .folder import write_study
 from .job import Job, joined

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..bristles.pulling import pulling_text
-from ..coefficients import Coefficients
+from ..bristles import pulling_text
 from ..measured import RowCoefficients
+from ..model import Coefficients
 
 _LAW = (
     ("rho_plus", "N", "friction against motion to the right"),

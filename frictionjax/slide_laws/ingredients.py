@@ -7,12 +7,16 @@ import jax
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..coefficients import Coefficients
-from ..extrema import slope_of
-from ..potentials import AbstractPotential, BristlePotential
-from ..programs import Program, in_chunks
-from ..scene import Scene
-from ..strip import CHUNK, strips_at
+from .._compile import Program, in_chunks
+from ..model import (
+    CHUNK,
+    AbstractPotential,
+    BristlePotential,
+    Coefficients,
+    Scene,
+    strips_at,
+)
+from ..numerics import slope_of
 
 _EVEN = 1024  # places of a period
 _NEAREST, _FARTHEST, _BESIDE = 1e-4, 0.06, 96  # more of them on each side of an extreme

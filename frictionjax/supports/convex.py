@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import jax.numpy as jnp
 
-from ..arguments import Real, require_function
-from ..roots import increasing_root
+from .._checks import Real, require_function
+from ..numerics import increasing_root
 from .support import AbstractSupport
 
 

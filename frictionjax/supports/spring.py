@@ -2,7 +2,7 @@
 
 import equinox as eqx
 
-from ..arguments import Real, as_real, require_real
+from .._checks import Real, as_real, require_real
 from .support import AbstractSupport
 
 

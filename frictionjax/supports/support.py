@@ -4,8 +4,7 @@ import abc
 
 import jax
 
-from ..arguments import Real
-from ..parts import Part
+from .._checks import Part, Real
 
 _NEWTON = 3
 

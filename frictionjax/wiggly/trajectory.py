@@ -8,25 +8,23 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..admissibility import require_reach
-from ..arguments import (
+from .._checks import (
     as_real,
+    counted,
+    flags,
     is_concrete,
     is_known,
+    outcomes,
     require,
     require_flags,
     require_numbers,
     require_whole,
+    with_nan,
 )
-from ..outcomes import counted, flags, outcomes
-from ..scene import Scene, known_scene, require_times, require_told_apart
-from ..surroundings import with_nan
-from .engine import integrate_cells
-from .integration import MAX_STEPS, integrate
-from .methods import solver_of
-from .own_methods import is_ours
-from .status import Status
-from .tolerance import plan_steps, require_accuracy
+from ..model import Scene, known_scene, require_reach, require_times, require_told_apart
+from .batch import integrate_cells
+from .equation import Status, plan_steps, require_accuracy
+from .sequential import MAX_STEPS, integrate, is_ours, solver_of
 
 
 class Solution(eqx.Module):

@@ -42,7 +42,7 @@ def test_values_against_the_independent_reference(name):
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.status.FailedCells")
+@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.equation.status.FailedCells")
 def test_eps_over_seven_decades_in_one_batch():
     scene = HARD["kinks and plateaus"].build()
     eps = 0.97 * np.geomspace(1e-1, 1e-8, 8)

@@ -9,8 +9,8 @@ from asked import named
 from catalogue import HARD
 
 import frictionjax as fx
-from frictionjax.wiggly.engine import integrate_cells
-from frictionjax.wiggly.status import FailedCells
+from frictionjax.wiggly.batch import integrate_cells
+from frictionjax.wiggly.equation.status import FailedCells
 
 ACCURACY = 1e-3
 SAME = 1e-3 * ACCURACY

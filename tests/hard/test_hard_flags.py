@@ -12,10 +12,10 @@ from catalogue import HARD
 from smallest_eps import SMALLEST
 
 import frictionjax as fx
-from frictionjax.compilation import FAST_CPU_FLAGS
+from frictionjax._compile.flags import FAST_CPU_FLAGS
 
 _HERE = Path(__file__).parent
-_MODULES = os.pathsep.join([str(_HERE), str(_HERE.parent)])
+_MODULES = os.pathsep.join([str(_HERE), str(_HERE.parent / "support")])
 
 _SCRIPT = """
 import sys, jax

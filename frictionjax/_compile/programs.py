@@ -1,0 +1,147 @@
+"""Functions of parts and arrays, compiled."""
+
+from collections.abc import Callable
+from typing import Any
+
+import equinox as eqx
+import jax
+import numpy as np
+
+from .._checks import is_debugged, with_nan
+from .program_cache import kept
+
+_MOST = 256  # programs kept of one function
+_MOST_PARTS = 64  # whose leaves are kept
+
+
+class Program:
+    """`fn(*args)` compiled; arguments and results are trees of arrays.
+
+    As `eqx.filter_jit`: whatever is no array, such as a function in a part, belongs to
+    the program. A call costs 20 us where that takes 120, which counts in a sweep of
+    hundreds of calls; NumPy arrays are passed as they are (`jnp.asarray` before: 50 us
+    each, and a program for each shape).
+    """
+
+    def __init__(self, fn: Callable):
+        self._fn = fn
+        self._known: dict[Any, Callable] = {}
+
+    def __call__(self, *args: Any) -> Any:
+        leaves, structure = flattened(args)
+        numbers = [leaf for leaf in leaves if isinstance(leaf, _ARRAYS)]
+        rest: tuple = ()
+        if len(numbers) < len(leaves):
+            rest = tuple((i, x) for i, x in enumerate(leaves) if not isinstance(x, _ARRAYS))
+        key = structure, rest
+        program = self._known.get(key)
+        if program is None:
+            whole = jax.tree_util.tree_structure(args)
+            program = self._compiled(whole, rest)
+            if len(self._known) >= _MOST:
+                self._known.clear()
+            self._known[key] = program
+        if is_debugged():
+            return with_nan(program)(numbers)
+        return program(numbers)
+
+    def _compiled(self, structure: Any, rest: tuple) -> Callable:
+        fn = self._fn
+
+        def run(numbers):
+            leaves = list(numbers)
+            for index, leaf in rest:
+                leaves.insert(index, leaf)
+            return fn(*jax.tree_util.tree_unflatten(structure, leaves))
+
+        run.__name__ = run.__qualname__ = fn.__name__
+        return kept(fn, run, structure, rest)
+
+
+_ARRAYS = (jax.Array, np.ndarray, np.generic)
+
+
+class _Flat:
+    """Leaves and structures of parts, which do not change once they are made.
+
+    A scene takes 30 us to flatten, hundreds of times a sweep. What is kept is kept alive,
+    so that no other part can have its number.
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[eqx.Module, list, Any]] = {}
+
+    def of(self, part: eqx.Module) -> tuple[list, Any]:
+        """Its leaves and their structure."""
+        found = self._known.get(id(part))
+        if found is None:
+            leaves, structure = jax.tree_util.tree_flatten(part)
+            # What is traced must not outlive its trace.
+            if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
+                return leaves, structure
+            if len(self._known) >= _MOST_PARTS:
+                self._known.clear()
+            found = self._known[id(part)] = part, leaves, structure
+        return found[1:]
+
+
+_FLAT = _Flat()
+
+
+def flattened(args: tuple) -> tuple[list, tuple]:
+    """Leaves of some arguments, and what tells their structures apart."""
+    leaves: list = []
+    structures: list = []
+    for arg in args:
+        if isinstance(arg, _ARRAYS):
+            leaves.append(arg)
+            structures.append(None)
+            continue
+        flat = _FLAT.of if isinstance(arg, eqx.Module) else jax.tree_util.tree_flatten
+        own, structure = flat(arg)
+        leaves += own
+        structures.append(structure)
+    return leaves, tuple(structures)
+
+
+def in_chunks(
+    program: Callable, size: int, fixed: tuple, columns: tuple[np.ndarray, ...]
+) -> Any:
+    """`program(*fixed, *columns)` of columns of any length, NumPy arrays in a tree.
+
+    The columns go in pieces of `size`, the last lengthened by its last entry: one shape,
+    so one program, where four sizes took 0.5 s of a study to trace and fetch.
+    """
+    count = columns[0].shape[0]
+    padded = -(-count // size) * size
+    whole = [_lengthened(column, padded) for column in columns]
+    parts = [
+        program(*fixed, *(c[at : at + size] for c in whole))
+        for at in range(0, padded, size)
+    ]
+
+    outs = [jax.tree_util.tree_flatten(part) for part in parts]
+    if len(outs) == 1:
+        joined = [np.asarray(leaf)[:count] for leaf in outs[0][0]]
+    else:
+        rows = zip(*(leaves for leaves, _ in outs), strict=True)
+        joined = [np.concatenate(pieces)[:count] for pieces in rows]
+    return jax.tree_util.tree_unflatten(outs[0][1], joined)
+
+
+def _lengthened(column: np.ndarray, to: int) -> np.ndarray:
+    count = column.shape[0]
+    if count == to:
+        return column
+    # `np.pad` takes 20 us.
+    whole = np.empty((to, *column.shape[1:]), column.dtype)
+    whole[:count], whole[count:] = column, column[-1:]
+    return whole
+
+
+def padded_size(count: int, least: int, factor: int = 4) -> int:
+    """The smallest of least, factor least, factor^2 least ... that holds `count`."""
+    size = least
+    while size < count:
+        size *= factor
+    return size

@@ -1,0 +1,11 @@
+from .tables import Table as Table
+from .tables import place_of as place_of
+from .tables import read_table as read_table
+from .thousands import BOTH_WAYS as BOTH_WAYS
+from .thousands import is_grouped as is_grouped
+from .thousands import ungrouped as ungrouped
+from .units import Heading as Heading
+from .units import factor_of as factor_of
+from .units import is_unit as is_unit
+from .units import plain_unit as plain_unit
+from .units import size_of as size_of

@@ -1,0 +1,1 @@
+from .certification import certify as certify

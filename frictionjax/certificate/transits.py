@@ -1,0 +1,127 @@
+"""Passages of a curve over places of the period, and what each must show."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..numerics import Extrema, periodic_extrema
+from .curve import CurveSamples, Force, Intervals
+
+_FOLD = 0.015  # periods around a fold: noise of eps/100 makes no passage
+_FAST = 0.25  # periods around the fastest place of a slip that count as the slip
+
+
+class Transits(NamedTuple):
+    """Passages over place + n: samples before and after, n, and +1 or -1; shapes (k,)."""
+
+    before: np.ndarray
+    after: np.ndarray
+    well: np.ndarray
+    sign: np.ndarray
+
+
+def transits(well: np.ndarray, inside: np.ndarray, place: float, band: float) -> Transits:
+    """Where a curve goes from one side of `place` + n to the other, by more than `band`.
+
+    Samples within the band do not count, so neither noise nor lingering at a fold makes a
+    passage of its own.
+    """
+    beyond = inside - place
+    outside = np.flatnonzero(np.abs(beyond - np.round(beyond)) > band)
+    side = (well + np.floor(beyond)).astype(np.int64)[outside]
+    step = np.diff(side)
+    over = np.flatnonzero(step)
+    sign = np.sign(step[over])
+    upper = np.maximum(side[over], side[over + 1])
+    return Transits(outside[over], outside[over + 1], upper, sign)
+
+
+def along(passage: Transits, sign: int) -> Transits:
+    """Those in one direction."""
+    return Transits(*(v[passage.sign == sign] for v in passage))
+
+
+def over_windows(operation: np.ufunc, values: np.ndarray, first, last) -> np.ndarray:
+    """The operation over values[first:last] for each window."""
+    if first.size == 0:
+        return np.zeros(0)
+    pairs = np.stack([first, last], axis=1).ravel()
+    return operation.reduceat(np.append(values, values[-1]), pairs)[::2]
+
+
+@eqx.filter_jit
+def _extrema(force: Force) -> Extrema:
+    def wiggle(y):
+        return force.potential.tip_force(y, force.eps)[0]
+
+    return periodic_extrema(wiggle, force.potential.points)
+
+
+class CurveFolds(NamedTuple):
+    """Upward passages meet `V_eps'` at its largest, downward ones at its smallest."""
+
+    places: dict[int, float]
+    forces: dict[int, float]
+
+
+def folds_of(force: Force) -> CurveFolds:
+    """Where the tip leaves a well upward (+1) and downward (-1), and the force there."""
+    top, most, bottom, least = (float(v) for v in _extrema(force))
+    return CurveFolds({1: top, -1: bottom}, {1: most, -1: least})
+
+
+def missing_forces(force: Force, folds: CurveFolds, at: CurveSamples) -> np.ndarray:
+    """For each well left, the force missing at the fold in units of `Phi'' eps`.
+
+    At the fold a solution moves on, so l - Phi' is larger than V' there: never positive
+    for a solution, and only the time is noisy, not the place. A well skipped misses 1,
+    less what the load overshoots while a fold is passed (0.64 at eps = 1e-2, gamma = 1).
+    """
+    return np.concatenate([_missing(force, folds, at, sign) for sign in (1, -1)])
+
+
+def _missing(force: Force, folds: CurveFolds, at: CurveSamples, sign: int) -> np.ndarray:
+    place = folds.places[sign]
+    found = along(transits(at.well, at.inside, place, _FOLD), sign)
+    best = over_windows(np.maximum, sign * at.load, found.before, found.after + 1)
+    pull, stiffness = _pull(force, found.well, place)
+    eps = float(force.eps)
+    return (sign * (pull + folds.forces[sign]) - best) / (stiffness * eps)
+
+
+def _pull(force: Force, well: np.ndarray, place: float) -> tuple[np.ndarray, np.ndarray]:
+    """`Phi'` and `Phi''` with the tip at well + place; padded, to compile for few sizes."""
+    room = (1 << max(10, int(well.size).bit_length())) - well.size
+    wells = np.pad(well.astype(float), (0, room))
+    pulls = _pulls(force, jnp.asarray(wells), jnp.asarray(place))
+    pull, stiffness = (np.asarray(v)[: well.size] for v in pulls)
+    return pull, stiffness
+
+
+@eqx.filter_jit
+def _pulls(force: Force, well, place):
+    z = jax.vmap(lambda n: force.state(n, place))(well)
+    return jax.vmap(force.support.force)(z), jax.vmap(force.support.stiffness_at)(z)
+
+
+def viscosity_ratio(
+    folds: CurveFolds, z: np.ndarray, at: CurveSamples, on: Intervals
+) -> float:
+    """`int f dt / (z_j - z_i)` over the fast parts of all slips, in N s/m; NaN without.
+
+    The fast part of an upward slip is around the fold of the downward ones. An impulse
+    over half a period, not a squared velocity: noise enters at its two ends only.
+    """
+    gap = (folds.places[1] - folds.places[-1]) % 1
+    band = min(_FAST, 0.5 * gap, 0.5 - 0.5 * gap)
+    impulse, moved = 0.0, 0.0
+    for sign in (1, -1):
+        crossed = transits(at.well, at.inside, folds.places[-sign], band)
+        slip = along(crossed, sign)
+        given = over_windows(np.add, on.impulse, slip.before, slip.after)
+        impulse += sign * float(np.sum(given))
+        moved += sign * float(np.sum(z[slip.after] - z[slip.before]))
+    return impulse / moved if moved else np.nan

@@ -1,0 +1,5 @@
+"""What accuracy costs in time: measured, compared with other solvers, predicted."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

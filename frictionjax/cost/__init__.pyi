@@ -1,0 +1,10 @@
+from .instants import slips_of as slips_of
+from .measurement import MEASURED_ACCURACIES as MEASURED_ACCURACIES
+from .measurement import METHODS as METHODS
+from .measurement import work_precision as work_precision
+from .order_accuracy import OrderCost as OrderCost
+from .order_accuracy import order_cost as order_cost
+from .prediction import PREDICTED_ACCURACIES as PREDICTED_ACCURACIES
+from .prediction import CostPrediction as CostPrediction
+from .prediction import fit_budget as fit_budget
+from .prediction import predict_cost as predict_cost

@@ -1,0 +1,288 @@
+"""What accuracy costs in time: methods, accuracies and cells, measured side by side."""
+
+import itertools
+from collections.abc import Iterable, Mapping, Set
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from tqdm import tqdm
+
+from .._checks import grid_of, require, require_flags, require_real, require_whole, with_nan
+from ..model import (
+    Scene,
+    coefficients_jit,
+    known_scene,
+    require_reach,
+    require_times,
+    require_told_apart,
+)
+from ..sweeps import explain, origin
+from ..wiggly import ENDED, Status, accuracies_of, is_ours, solver_of
+from .error_measures import MEASURES, errors_of
+from .instants import Instants, instants
+from .references import LEAST_JUDGED, Reference, reference
+from .scipy_solvers import SCIPY, Run
+from .timed_runs import accounted, clocked, runner, timed
+
+METHODS = ("auto", "windowed", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau")
+MEASURED_ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+_TIMES = 61
+_WRONG = 0.5  # eps: nothing that is so far off is a solution
+_LOST = 1.5  # eps: where all times asked for lie in slips, and states may be one apart
+
+_RUN = {
+    "seconds": ("s", "median time of a warm run"),
+    "seconds_low": ("s", "fastest warm run"),
+    "seconds_high": ("s", "slowest warm run"),
+    "runs": ("1", "warm runs timed"),
+    "compile_seconds": ("s", "what the first run took longer: tracing and compilation"),
+    "error": ("1", "largest error of z outside slips, in eps"),
+    "slip_error": ("1", "mean error of z over a whole slip period, in eps"),
+    "end_error": ("1", "error of z at the last time asked for, in eps"),
+    "dissipation_error": ("1", "largest error of the dissipation over its last value"),
+    "residual": ("1", "residual of the energy-dissipation balance over that of one slip"),
+    "mescd": ("1", "-log10(|z - z_ref|/(eps + |z_ref|)) at the last time asked for"),
+    "steps": ("1", "steps tried"),
+    "rejected": ("1", "steps rejected"),
+    "evaluations": ("1", "evaluations of the field"),
+    "jacobians": ("1", "evaluations of its Jacobian"),
+    "calls_share": ("1", "share of the seconds in calls of the field from Python"),
+    "status": (None, "how the run ended"),
+    "wrong": ("1", "1 where success is reported half an eps off, and more than asked"),
+}
+_REFERENCE = {
+    "reference_error": ("1", "distance of the reference from a second one, in eps"),
+    "reference_slip_error": ("1", "the same over a whole slip period"),
+    "reference_end_error": ("1", "the same at the last time asked for"),
+    "reference_dissipation_error": ("1", "the same for the dissipation"),
+    "reference_mescd": ("1", "mescd of the second one"),
+    "reference_ways": (None, "methods of the two references"),
+}
+_COORDINATES = {
+    "eps": ("m", "period of the surface, length scale eps"),
+    "gamma": ("1", "exponent of the viscosity eps^gamma"),
+    "solver": (None, "method"),
+    "accuracy": ("1", "accuracy asked for: error of z in eps; atol of SciPy's"),
+}
+_NOTHING = dict.fromkeys(_RUN, float("nan")) | {
+    "status": int(Status.NOT_TRIED),
+    "wrong": 0.0,
+    "runs": 0,
+}
+
+
+class _Column(NamedTuple):
+    """One method in one cell, at all accuracies."""
+
+    scene: Scene
+    eps: float
+    gamma: float
+    when: Instants
+    truth: Reference
+    method: Any
+
+    @property
+    def slip_energy(self) -> float:
+        law = coefficients_jit(self.scene.potential)
+        return self.eps * float(law.rho_plus - law.rho_minus)
+
+
+class _Effort(NamedTuple):
+    """How long and how often methods may run."""
+
+    accuracies: np.ndarray
+    repeats: int
+    seconds: float
+
+
+def _is_wrong(errors: dict, of_truth: dict, accuracy: float) -> bool:
+    """Whether errors are surely half an eps, and more than was asked for.
+
+    Known at times outside slips; where there are none, at the end, which may be in a slip.
+    """
+    name, least = ("end_error", _LOST) if np.isnan(errors["error"]) else ("error", _WRONG)
+    return bool(errors[name] - of_truth[name] >= max(least, accuracy))
+
+
+def _values(
+    run: Run, times: dict[str, float], column: _Column, accuracy: float
+) -> dict[str, float]:
+    """Everything the data set holds of one run."""
+    truth = column.truth
+    errors = dict.fromkeys(MEASURES, float("nan"))
+    if run.status in ENDED:  # part of a trajectory is no trajectory
+        true = truth.z, truth.dissipation, truth.in_slip
+        errors = errors_of(run.z, run.dissipation, *true, column.when, column.eps)
+    counts = ("steps", "rejected", "evaluations", "jacobians")
+    wrong = run.status == Status.OK and _is_wrong(errors, truth.errors, accuracy)
+    return (
+        times
+        | errors
+        | {name: getattr(run, name) for name in counts}
+        | {"calls_share": run.calls}
+        | {"residual": run.residual / column.slip_energy}
+        | {"status": int(run.status), "wrong": float(wrong)}
+    )
+
+
+def _first_calls(
+    scene: Scene, eps: float, gamma: float, ts: np.ndarray, names: list, effort: _Effort
+) -> list[float | None]:
+    """Seconds of the first calls of our own methods; the others' are clocked later.
+
+    Before the reference, which would compile the same programs for them.
+    """
+    loosest = float(effort.accuracies[0])
+    return [
+        clocked(runner(scene, eps, gamma, ts, loosest, name, effort.seconds))[1]
+        if is_ours(name)
+        else None
+        for name in names
+    ]
+
+
+def _measured(
+    column: _Column, effort: _Effort, first: float | None, bar: tqdm
+) -> list[dict[str, float]]:
+    """From the loosest accuracy to the tightest, until runs take too long.
+
+    `first`: seconds of a call at the loosest, where there was one.
+    """
+    scene, eps, gamma, when, _, method = column
+    cells: list[dict[str, float]] = []
+    given_up = False
+    for accuracy in map(float, effort.accuracies):
+        if given_up:
+            cells.append(_NOTHING)
+        else:
+            what = scene, eps, gamma, when.ts, accuracy, method, effort.seconds
+            found, times = timed(runner(*what), effort.repeats, effort.seconds, first)
+            first = None
+            found = accounted(found, *what)
+            cells.append(_values(found, times, column, accuracy))
+            slow = times["seconds"] > effort.seconds
+            given_up = found.status == Status.TOO_SLOW or slow
+        bar.update()
+    return cells
+
+
+def _required(methods: Any, accuracies: Any, repeats: Any, seconds: Any):
+    ordered = not isinstance(methods, Mapping | Set)
+    require(ordered, "methods", methods, "a name, a solver, or a list of them")
+    names = [methods] if _is_one(methods) else list(methods)
+    names = [str(n) if isinstance(n, str) else n for n in names]  # NumPy's print otherwise
+    require(bool(names), "methods", methods, "at least one method")
+    for name in names:
+        if not isinstance(name, str) or name not in SCIPY:
+            solver_of(name, "methods", SCIPY)
+    labels = [m if isinstance(m, str) else _label(m) for m in names]
+    unique = len(set(labels)) == len(labels)
+    require(unique, "methods", ", ".join(labels), "each method once")
+    asked = accuracies_of(accuracies, LEAST_JUDGED)[::-1]
+    require_whole("repeats", repeats)
+    require_real("seconds", seconds, "seconds > 0", lambda s: s > 0)
+    return names, labels, asked
+
+
+def _is_one(methods: Any) -> bool:
+    return isinstance(methods, str) or not isinstance(methods, Iterable)
+
+
+def _label(method: Any) -> str:
+    return method.__name__ if isinstance(method, type) else type(method).__name__
+
+
+@with_nan
+def work_precision(
+    scene: Scene,
+    eps: Any = 1e-2,
+    gamma: Any = 1.0,
+    methods: Any = METHODS,
+    accuracies: Any = MEASURED_ACCURACIES,
+    ts: Any = None,
+    *,
+    repeats: int = 5,
+    seconds: float = 10.0,
+    progress: bool = False,
+) -> xr.Dataset:
+    """Measure what accuracy costs: time and error of methods, cell by cell.
+
+    `eps` in m and `gamma`: numbers or lists. `methods`: one or several, as `method` of
+    `solve`, and SciPy's "LSODA", "BDF" and "Radau" without any guard. `accuracies`: asked
+    of each, atol (in periods) of SciPy's. `ts`: times in s at which errors are measured, 61
+    even ones where None; 32 more over one slip period are added where one of them has a
+    whole one ahead. `repeats`: at most so many warm runs are timed: three, or as many as
+    fit into half a second, and no more than fit into `seconds`. `seconds`: of a method that
+    takes longer tighter accuracies are not tried; SciPy's runs are ended then, diffrax's
+    after a million steps for each second, ours, which cannot be, go on.
+
+    Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
+    `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took
+    longer: methods share programs, and what this process has compiled before, or loads from
+    a cache, is not compiled again); errors `error` (largest outside slips, in eps),
+    `slip_error` (NaN without a whole slip period), `end_error` and `mescd` at the last of
+    `ts` (as the Test Set for IVP Solvers, with atol/rtol = eps), `dissipation_error`;
+    `residual` of the energy-dissipation balance, for all along cubics through the ends of
+    steps; `steps`, `rejected`, `evaluations` and `jacobians`: of all attempts, by the
+    method itself, without what energies take. What a solver does not tell of these is found
+    after the timed runs: for diffrax's by a run that counts (NaN where the timed one
+    failed, or for other methods than Runge-Kutta's), for SciPy's from the times of its
+    calls. `calls_share`: of the seconds of SciPy's solvers, which call the compiled field
+    from Python. `status`, and `wrong`: success reported half an eps or more off (1.5 eps at
+    the end where all times lie in slips), and further than asked for. Over (gamma, eps)
+    what is known of the reference: `reference_error` and so on is its distance from a
+    second one, made otherwise as `reference_ways` says; no error below it means anything.
+
+    Failures stay in the table with their status and errors of NaN.
+
+    Raises `ValueError` for arguments out of range, as `solve` does. Source of mescd: F.
+    Mazzia and C. Magherini, Test Set for Initial Value Problem Solvers, release 2.4
+    (2008).
+    """
+    scene = known_scene(scene)
+    require_flags(progress=progress)
+    eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
+    names, labels, asked = _required(methods, accuracies, repeats, seconds)
+    require_reach(scene.potential, eps)
+    require_told_apart(scene, eps)
+    ts = np.asarray(require_times(scene, ts, _TIMES))
+    effort = _Effort(asked, int(repeats), float(seconds))
+    cells, truths = [], []
+    count = gamma.size * eps.size * len(names) * asked.size
+    with tqdm(total=count, disable=not progress, desc="runs") as bar:
+        for g, e in itertools.product(gamma.tolist(), eps.tolist()):
+            when = instants(scene, e, ts)
+            first = _first_calls(scene, e, g, when.ts, names, effort)
+            truth = reference(scene, e, g, when, float(asked[-1]))
+            truths.append(truth)
+            for name, longer in zip(names, first, strict=True):
+                column = _Column(scene, e, g, when, truth, name)
+                cells += _measured(column, effort, longer, bar)
+    shape = gamma.size, eps.size, len(names), asked.size
+    data = _dataset(cells, truths, shape)
+    data = data.assign_coords(gamma=gamma, eps=eps, solver=labels, accuracy=asked)
+    return _described(data, scene)
+
+
+def _dataset(cells: list[dict], truths: list[Reference], shape: tuple) -> xr.Dataset:
+    dims = ("gamma", "eps", "solver", "accuracy")
+    data = xr.Dataset()
+    for name in _RUN:
+        data[name] = dims, np.array([cell[name] for cell in cells]).reshape(shape)
+    for name in _REFERENCE:
+        known = [_of_reference(truth, name) for truth in truths]
+        data[name] = dims[:2], np.array(known).reshape(shape[:2])
+    return data
+
+
+def _of_reference(truth: Reference, name: str) -> float | str:
+    measure = name.removeprefix("reference_")
+    return truth.ways if measure == "ways" else truth.errors[measure]
+
+
+def _described(data: xr.Dataset, scene: Scene) -> xr.Dataset:
+    data["status"] = data["status"].astype(np.int8)
+    explain(data, _RUN | _REFERENCE | _COORDINATES)
+    data.attrs = origin("What accuracy costs in time", scene)
+    return data

@@ -1,0 +1,187 @@
+"""What a sweep will cost, before anything runs, and which sweep fits a budget."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._checks import (
+    as_real,
+    cells_of,
+    grid_of,
+    no_less,
+    require,
+    require_flags,
+    require_real,
+    with_nan,
+)
+from ..limit import require_start_in_strip
+from ..model import Scene, known_scene, require_reach, require_times, require_told_apart
+from ..wiggly import OURS, Workload, accuracies_of, is_ours, require_accuracy, workload
+from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
+
+# Factor that 95 to 100% of 96 cells stayed within (`benchmarks/cost_model.py`, nothing else
+# running; 83% while other programs came and went), and 23 of 24 under other loads.
+_WITHIN = 2.0
+_LEAST_EPS = 4  # that an order needs
+# Bytes of a leg and of a job in all tables, and of one value, with the copies made on the
+# way. What 8 vertical sweeps added to a process, 0.1 to 1.3 GB, is within a factor of 1.6
+# (`benchmarks/memory.py`); surveys made again and programs of other profiles come on top.
+_LEG_BYTES, _JOB_BYTES, _VALUE_BYTES = 1200.0, 1500.0, 100.0
+PREDICTED_ACCURACIES = (
+    1e-6,
+    1e-5,
+    1e-4,
+    1e-3,
+)  # that calibration has looked at, and their cost
+
+
+class CostPrediction(NamedTuple):
+    """Predicted cost of a sweep on this machine.
+
+    `seconds`: of the warm sweep, NaN where the load turns more often than lanes have room
+    for; `low`, `high`: half and twice that, which nine of ten cells keep to while nothing
+    else runs. `cells`: each cell alone, s, shape (gamma, eps). `compilation`: s that the
+    first sweep of its kind may take longer. `memory`: of the process at most, bytes,
+    within a factor of 1.5 in 15 sweeps. `measured`: whether this machine was measured;
+    else the numbers are those of another one.
+    """
+
+    seconds: float
+    cells: np.ndarray
+    compilation: float
+    memory: float
+    measured: bool
+
+    @property
+    def low(self) -> float:
+        return self.seconds / _WITHIN
+
+    @property
+    def high(self) -> float:
+        return self.seconds * _WITHIN
+
+    def __str__(self) -> str:
+        if not np.isfinite(self.seconds):
+            return "unknown: the load turns too often, or floats do not hold eps^gamma"
+        where = "" if self.measured else " (another machine; this one is not measured)"
+        return (
+            f"{_seconds(self.low)} to {_seconds(self.high)} s of computation, up to "
+            f"{_seconds(self.compilation)} s of compilation the first time, "
+            f"{self.memory / 1e9:.1f} GB{where}"
+        )
+
+
+def _seconds(value: float) -> str:
+    return f"{value:.2g}" if value < 100 else f"{value:.0f}"
+
+
+def _predicted(
+    scene: Scene, eps, gamma, times: int, accuracy, method, machine: MachineCost
+) -> CostPrediction:
+    cells = cells_of(eps, gamma)
+    work = workload(scene, *cells, times, accuracy, method)
+    values = 2.0 * cells[0].size * times
+    if work is None:
+        nothing = np.full((gamma.size, eps.size), np.nan)
+        return CostPrediction(np.nan, nothing, np.nan, machine.memory, machine.measured)
+    each = [machine.seconds(_one(work, i)) for i in range(cells[0].size)]
+    rows = _LEG_BYTES * work.legs.sum() + _JOB_BYTES * work.jobs.sum()
+    memory = machine.memory + rows + _VALUE_BYTES * values
+    return CostPrediction(
+        machine.seconds(work),
+        np.reshape(each, (gamma.size, eps.size)),
+        machine.compilation,
+        float(memory),
+        machine.measured,
+    )
+
+
+def _one(work: Workload, cell: int) -> Workload:
+    some = slice(cell, cell + 1)
+    return Workload._make([*(column[some] for column in work[:-1]), work.weight])
+
+
+@with_nan
+def predict_cost(
+    scene: Scene,
+    eps: Any,
+    gamma: Any = 1.0,
+    accuracy: Any = 1e-3,
+    ts: Any = None,
+    method: str = "auto",
+    *,
+    measure: bool = True,
+) -> CostPrediction:
+    """Time and memory of `sweep` with these arguments, before anything runs.
+
+    `eps` in m and `gamma`: numbers or lists; the rest as in `sweep`, and `method` one of
+    the library's own. The first call on a machine measures it, 5 to 20 s, and keeps that
+    in the user's cache folder; `measure=False` takes another machine's numbers instead.
+
+    The work of lanes follows from the plan of the sweep: wells, windows, tolerances. Where
+    surveys have to be made again, which nobody knows before, a cell takes longer.
+
+    Raises `ValueError` for arguments out of range, as `sweep` does.
+    """
+    scene = known_scene(scene)
+    eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
+    require_accuracy(accuracy)
+    require_flags(measure=measure)
+    require(is_ours(method), "method", method, f"one of {', '.join(OURS)}")
+    ts = require_times(scene, ts)
+    require_start_in_strip(scene)
+    require_reach(scene.potential, eps)
+    require_told_apart(scene, eps)
+    machine = machine_cost() if measure else known_machine() or ELSEWHERE
+    wanted = float(as_real(accuracy))
+    return _predicted(scene, eps, gamma, len(ts), wanted, method, machine)
+
+
+class Affordable(NamedTuple):
+    """A sweep that fits a budget: its eps (m), accuracy and predicted cost."""
+
+    eps: np.ndarray
+    accuracy: float
+    cost: CostPrediction
+
+
+def fit_budget(
+    scene: Scene,
+    eps: Any,
+    gamma: Any,
+    budget: float,
+    ts: Any = None,
+    method: str = "auto",
+    accuracies: Any = PREDICTED_ACCURACIES,
+) -> Affordable:
+    """The tightest of `accuracies` that fits `budget` (s); with fewer eps if none does.
+
+    Compilation is not counted. Where even the loosest does not fit, the dearest eps go
+    first, until four are left, the fewest that give an order.
+
+    Raises `ValueError` for a budget that is not positive, that nothing fits into, or where
+    nothing is known of the cost.
+    """
+    require_real("budget", budget, "seconds > 0", lambda s: s > 0)
+    values = grid_of("eps", eps)
+    for accuracy in accuracies_of(accuracies).tolist():
+        cost = predict_cost(scene, values, gamma, accuracy, ts, method)
+        if not np.isfinite(cost.seconds):
+            raise ValueError(f"budget = {budget:g}: cost {cost}; run without a budget")
+        if cost.seconds <= budget:
+            return Affordable(values, accuracy, cost)
+    while values.size > _LEAST_EPS:
+        values = np.delete(values, _dearest(cost))
+        cost = predict_cost(scene, values, gamma, accuracy, ts, method)
+        if cost.seconds <= budget:
+            return Affordable(values, accuracy, cost)
+    needs = (
+        f"at least {no_less(cost.seconds, 2)} s, for {values.size} eps at {accuracy:.0e}"
+    )
+    raise ValueError(f"budget = {budget:g}: needs {needs}")
+
+
+def _dearest(cost: CostPrediction) -> int:
+    """The eps whose cells cost most; the smallest of equals."""
+    each = cost.cells.sum(axis=0)
+    return int(each.size - 1 - np.argmax(each[::-1]))

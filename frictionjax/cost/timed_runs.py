@@ -1,0 +1,117 @@
+"""Runs of any method on one cell, and how long they take once compiled."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..wiggly import ENDED, MAX_STEPS, TABLEAU, Status, Tableau, is_ours, solve, solver_of
+from .evaluations import can_count, count_work
+from .scipy_solvers import SCIPY, Run, run_scipy, told
+
+# s of the fastest step through diffrax, whose loops cannot be stopped: bounds their number.
+# (1.2 to 2.4 us measured; at 3 us runs were ended that would have taken half the time.)
+_FAST_STEP = 1e-6
+# Warm runs that are timed at least, and s after which no more are. (What took longer was
+# timed once: half of the rows had no spread.)
+_LEAST, _ENOUGH = 3, 0.5
+
+
+def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
+    """Through `solve`: our methods, which have their own bounds, and diffrax's."""
+    found = solve(scene, eps, gamma, ts, accuracy, method, max_steps=_most(method, seconds))
+    jax.block_until_ready((found.z, found.dissipation))
+    status, steps = found.status, float(found.stats["steps"])
+    if status == Status.MAX_STEPS and not is_ours(method):
+        status = Status.TOO_SLOW
+    residual = float("nan") if found.residual is None else float(found.residual[-1])
+    return Run(
+        np.asarray(found.z),
+        np.asarray(found.dissipation),
+        status,
+        steps,
+        float(found.stats["rejected"]),
+        *_by_stages(method, steps),
+        residual,
+    )
+
+
+def _most(method: Any, seconds: float) -> int:
+    """Steps after which a run is ended."""
+    return (
+        MAX_STEPS if is_ours(method) else int(np.clip(seconds / _FAST_STEP, 1, MAX_STEPS))
+    )
+
+
+def _by_stages(method: Any, steps: float) -> tuple[float, float]:
+    """Evaluations and Jacobians where each attempt takes as many; NaN where not.
+
+    Rosenbrock methods take every stage, with one Jacobian; so do lanes, none waits.
+    """
+    solver = solver_of(method)
+    tableau = TABLEAU if is_ours(method) else getattr(solver, "tableau", None)
+    if not isinstance(tableau, Tableau):
+        return float("nan"), float("nan")
+    return len(tableau.a) * steps, steps
+
+
+def accounted(run: Run, scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
+    """The run with what it took and what certifies it, where it did not say; not timed."""
+    if method in SCIPY:
+        return told(run, scene, eps, gamma, method)
+    solver = solver_of(method)
+    if not np.isnan(run.evaluations) or run.status not in ENDED or not can_count(solver):
+        return run
+    cell = scene, jnp.asarray(eps), jnp.asarray(gamma), jnp.asarray(ts)
+    counts = count_work(*cell, jnp.asarray(accuracy), solver, _most(method, seconds))
+    # Other steps than those of the run would be the work of another run.
+    if (float(counts.steps), float(counts.rejected)) != (run.steps, run.rejected):
+        return run
+    evaluations, jacobians = map(float, counts.work)
+    return run._replace(evaluations=evaluations, jacobians=jacobians)
+
+
+def runner(scene, eps, gamma, ts, accuracy, method, seconds) -> Callable[[], Run]:
+    """One run of a method, ready to be clocked."""
+    run = run_scipy if method in SCIPY else _run_solve
+    return lambda: run(scene, eps, gamma, ts, accuracy, method, seconds)
+
+
+def timed(
+    run: Callable[[], Run], repeats: int, seconds: float, first: float | None = None
+) -> tuple[Run, dict[str, float]]:
+    """The result of the last of a first run and warm ones, and how long they took.
+
+    No more warm runs than fit into `seconds`, but one. `first`: seconds of a first run that
+    has been. (Where a first run was ended, what it had
+    compiled was counted as its time: 22 s where 2 were allowed. It is made again too.)
+    """
+    if first is None:
+        _, first = clocked(run)
+    warm: list[float] = []
+    while len(warm) < repeats and (len(warm) < _LEAST or sum(warm) < _ENOUGH):
+        result, spent = clocked(run)
+        warm.append(spent)
+        if sum(warm) > seconds:
+            break
+    return result, _times(warm, max(0.0, first - float(np.median(warm))))
+
+
+def clocked(run: Callable[[], Any]) -> tuple[Any, float]:
+    """What a call returns, and its seconds."""
+    start = time.perf_counter()
+    result = run()
+    return result, time.perf_counter() - start
+
+
+def _times(warm: list[float], compiled: float) -> dict[str, float]:
+    return {
+        "seconds": float(np.median(warm)),
+        "seconds_low": min(warm),
+        "seconds_high": max(warm),
+        "runs": len(warm),
+        "compile_seconds": compiled,
+    }

@@ -1,0 +1,16 @@
+from .bristle import AngleFit as AngleFit
+from .bristle import fit_angle as fit_angle
+from .bristle import intervals_text as intervals_text
+from .common import Target as Target
+from .common import design_map as design_map
+from .common import surface_heights as surface_heights
+from .common import tolerance as tolerance
+from .common import write_heights as write_heights
+from .measured_trace import Trace as Trace
+from .measured_trace import simulate_trace as simulate_trace
+from .slide import check_design as check_design
+from .slide import fit_slide as fit_slide
+from .slide import fit_slide_profile as fit_slide_profile
+from .slide import steady_slide as steady_slide
+from .surface import fit_profile as fit_profile
+from .trace import fit_trace as fit_trace

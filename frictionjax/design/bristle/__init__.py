@@ -1,0 +1,5 @@
+"""The number of a bristle that gives a wanted friction in the limit."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,265 @@
+"""Inverse design of a bristle: the angle, or another number, for a wanted friction."""
+
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..._checks import (
+    Real,
+    as_text,
+    is_concrete,
+    is_known,
+    known_numbers,
+    require,
+    require_flags,
+    require_x64,
+    with_nan,
+)
+from ..._compile import Program, padded_size
+from ...bristles import AbstractBristle, swapped_text
+from ...model import coefficients_jit, potential
+from ...profiles import AbstractProfile
+from ..common import (
+    MEANING,
+    QUANTITIES,
+    FreeParameter,
+    Slopes,
+    free_parameter,
+    require_bounds,
+    with_arrays,
+)
+from .admissible import Admissible, survey
+from .inverse import Pulled, solve_targets
+from .result import AngleFit, intervals_text
+from .status import GOOD, FitStatus
+
+_NO_BOUNDS = np.full(2, np.nan)
+_ROOM = 8, 8  # smallest piece of a batch, and by how much the next size is larger
+_MOST = 512  # targets side by side: 7 KB each of comparisons at every node
+
+
+class _Range(NamedTuple):
+    """A survey, and its intervals of the number and of the quantity (pieces, 2)."""
+
+    seen: Admissible
+    admissible: Real
+    reachable: Real
+
+
+@Program
+def _survey(free: FreeParameter, bristle, slopes, which, bounds, pulling):
+    """What is allowed, and bristles that pull and are not: two `_Range`."""
+    low, high = free.interval(bristle, bounds)
+    value = jax.vmap(jax.vmap(lambda x: free.value(bristle, x)))
+
+    def ranges(seen):
+        admissible = jnp.sort(value(seen.ends), axis=1)
+        return _Range(seen, admissible, jnp.stack([seen.low, seen.high], axis=1))
+
+    both = survey(free, bristle, slopes, which, low, high, pulling)
+    return ranges(both[0]), ranges(both[1])
+
+
+class _Solved(NamedTuple):
+    """Of each target, as `AngleFit` names them."""
+
+    bristle: Any
+    value: Real
+    achieved: Real
+    alpha: Real
+    roots: Real
+    code: Real
+
+
+@Program
+def _solve(free: FreeParameter, bristle, slopes, which, targets, seen):
+    found = solve_targets(free, bristle, slopes, which, targets, seen)
+    bristles = jax.vmap(lambda x: free.at(bristle, x))(found.x)
+    value = jax.vmap(lambda x: free.value(bristle, x))
+    roots = jnp.sort(jax.vmap(value)(found.roots), axis=1)
+    return _Solved(bristles, value(found.x), found.achieved, found.alpha, roots, found.code)
+
+
+def _in_sizes(target: Real, fit: Any) -> Any:
+    """`fit` of targets in pieces of a few sizes, so that few programs are compiled."""
+    targets = jnp.atleast_1d(target)
+    count = targets.shape[0]
+    size = min(padded_size(count, *_ROOM), _MOST)
+    padded = jnp.pad(targets, (0, -count % size), mode="edge")
+    parts = [fit(padded[at : at + size]) for at in range(0, count, size)]
+
+    def joined(*leaves):
+        whole = jnp.concatenate(leaves)[:count] if len(leaves) > 1 else leaves[0][:count]
+        return whole if target.ndim else whole[0]
+
+    return jax.tree_util.tree_map(joined, *parts)
+
+
+@with_nan
+def fit_angle(
+    profile: AbstractProfile,
+    bristle: AbstractBristle,
+    rho_plus: Any = None,
+    rho_minus: Any = None,
+    ratio: Any = None,
+    difference: Any = None,
+    free: str = "angle",
+    bounds: Any = None,
+    pulling: bool = False,
+) -> AngleFit:
+    """The bristle on a surface that has a wanted friction, one number of it free.
+
+    Exactly one of `rho_plus` (N, > 0), `rho_minus` (N, < 0), `ratio` = -rho_plus/rho_minus
+    (> 0) and `difference` = rho_plus + rho_minus (N; how much harder the right is than the
+    left) is given: a number, or an array of shape (n,), solved as a batch.
+
+    `free`: which number: `"angle"`, for `AngularSpring` theta_lim at fixed length, or any
+    other of the bristle by name, also a leaf of a `Custom` one or of a bristle of your own
+    (`"energy_fn.alpha"`, `"numbers[0]"`). `bounds`: (low, high) of it. Without bounds:
+    angles over all of their range, positive numbers from 1e-4 to 1e4 times what they are,
+    other numbers up to 1e4 times that. Of bounds that reach further than a bristle can
+    follow the surface the admissible part is searched.
+
+    Bristles press on the surface, alpha = F'(0) > 0. The paper's formulas hold for alpha
+    < 0 too, where the bristle pulls: `pulling=True` returns such solutions as well. Without
+    it, a target that only they reach has the status `PULLS`.
+
+    Only the two extreme slopes of the surface enter. The intervals where the bristle is
+    admissible are found first, then all extrema of the quantity in each, then every root
+    between them by bracketed Newton, to rounding. Features of the quantity narrower than a
+    hundredth of an interval can be missed.
+
+    Returns an `AngleFit`: `.bristle .value .solutions .reachable .admissible .success
+    .status .message .achieved .alpha .sensitivities`. Traceable: `jax.grad` of `.value` is
+    the implicit derivative.
+
+    Raises `ValueError` for no target or two, targets that are not finite, have another
+    shape or the wrong sign, an unknown `free`, bounds out of the number's range, and where
+    no value in the bounds is admissible, or all that are pull.
+    """
+    require_flags(pulling=pulling)
+    require_x64(potential(profile, bristle))  # which checks the kinds of the parts
+    name, target = _asked((rho_plus, rho_minus, ratio, difference))
+    bristle = with_arrays(bristle)
+    chosen = free_parameter(bristle, free)
+    require_bounds(chosen, bristle, bounds)
+    law = coefficients_jit(potential(profile, bristle))
+    slopes = Slopes(law.omega_plus, law.omega_minus)
+    _require_slopes(slopes)
+    which = np.asarray(QUANTITIES.index(name))
+    limits = _NO_BOUNDS if bounds is None else jnp.asarray(bounds, dtype=float)
+    # Stopped here, not in the program: differentiated programs are compiled once more.
+    still = jax.lax.stop_gradient((bristle, slopes))
+    fixed = chosen, *still, which
+    flag = np.asarray(pulling)
+    allowed, others = _survey(*fixed, limits, flag)
+    found = _in_sizes(
+        target, lambda some: _solve(chosen, bristle, slopes, which, some, allowed.seen)
+    )
+    aims = jax.lax.stop_gradient(target)
+    code, pulled = _with_pulled(found.code, fixed, aims, others.seen)
+    fit = AngleFit(
+        found.bristle,
+        found.value,
+        found.achieved,
+        found.alpha,
+        target,
+        found.roots,
+        allowed.admissible,
+        allowed.reachable,
+        code,
+        pulled,
+        slopes,
+        profile,
+        free,
+        name,
+        bool(pulling),
+    )
+    known = is_concrete(code, slopes, allowed)
+    if known and np.isnan(np.asarray(allowed.admissible)).all():
+        unbounded = None if bounds is None else _survey(*fixed, _NO_BOUNDS, flag)[0]
+        raise ValueError(_none_admissible(fit, bristle, bounds, others, unbounded))
+    return fit
+
+
+def _with_pulled(
+    code: Any, asked: tuple, targets: Any, seen: Admissible
+) -> tuple[Any, Pulled]:
+    """Codes where bristles that pull, and may not, reach a target, and the nearest of them.
+
+    The same program as for those that press. Where all are found it is not run.
+    """
+    none = jnp.full(targets.shape, jnp.nan)
+    failed = (int(FitStatus.UNREACHABLE), int(FitStatus.INADMISSIBLE))
+    if is_concrete(code) and not np.isin(np.asarray(code), failed).any():
+        return code, Pulled(none, none)
+    found = _in_sizes(targets, lambda some: _solve(*asked, some, seen))
+    reached = jnp.isin(found.code, np.array([int(status) for status in GOOD]))
+    pulls = reached & jnp.isin(code, np.array(failed))
+    nearest = (jnp.where(pulls, one, none) for one in (found.value, found.alpha))
+    return jnp.where(pulls, int(FitStatus.PULLS), code), Pulled(*nearest)
+
+
+def _asked(given: tuple) -> tuple[str, Any]:
+    """Name and value of the one target that is given, checked."""
+    named = {k: v for k, v in zip(QUANTITIES, given, strict=True) if v is not None}
+    allowed = f"exactly one of {', '.join(QUANTITIES)}"
+    require(len(named) == 1, "targets", ", ".join(named) or "none", allowed)
+    ((name, value),) = named.items()
+    if not is_known(value):
+        return name, jnp.asarray(value, dtype=float)
+    array = known_numbers(value)
+    meaning = f"{name} ({MEANING[name]})"
+    needs = f"one number or an array of shape (n,), n > 0: {meaning}"
+    numeric = array.dtype != object and array.ndim < 2 and array.size > 0
+    require(numeric, name, value, needs)
+    array = array.astype(float)
+    require(np.all(np.isfinite(array)), name, array, f"finite numbers: {meaning}")
+    if name == "rho_minus":
+        require(np.all(array < 0), name, array, "rho_minus < 0")
+    elif name != "difference":
+        require(np.all(array > 0), name, array, f"{name} > 0")
+    return name, jnp.asarray(array)
+
+
+def _require_slopes(slopes: Slopes) -> None:
+    if is_concrete(slopes):
+        low, high = float(slopes.minus), float(slopes.plus)
+        said = f"omega_minus = {low:.6g}, omega_plus = {high:.6g}"
+        require(low < 0 < high, "profile", said, "omega_plus > 0 > omega_minus")
+
+
+def _none_admissible(
+    fit: AngleFit,
+    bristle: AbstractBristle,
+    bounds: Any,
+    others: _Range,
+    unbounded: _Range | None,
+) -> str:
+    """Why no value is allowed: what bristles must, what pulls, and where others are."""
+    low, high = float(fit.slopes.minus), float(fit.slopes.plus)
+    force = "alpha != 0" if fit.pulling else "alpha > 0"
+    hold = f"{force} and 1 + a omega > 0 on slopes from {low:.6g} to {high:.6g}"
+    known = "" if unbounded is None else intervals_text(unbounded.admissible)
+    why = _why_none(fit, bristle, others)
+    if known:
+        return (
+            f"bounds = {as_text(bounds)}: needs a part of {known}, where {fit.free} has "
+            f"{hold}, but in the bounds {why}"
+        )
+    kind = type(bristle).__name__
+    return f"bristle = {kind!r}: needs some {fit.free} with {hold}, but {why}"
+
+
+def _why_none(fit: AngleFit, bristle: AbstractBristle, others: _Range) -> str:
+    pull = intervals_text(others.admissible)
+    if not pull:
+        return "none is admissible"
+    parts = [
+        f"every admissible one pulls, alpha < 0, {fit.free} in {pull}: pulling=True "
+        "(--pulling in the shell) allows that",
+        swapped_text(bristle),
+    ]
+    return "; ".join(part for part in parts if part)

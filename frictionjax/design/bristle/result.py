@@ -1,0 +1,194 @@
+"""What the inverse design of a bristle returns."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..._checks import (
+    Real,
+    as_text,
+    counted,
+    flags,
+    is_concrete,
+    is_known,
+    outcomes,
+    require_whole,
+)
+from ..._compile import Program
+from ...bristles import AbstractBristle, pulling_text
+from ...io import written
+from ...profiles import AbstractProfile
+from ..common import (
+    QUANTITIES,
+    FreeParameter,
+    Slopes,
+    free_parameter,
+    on_slopes,
+    quantity_of,
+)
+from .inverse import Pulled
+from .json import angle_from_json, angle_to_json
+from .sensitivities import Sensitivities, sensitivities_of
+from .status import GOOD, FitStatus, fit_status_of
+
+
+class AngleFit(eqx.Module):
+    """A bristle that gives a wanted friction; every array has the shape of the target.
+
+    `bristle`: the one given, with the number called `free` set to `value`: of all
+    `solutions` the nearest to what it was. `achieved`: the quantity it gives, on the same
+    surface; `alpha`: its normal force F'(0) in N, > 0 unless `pulling` allowed others.
+    Without a solution, `bristle` comes as near to the target as admissible ones do.
+    `roots`: all solutions, increasing, NaN after the last. `admissible` (pieces, 2):
+    intervals of the number in which every bristle is admissible; alpha = 0 and the angles
+    at which a tip jumps are their ends, which are not among them. `reachable` (pieces, 2):
+    least and largest quantity over each. `code`: a `FitStatus` as an integer. `pulled`:
+    where that is `PULLS`, the bristle that was not allowed.
+    """
+
+    bristle: AbstractBristle
+    value: Real
+    achieved: Real
+    alpha: Real
+    target: Real
+    roots: Real
+    admissible: Real
+    reachable: Real
+    code: Real
+    pulled: Pulled
+    slopes: Slopes
+    profile: AbstractProfile
+    free: str = eqx.field(static=True)
+    quantity: str = eqx.field(static=True)
+    pulling: bool = eqx.field(static=True, default=False)
+
+    @property
+    def solutions(self) -> Real:
+        """All solutions, increasing; one target's alone are without padding."""
+        if is_concrete(self.roots) and self.roots.ndim == 1:
+            return self.roots[~jnp.isnan(self.roots)]
+        return self.roots
+
+    @property
+    def success(self) -> Any:
+        """Whether the bristle gives what was asked for: one bool, or one a target."""
+        return flags(jnp.isin(self.code, np.array([int(s) for s in GOOD])))
+
+    @property
+    def status(self) -> Any:
+        """`FitStatus`, or an array of them; integers where traced."""
+        return outcomes(FitStatus, self.code)
+
+    @property
+    def message(self) -> Any:
+        """Why, for people: one text, or a list of one a target."""
+        if self.code.ndim == 0:
+            return _message(self)
+        return [_message(self[i]) for i in range(self.code.shape[0])]
+
+    def __getitem__(self, index: int) -> "AngleFit":
+        """One target's fit out of a batch."""
+        return AngleFit(
+            jax.tree_util.tree_map(lambda leaf: leaf[index], self.bristle),
+            self.value[index],
+            self.achieved[index],
+            self.alpha[index],
+            self.target[index],
+            self.roots[index],
+            self.admissible,
+            self.reachable,
+            self.code[index],
+            Pulled(*(part[index] for part in self.pulled)),
+            self.slopes,
+            self.profile,
+            self.free,
+            self.quantity,
+            self.pulling,
+        )
+
+    def curve(self, points: int = 400) -> tuple[Real, Real]:
+        """The number and the quantity over the admissible intervals, shapes (pieces, n)."""
+        require_whole("points", points, 2)
+        low, high = self.admissible[:, :1], self.admissible[:, 1:]
+        values = low + (high - low) * jnp.linspace(1e-6, 1 - 1e-6, points)
+        part = self.bristle if self.code.ndim == 0 else self[0].bristle
+        which = np.asarray(QUANTITIES.index(self.quantity))
+        free = free_parameter(part, self.free)
+        return values, _curve(free, part, self.slopes, which, values)
+
+    @property
+    def sensitivities(self) -> Sensitivities:
+        """Derivatives of `value`, by the implicit function theorem."""
+        return sensitivities_of(self)
+
+    def to_json(self, path: Any = None) -> str:
+        """Everything as JSON; written to `path` where given."""
+        return written(angle_to_json(self), path)
+
+    @classmethod
+    def from_json(cls, source: Any) -> "AngleFit":
+        """The result again, from the text or the path of its JSON.
+
+        A bristle or a surface given as functions is None. Raises `ValueError` for what is
+        no such JSON.
+        """
+        return cls(**angle_from_json(source))
+
+    def __repr__(self) -> str:
+        if not is_known(self):
+            return super().__repr__()
+        if self.code.ndim:
+            ended = counted(FitStatus, self.code)
+            return f"AngleFit({self.free}, batch {self.code.shape}: {ended})"
+        return f"AngleFit({self.free}={as_text(self.value)}: {self.message})"
+
+
+def _message(fit: AngleFit) -> str:
+    status = fit_status_of(int(fit.code))
+    asked = f"{fit.quantity} = {as_text(fit.target)}"
+    if status in (FitStatus.UNREACHABLE, FitStatus.PULLS):
+        return f"{asked} {_out_of_reach(fit, status)}"
+    if status == FitStatus.INADMISSIBLE:
+        return f"{asked}: {status.message}"
+    count = int(jnp.sum(~jnp.isnan(fit.roots)))
+    others = "" if count < 2 else f" ({count} solutions)"
+    pulls = pulling_text(fit.alpha, fit.bristle)
+    told = f"; {pulls}" if pulls else ""
+    return f"{asked}: {status.message}, {fit.free} = {as_text(fit.value)}{others}{told}"
+
+
+def _out_of_reach(fit: AngleFit, status: FitStatus) -> str:
+    why, which = f"cannot be reached by {fit.free}:", ""
+    if status == FitStatus.PULLS:
+        pulled, alpha = map(as_text, fit.pulled)
+        why = (
+            f"is {status.message}, {fit.free} = {pulled} with alpha = {alpha} N: "
+            "pulling=True (--pulling in the shell) allows that;"
+        )
+        which = "with bristles that press "
+    known = intervals_text(fit.reachable)
+    if not known:
+        return f"{why} none that presses is admissible"
+    return (
+        f"{why} {which}{fit.quantity} is in {known}; nearest: {as_text(fit.achieved)} at "
+        f"{fit.free} = {as_text(fit.value)}"
+    )
+
+
+def intervals_text(pairs: Any) -> str:
+    """Intervals (n, 2) in words, each once; rows of NaN are none."""
+    known = np.asarray(pairs)
+    known = known[~np.isnan(known[:, 0])]
+    texts = {f"({as_text(low)}, {as_text(high)})": None for low, high in known}
+    return " or ".join(texts)
+
+
+@Program
+def _curve(free: FreeParameter, bristle, slopes, which, values):
+    def one(value):
+        return quantity_of(on_slopes(free.put(bristle, value), slopes), which)
+
+    return jax.vmap(jax.vmap(one))(values)

@@ -1,0 +1,86 @@
+"""How a designed number moves with the target and with every other number."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+
+from ..._checks import Real, is_concrete
+from ..._compile import Program, padded_size
+from ...bristles import AbstractBristle
+from ...profiles import AbstractProfile
+from ..common import (
+    QUANTITIES,
+    FreeParameter,
+    free_parameter,
+    on_slopes,
+    quantity_of,
+    slopes_of,
+)
+
+_ROOM = 8, 8  # batches come in few sizes, so that few programs are compiled
+
+
+class Sensitivities(eqx.Module):
+    """Derivatives of the designed number, of shape () or (n,) with the target's.
+
+    `target`: by the quantity asked for. `omega_plus`, `omega_minus`: by the extreme
+    slopes. `bristle`, `profile`: parts whose leaves are the derivatives by theirs (0 in
+    place of the free number). Infinite where the quantity turns.
+    """
+
+    target: Real
+    omega_plus: Real
+    omega_minus: Real
+    bristle: AbstractBristle
+    profile: AbstractProfile
+
+
+def _one(free: FreeParameter, bristle, profile, value, which):
+    """Implicit function theorem: dv = (dtarget - dq(v; p) . dp) / (dq/dv)."""
+
+    numbers, rest = eqx.partition(bristle, eqx.is_inexact_array)
+
+    def quantity(v, numbers, slopes):
+        part = free.put(eqx.combine(numbers, rest), v)
+        return quantity_of(on_slopes(part, slopes), which)
+
+    slopes, pull = jax.vjp(slopes_of, profile)
+    by = jax.grad(quantity, argnums=(0, 1, 2))(value, numbers, slopes)
+    by_bristle, by_slopes = jax.tree_util.tree_map(lambda d: -d / by[0], by[1:])
+    return 1 / by[0], *by_slopes, by_bristle, pull(by_slopes)[0]
+
+
+@Program
+def _derivatives(free: FreeParameter, bristle, profile, value, which):
+    return _one(free, bristle, profile, value, which)
+
+
+@Program
+def _batch(free: FreeParameter, bristles, profile, values, which):
+    def one(bristle, value):
+        return _one(free, bristle, profile, value, which)
+
+    return eqx.filter_vmap(one, in_axes=(eqx.if_array(0), 0))(bristles, values)
+
+
+def sensitivities_of(fit: Any) -> Sensitivities:
+    """Sensitivities of a fit, one target's or a batch's."""
+    which = jnp.asarray(QUANTITIES.index(fit.quantity))
+    if not is_concrete(fit.value) or fit.value.ndim == 0:
+        free = free_parameter(fit.bristle, fit.free)
+        found = _derivatives(free, fit.bristle, fit.profile, fit.value, which)
+        return Sensitivities(*found)
+    free = free_parameter(fit[0].bristle, fit.free)
+    count = fit.value.shape[0]
+    more = padded_size(count, *_ROOM) - count
+
+    def padded(leaf):
+        if not eqx.is_array(leaf):
+            return leaf
+        return jnp.pad(leaf, [(0, more)] + [(0, 0)] * (leaf.ndim - 1), mode="edge")
+
+    both = jax.tree_util.tree_map(padded, (fit.bristle, fit.value))
+    found = _batch(free, both[0], fit.profile, both[1], which)
+    return Sensitivities(*jax.tree_util.tree_map(lambda leaf: leaf[:count], found))

@@ -1,0 +1,235 @@
+"""Manufacturing tolerance: how friction spreads when parts do."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import xarray as xr
+
+from ..._checks import as_text, known_numbers, require, require_whole, require_x64, with_nan
+from ..._compile import Program
+from ...bristles import AbstractBristle, pulling_text
+from ...model import friction, potential
+from ...profiles import AbstractProfile
+from .aligned_text import aligned
+from .free_numbers import FreeParameter, entries_of, free_parameter, with_arrays
+from .quantities import QUANTITIES, on_slopes, quantity_of, side_of, slopes_of
+
+_QUANTILES = (0.025, 0.25, 0.5, 0.75, 0.975)
+_CHUNK = 4096  # samples of one compiled call
+
+
+class _Spread(NamedTuple):
+    """One number that spreads: of the bristle or of the profile, and its std."""
+
+    name: str
+    of_profile: bool
+    number: FreeParameter
+    std: float
+
+
+@Program
+def _sampled(numbers, of_profile, bristle, profile, values):
+    """The four quantities (n, 4) at values (n, m) of the numbers, and alpha's side (n,)."""
+    grounds = any(of_profile)
+    still = None if grounds else slopes_of(profile)
+
+    def one(row):
+        part, surface = _changed(numbers, of_profile, bristle, profile, row)
+        slopes = slopes_of(surface) if still is None else still
+        found = on_slopes(part, slopes)
+        side = jnp.where(slopes.minus < 0, side_of(part, found), 0.0)
+        side = jnp.where((slopes.plus > 0) & _in_range(numbers, row), side, 0.0)
+        return jnp.stack([quantity_of(found, i) for i in range(4)]), side
+
+    return jax.vmap(one)(values)
+
+
+@Program
+def _jacobian(numbers, of_profile, bristle, profile, values):
+    """Derivatives (4, m) of the quantities by the numbers."""
+
+    def one(row):
+        part, surface = _changed(numbers, of_profile, bristle, profile, row)
+        found = on_slopes(part, slopes_of(surface))
+        return jnp.stack([quantity_of(found, i) for i in range(4)])
+
+    return jax.jacrev(one)(values)
+
+
+def _changed(numbers, of_profile, bristle, profile, row):
+    for i, (number, there) in enumerate(zip(numbers, of_profile, strict=True)):
+        if there:
+            profile = number.put(profile, row[i])
+        else:
+            bristle = number.put(bristle, row[i])
+    return bristle, profile
+
+
+def _in_range(numbers, row):
+    """Whether constructors would take the numbers."""
+    good = jnp.asarray(True)
+    for i, number in enumerate(numbers):
+        low, high = number.own_range
+        good = good & (row[i] > low) & (row[i] < high)
+    return good
+
+
+class Tolerance:
+    """How friction spreads; prints as a table.
+
+    `data`: an `xarray.Dataset` over `quantity`: `nominal`, `mean`, `std` of the samples,
+    `first_order` (std by the delta method), `quantiles`, all over admissible samples, and
+    `samples` themselves, NaN where inadmissible. `inadmissible`: their share. `flipped`:
+    the share in which alpha, and with it the direction of friction, changed sign.
+    """
+
+    def __init__(self, data: xr.Dataset):
+        self.data = data
+
+    @property
+    def inadmissible(self) -> float:
+        """Share of samples in which the bristle cannot follow the surface."""
+        return float(self.data.inadmissible)
+
+    @property
+    def flipped(self) -> float:
+        """Share of samples that pull where the nominal part presses, or the other way."""
+        return float(self.data.flipped)
+
+    def __repr__(self) -> str:
+        data = self.data
+        names = ("nominal", "mean", "std", "first_order")
+        heads = ["", *names, *(f"{q:.1%}" for q in data["quantile"].values)]
+        rows = [heads]
+        for name in data["quantity"].values:
+            line = data.sel(quantity=name)
+            numbers = [float(line[n]) for n in names] + line["quantiles"].values.tolist()
+            rows.append([str(name), *(f"{v:.6g}" for v in numbers)])
+        count = data.sizes["sample"]
+        told = f"{count} samples, {self.inadmissible:.3%} inadmissible and left out"
+        pulls = pulling_text(data.attrs["alpha"])
+        other = "press on the surface" if pulls else "pull on the surface, alpha < 0"
+        flipped = f", {self.flipped:.3%} {other}" if self.flipped else ""
+        nominal = f"\nnominal {pulls}" if pulls else ""
+        return f"{told}{flipped}{nominal}\n{aligned(rows)}"
+
+
+@with_nan
+def tolerance(
+    profile: AbstractProfile,
+    bristle: AbstractBristle,
+    spreads: Mapping[str, Any],
+    samples: int = 10_000,
+    seed: int = 0,
+    quantiles: Any = _QUANTILES,
+) -> Tolerance:
+    """Friction of parts whose numbers spread normally and independently.
+
+    `spreads`: standard deviations by name, in the number's own unit: of the bristle as in
+    `fit_angle` (`"angle"`, `"height"`...), of the profile with `"profile."` before
+    (`"profile.slope"`, `"profile.sin[0]"`; `"profile.sin"`: one for all, or an array).
+    `samples`, `seed`: of the Monte Carlo. Beside it stands the first-order estimate
+    (delta method), which is right where spreads are small.
+
+    Samples that no bristle could follow, or with a number out of its range, are counted,
+    and left out of mean, std and quantiles.
+
+    Raises `ValueError` as `friction` does for the nominal parts, and for unknown names,
+    spreads that are negative or not finite, and counts below 2.
+    """
+    require_x64(potential(profile, bristle))
+    bristle, profile = with_arrays(bristle), with_arrays(profile)
+    spread = _spreads(bristle, profile, spreads)
+    require_whole("samples", samples, 2)
+    require_whole("seed", seed, 0)
+    levels = known_numbers(quantiles)
+    good = levels.ndim == 1 and np.all((levels >= 0) & (levels <= 1))
+    require(good, "quantiles", quantiles, "numbers in [0, 1], shape (n,)")
+    law = friction(profile, bristle)  # raises where the nominal parts are inadmissible
+    found = _dataset(profile, bristle, spread, samples, seed, levels)
+    return Tolerance(found.assign_attrs(alpha=float(law.alpha)))
+
+
+def _dataset(profile, bristle, spread, samples, seed, levels) -> xr.Dataset:
+    where = tuple(s.of_profile for s in spread)
+    numbers = tuple(s.number for s in spread)
+    own = [float(s.number.now(profile if s.of_profile else bristle)) for s in spread]
+    stds = np.array([s.std for s in spread])
+    draws = np.random.default_rng(seed).standard_normal((samples, len(spread)))
+    values = np.vstack([own, own + stds * draws])
+    size = min(_CHUNK, samples)
+    short = np.pad(values, ((0, -len(values) % size), (0, 0)), mode="edge")
+    parts = [
+        _sampled(numbers, where, bristle, profile, short[at : at + size])
+        for at in range(0, len(short), size)
+    ]
+    found = np.concatenate([np.asarray(p[0]) for p in parts])[: samples + 1]
+    side = np.concatenate([np.asarray(p[1]) for p in parts])[: samples + 1]
+    slopes = _jacobian(numbers, where, bristle, profile, values[0])
+    drawn = np.where(side[1:, None] != 0, found[1:], np.nan)
+    known = drawn[side[1:] != 0]
+    few = len(known) < 2
+    blank = np.full(4, np.nan)
+    cuts = np.full((levels.size, 4), np.nan) if few else np.quantile(known, levels, axis=0)
+    columns = {
+        "nominal": ("quantity", found[0]),
+        "mean": ("quantity", blank if few else known.mean(axis=0)),
+        "std": ("quantity", blank if few else known.std(axis=0, ddof=1)),
+        "first_order": ("quantity", np.sqrt(np.asarray(slopes) ** 2 @ stds**2)),
+        "by_number": (("quantity", "number"), np.abs(np.asarray(slopes)) * stds),
+        "quantiles": (("quantile", "quantity"), cuts),
+        "samples": (("sample", "quantity"), drawn),
+        "inadmissible": ((), float(np.mean(side[1:] == 0))),
+        "flipped": ((), float(np.mean(side[1:] * side[0] < 0))),
+    }
+    coords = {
+        "quantity": list(QUANTITIES),
+        "quantile": levels,
+        "number": [s.name for s in spread],
+    }
+    told = {"long_name": "first-order std that a number alone would cause"}
+    data = xr.Dataset(columns, coords, attrs={"seed": seed})
+    data["by_number"].attrs = told
+    return data
+
+
+def _spreads(bristle, profile, spreads: Any) -> list[_Spread]:
+    given = isinstance(spreads, Mapping) and len(spreads) > 0
+    require(given, "spreads", type(spreads).__name__, "standard deviations by name")
+    found = [
+        one for name, std in spreads.items() for one in _one(bristle, profile, name, std)
+    ]
+    require(any(s.std for s in found), "spreads", "all 0", "a standard deviation > 0")
+    return found
+
+
+def _one(bristle, profile, name: str, std: Any) -> list[_Spread]:
+    """The spreads that one entry stands for: of one number, or of an array of them."""
+    array = known_numbers(std)
+    numeric = array.dtype != object
+    allowed = "finite standard deviations >= 0"
+    label = f"spreads[{name!r}]"
+    require(
+        numeric and np.all(np.isfinite(array)) and np.all(array >= 0), label, std, allowed
+    )
+    there = name.startswith("profile.")
+    inner = name.removeprefix("profile.").removeprefix("bristle.")
+    part = profile if there else bristle
+    entries = entries_of(part, inner)
+    if not entries:
+        require(array.ndim == 0, label, std, "one number")
+        number = free_parameter(part, inner)
+        return [_Spread(name, there, number, float(array))]
+    fits = array.ndim == 0 or array.shape == (len(entries),)
+    require(fits, label, as_text(array), f"one number, or {len(entries)} of them")
+    each = np.broadcast_to(array.astype(float), (len(entries),))
+    prefix = "profile." if there else ""
+    return [
+        _Spread(
+            prefix + entry, there, free_parameter(profile if there else bristle, entry), s
+        )
+        for entry, s in zip(entries, each.tolist(), strict=True)
+    ]

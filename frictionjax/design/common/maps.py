@@ -1,0 +1,196 @@
+"""Friction over a plane of designs: bristle against surface, or any two numbers."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import xarray as xr
+
+from ..._checks import (
+    checked,
+    known_numbers,
+    require,
+    require_flags,
+    require_real,
+    require_x64,
+    with_nan,
+)
+from ..._compile import Program
+from ...bristles import AbstractBristle
+from ...model import coefficients_jit, potential
+from ...profiles import AbstractProfile, Fourier
+from .free_numbers import FreeParameter, free_parameter, with_arrays
+from .quantities import Slopes, on_slopes, quantity_of, side_of
+
+SURFACE = ("asymmetry", "steepness")
+_SMALL = 1e-13  # of the first harmonic: the last one of an asymmetric profile
+_MOST = 512
+_DEFAULTS = {
+    "asymmetry": np.geomspace(1 / 3, 3, 121),
+    "steepness": np.linspace(0.02, 0.6, 117),
+    "angle": np.linspace(-1.5, 1.5, 181),
+    "limit": np.linspace(0.02, 1.55, 181),
+}
+_MEANING = {
+    "rho_plus": ("N", "friction against motion to the right, rho_plus"),
+    "rho_minus": ("N", "friction against motion to the left, rho_minus"),
+    "ratio": ("1", "-rho_plus/rho_minus"),
+    "difference": ("N", "rho_plus + rho_minus"),
+    "contrast": ("1", "(rho_plus + rho_minus)/(rho_plus - rho_minus)"),
+    "alpha": ("N", "normal force without friction, alpha"),
+    "admissible": (None, "whether the bristle can follow the surface, and may"),
+    "pulls": (None, "whether alpha < 0: the bristle pulls on the surface"),
+}
+
+
+_PULLING = (
+    "no: bristles that would pull (alpha < 0) are not admissible; design_map(pulling=True)",
+    "yes: bristles that pull (alpha < 0) are shown too",
+)
+
+
+def asymmetric_profile(steepness: float, asymmetry: float) -> Fourier:
+    """A smooth profile of given mean steepness that is steeper on one side.
+
+    `w' = steepness (1 - q^2) sum_n q^(n-1) cos(2 pi n y)`, a Poisson kernel, with
+    `q = (asymmetry - 1)/(asymmetry + 1)`, has `omega_plus = steepness (1 + q)` and
+    `omega_minus = -steepness (1 - q)`: `asymmetry` = omega_plus/|omega_minus| and
+    `steepness` = (omega_plus - omega_minus)/2. At 1 it is a sine.
+
+    Raises `ValueError` for numbers that are not positive, and for an asymmetry so far
+    from 1 that more than 512 harmonics were needed.
+    """
+    for name, value in (("steepness", steepness), ("asymmetry", asymmetry)):
+        require_real(name, value, f"{name} > 0", lambda v: v > 0)
+    lean = (asymmetry - 1) / (asymmetry + 1)
+    needed = 1 if lean == 0 else 1 + int(np.ceil(np.log(_SMALL) / np.log(abs(lean))))
+    require(needed <= _MOST, "asymmetry", asymmetry, f"at most {_MOST} harmonics")
+    order = np.arange(1, needed + 1)
+    slopes = steepness * (1 - lean**2) * float(lean) ** (order - 1.0)
+    return Fourier(jnp.zeros(needed), jnp.asarray(slopes / (2 * np.pi * order)))
+
+
+@with_nan
+def design_map(
+    bristle: AbstractBristle,
+    x: tuple[str, Any] | str = "angle",
+    y: tuple[str, Any] | str = "asymmetry",
+    profile: AbstractProfile | None = None,
+    steepness: float = 0.2,
+    pulling: bool = False,
+) -> xr.Dataset:
+    """Friction over two numbers of a design, all in one compiled call.
+
+    `x`, `y`: a name, or a name and its values, shape (n,). Names of the bristle's numbers
+    are those of `fit_angle`; `"asymmetry"` = omega_plus/|omega_minus| and `"steepness"` =
+    (omega_plus - omega_minus)/2 are the surface's: see `asymmetric_profile`. Angles and
+    the surface's numbers have values of their own where none are given. `profile`: the
+    surface where neither axis is one of its numbers; `steepness`: where only `asymmetry`
+    is.
+
+    Returns an `xarray.Dataset` over y and x: `rho_plus, rho_minus` (N), `ratio` =
+    -rho_plus/rho_minus, `difference`, `contrast` = (rho_plus + rho_minus)/(rho_plus -
+    rho_minus), in (-1, 1), above 0 where the right is harder, `alpha` (N), and
+    `admissible`; NaN where that is false. `pulls`: where alpha < 0. Such bristles count as
+    admissible with `pulling` only; else nothing but their alpha is given.
+
+    Raises `ValueError` for unknown names, values that are not finite or positive, and a
+    profile that is missing, or too much.
+    """
+    require_x64(bristle)
+    require_flags(pulling=pulling)
+    bristle = checked(bristle)
+    bristle = with_arrays(bristle)
+    axes = [_axis(bristle, label, given) for label, given in (("x", x), ("y", y))]
+    names = [axis[0] for axis in axes]
+    require(names[0] != names[1], "y", names[1], "another name than x")
+    slopes = _base(bristle, names, profile, steepness)
+    frees = tuple(axis[2] for axis in axes)
+    across, up = (axis[1] for axis in axes)
+    flat = np.tile(across, up.size), np.repeat(up, across.size)
+    surface = tuple(name if name in SURFACE else "" for name in names)
+    found = _mapped(frees, surface, bristle, slopes, np.asarray(pulling), *flat)
+    shape = up.size, across.size
+    dims = names[1], names[0]
+    columns = {
+        name: (dims, np.asarray(values).reshape(shape)) for name, values in found.items()
+    }
+    data = xr.Dataset(columns, {names[0]: across, names[1]: up})
+    for name, (units, meaning) in _MEANING.items():
+        data[name].attrs = {"long_name": meaning} | ({"units": units} if units else {})
+    data.attrs = {
+        "bristle": type(bristle).__name__,
+        "title": "Friction of designs",
+        "pulling": _PULLING[bool(pulling)],
+    }
+    return data
+
+
+def _axis(bristle, label: str, given: Any) -> tuple[str, np.ndarray, FreeParameter | None]:
+    """Name, values and place in the bristle of one axis."""
+    pair = (given, None) if isinstance(given, str) else given
+    good = isinstance(pair, Sequence) and len(pair) == 2 and isinstance(pair[0], str)
+    require(good, label, repr(given), "a name, or a name and its values")
+    name, values = pair
+    free = None if name in SURFACE else free_parameter(bristle, name)
+    usual = _DEFAULTS.get(name if free is None else free.kind)
+    if values is None:
+        require(usual is not None, label, name, f"values of {name}: ({name!r}, [...])")
+        values = usual
+    array = known_numbers(values)
+    numeric = array.dtype != object and array.ndim == 1 and array.size > 0
+    require(numeric, f"{label} values", values, "numbers, shape (n,), n > 0")
+    array = array.astype(float)
+    positive = free is not None or bool(np.all(array > 0))
+    finite = bool(np.all(np.isfinite(array)))
+    require(
+        finite and positive, f"{label} values", array, f"finite {name}, > 0 for surfaces"
+    )
+    return name, array, free
+
+
+def _base(bristle, names, profile, steepness) -> np.ndarray:
+    """Steepness and asymmetry before the axes change them."""
+    own = [name for name in names if name in SURFACE]
+    if own or profile is None:
+        require(own, "profile", None, "a surface, or asymmetry or steepness as an axis")
+        require(profile is None, "profile", type(profile).__name__, f"none beside {own[0]}")
+        require_real("steepness", steepness, "steepness > 0", lambda v: v > 0)
+        return np.array([float(steepness), 1.0])
+    law = coefficients_jit(potential(profile, bristle))
+    plus, minus = float(law.omega_plus), float(law.omega_minus)
+    require(minus < 0 < plus, "profile", (minus, plus), "omega_plus > 0 > omega_minus")
+    return np.array([0.5 * (plus - minus), -plus / minus])
+
+
+@Program
+def _mapped(frees, surface, bristle, base, pulling, across, up):
+    def one(*values):
+        part, ground = bristle, dict(zip(("steepness", "asymmetry"), base, strict=True))
+        good = jnp.asarray(True)
+        for free, name, value in zip(frees, surface, values, strict=True):
+            if free is None:
+                ground[name] = value
+                continue
+            part = free.put(part, value)
+            good = good & (value > free.own_range[0]) & (value < free.own_range[1])
+        lean = (ground["asymmetry"] - 1) / (ground["asymmetry"] + 1)
+        slopes = Slopes(ground["steepness"] * (1 + lean), -ground["steepness"] * (1 - lean))
+        law = on_slopes(part, slopes)
+        side = jnp.where(good, side_of(part, law), 0.0)
+        pulls = side < 0
+        good = (side > 0) | (pulls & pulling)
+        numbers = {
+            "rho_plus": law.rho_plus,
+            "rho_minus": law.rho_minus,
+            "ratio": quantity_of(law, 2),
+            "difference": quantity_of(law, 3),
+            "contrast": quantity_of(law, 3) / (law.rho_plus - law.rho_minus),
+        }
+        known = {name: jnp.where(good, value, jnp.nan) for name, value in numbers.items()}
+        known["alpha"] = jnp.where(good | pulls, law.alpha, jnp.nan)
+        return known | {"admissible": good, "pulls": pulls}
+
+    return jax.vmap(one)(across, up)

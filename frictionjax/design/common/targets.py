@@ -1,0 +1,170 @@
+"""What a fit is asked for: bristles and the friction coefficients they should have."""
+
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+
+from ..._checks import (
+    checked,
+    is_concrete,
+    known_numbers,
+    require,
+    require_real,
+    require_x64,
+)
+from ..._compile import Program
+from ...bristles import AbstractBristle, pulling_text
+from ...model import BristlePotential, require_admissible, rounding_of_alpha
+from ...profiles import Sine
+
+_GENTLE: Any = 1e-9
+
+
+def _on_nearly_flat(bristle: AbstractBristle) -> BristlePotential:
+    """Made when asked for: at import JAX may still be in 32 bits."""
+    return BristlePotential(Sine(_GENTLE), bristle)
+
+
+class Target(NamedTuple):
+    """A bristle and the friction coefficients that it should have on the surface.
+
+    `rho_plus` > 0 > `rho_minus` in N. `weight`: > 0, of its squared residuals.
+    `uncertainty`: standard deviation of the two in N, one number or a pair; without it
+    residuals are relative. Checked where it is used.
+    """
+
+    bristle: AbstractBristle
+    rho_plus: Any
+    rho_minus: Any
+    weight: Any = 1.0
+    uncertainty: Any = None
+
+
+class Geometry(NamedTuple):
+    """What coefficients depend on: `a = A'(0)`, `alpha = F'(0)` in N, slopes allowed."""
+
+    a: Any
+    alpha: Any
+    lower: Any
+    upper: Any
+
+
+def geometry(bristle: AbstractBristle) -> Geometry:
+    """Of one bristle, traceable. `1 + a omega > 0` is part of the slopes allowed."""
+    bare = _on_nearly_flat(bristle)
+    a, bounds = bare.a(), bristle.slope_bounds()
+    end = -1 / jnp.where(a == 0, 1.0, a)
+    lower = jnp.maximum(bounds.lower, jnp.where(a > 0, end, -jnp.inf))
+    upper = jnp.minimum(bounds.upper, jnp.where(a < 0, end, jnp.inf))
+    return Geometry(a, bare.alpha(), lower, upper)
+
+
+@Program
+def _alone(bristle: AbstractBristle) -> Any:
+    """Its geometry, and what alpha is rounded by, as one array: a fetch takes 20 us.
+
+    In place of the coefficients on a surface: 0.1 ms for 1.
+    """
+    return jnp.stack([*geometry(bristle), rounding_of_alpha(bristle)])
+
+
+def extreme_slopes(rho_plus: Any, rho_minus: Any, a: Any, alpha: Any) -> tuple[Any, Any]:
+    """`omega_plus`, `omega_minus` that give these coefficients (Lemmas 2 and 3, inverted).
+
+    `mu = rho/alpha`, swapped for alpha < 0, and `omega = mu/(1 - a mu)`. Infinite or of the
+    wrong sign where no admissible slope does: `a mu >= 1`.
+    """
+    plus, minus = rho_plus / alpha, rho_minus / alpha
+    plus, minus = np.where(alpha > 0, plus, minus), np.where(alpha > 0, minus, plus)
+    with np.errstate(divide="ignore"):
+        return plus / (1 - a * plus), minus / (1 - a * minus)
+
+
+def coefficients_of(known: Geometry, plus: Any, minus: Any, xp: Any = jnp) -> Any:
+    """`rho_plus`, `rho_minus` in N at slopes `plus` > 0 and -`minus` < 0: (targets, 2)."""
+    high = known.alpha * plus / (1 + known.a * plus)
+    low = -known.alpha * minus / (1 - known.a * minus)
+    swapped = known.alpha < 0
+    both = xp.where(swapped, low, high), xp.where(swapped, high, low)
+    return xp.stack(both, axis=-1)
+
+
+def require_targets(
+    targets: Any, pulling: bool = False
+) -> tuple[list[Target], list[Geometry]]:
+    """The targets as a list, checked one by one, and the geometry of their bristles.
+
+    Raises `ValueError` naming the target and the argument: no targets, none of a target,
+    a bristle that presses on nothing, or pulls where `pulling` is False, coefficients of
+    the wrong sign, shape or not finite, a weight or an uncertainty that is not positive,
+    uncertainties for some targets only.
+    """
+    single = isinstance(targets, Target)
+    listed = single or isinstance(targets, list | tuple)
+    require(listed, "targets", type(targets).__name__, "a Target or a list of them")
+    many = [targets] if single else list(targets)
+    require(many, "targets", "[]", "at least one Target")
+    known = []
+    for index, target in enumerate(many):
+        name = "target" if single else f"targets[{index}]"
+        many[index] = _require_target(name, target)
+        known.append(_require_pressing(name, many[index].bristle, pulling))
+    given = [target.uncertainty is not None for target in many]
+    allowed = "one for every target or for none"
+    require(all(given) or not any(given), "uncertainty", None, allowed)
+    return many, known
+
+
+def _require_target(name: str, target: Any) -> Target:
+    known = isinstance(target, Target)
+    require(known, name, type(target).__name__, "a frictionjax.Target")
+    bristle = target.bristle
+    known = isinstance(bristle, AbstractBristle)
+    allowed = "a part of frictionjax.bristles"
+    require(known, f"{name}.bristle", type(bristle).__name__, allowed)
+    require_x64(bristle)
+    bristle = checked(bristle)
+    known = is_concrete(bristle)
+    require(known, f"{name}.bristle", "traced", "numbers: a fit is not traced")
+    for label, test in (("rho_plus", _positive), ("rho_minus", _negative)):
+        sign = ">" if test is _positive else "<"
+        value = getattr(target, label)
+        require_real(f"{name}.{label}", value, f"{label} {sign} 0", test)
+    require_real(f"{name}.weight", target.weight, "weight > 0", _positive)
+    if target.uncertainty is not None:
+        _require_uncertainty(f"{name}.uncertainty", target.uncertainty)
+    return target._replace(bristle=bristle)
+
+
+def _require_pressing(name: str, bristle: AbstractBristle, pulling: bool) -> Geometry:
+    """The bristle is admissible on a surface that is hardly wavy."""
+    *found, noise = np.asarray(_alone(bristle))
+    known = Geometry(*found)
+    presses = np.isfinite(known.alpha) and abs(known.alpha) > noise
+    if not (presses and known.lower < -_GENTLE and known.upper > _GENTLE):
+        try:
+            require_admissible(_on_nearly_flat(bristle))
+        except ValueError as problem:
+            raise ValueError(f"{name}.{problem}") from None
+    if not pulling and known.alpha < 0:
+        why = pulling_text(known.alpha, bristle)
+        mend = "pulling=True (--pulling in the shell) allows that"
+        raise ValueError(f"{name}.bristle: needs alpha > 0, but {why}; {mend}")
+    return known
+
+
+def _positive(value: float) -> bool:
+    return value > 0
+
+
+def _negative(value: float) -> bool:
+    return value < 0
+
+
+def _require_uncertainty(name: str, value: Any) -> None:
+    numbers = known_numbers(value)
+    allowed = "one number or a pair, > 0 in N"
+    require(numbers.dtype != object and numbers.shape in ((), (2,)), name, value, allowed)
+    good = np.all(np.isfinite(numbers)) and np.all(numbers > 0)
+    require(good, name, value, allowed)

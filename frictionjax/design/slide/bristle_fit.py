@@ -1,0 +1,286 @@
+"""Inverse design at finite eps: the bristle whose steady slide has a wanted friction."""
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..._checks import Real, as_real, as_text, is_concrete, require, require_real, with_nan
+from ..._compile import Program, in_chunks
+from ...bristles import AbstractBristle, normal_force, pulling_text
+from ...io import written
+from ...model import BristlePotential, smallest_stretch
+from ...profiles import AbstractProfile
+from ...supports import Spring
+from ..bristle import AngleFit, FitStatus, fit_angle, intervals_text
+from ..common import QUANTITIES, FreeParameter, free_parameter, quantity_of
+from .json import slide_from_json, slide_to_json
+from .scan import Scan, crossings, scan_slides, sliding, touching
+from .slide_friction import (
+    SLIDE_FORCES,
+    SteadySlide,
+    forces_of,
+    require_force,
+    slide_at,
+    spring_of,
+)
+
+_TOGETHER = 11  # slides of a call, which wait for the slowest: those near poles take 5x
+
+
+class SlideFit(eqx.Module):
+    """A bristle whose steady slide at `eps` gives a wanted quantity.
+
+    As `AngleFit`, with the quantity made of the slide's forces, `force` "mean" or "peak":
+    `value`, `achieved`, `target`, `solutions` (all that a scan of 43 values an interval
+    tells apart, its extrema polished), `reachable` (intervals, 2): least and largest
+    quantity of that scan. `failed` (n,): values of it at which there is a bristle but its
+    slide was not found, but for those next to an end where nothing grows towards the
+    target; without a solution the status is then UNKNOWN, not UNREACHABLE. `slide`: of the
+    bristle returned. `by_target`: d value/d target, infinite where the status is TANGENT.
+    `limit`: the fit for eps -> 0.
+    """
+
+    bristle: AbstractBristle
+    value: Real
+    achieved: Real
+    target: Real
+    solutions: Real
+    reachable: Real
+    failed: Real
+    by_target: Real
+    slide: SteadySlide
+    limit: AngleFit
+    status: FitStatus = eqx.field(static=True)
+    force: str = eqx.field(static=True)
+
+    @property
+    def success(self) -> bool:
+        """Whether the slide gives what was asked for."""
+        return self.status in (FitStatus.OK, FitStatus.TANGENT)
+
+    @property
+    def message(self) -> str:
+        """Why, for people."""
+        limit = self.limit
+        asked = f"{limit.quantity} = {as_text(self.target)} of {self.force} forces"
+        asked += f" at eps = {as_text(self.slide.eps)}"
+        value = f"{limit.free} = {as_text(self.value)}"
+        if self.status == FitStatus.UNREACHABLE:
+            return (
+                f"{asked} cannot be reached by {limit.free}: steady slides show "
+                f"{intervals_text(self.reachable)}; nearest: {as_text(self.achieved)} "
+                f"at {value}{self._in_the_limit}"
+            )
+        if self.status == FitStatus.UNKNOWN:
+            count, first = self.failed.shape[0], as_text(self.failed[0])
+            known = intervals_text(self.reachable)
+            shown = f"others show {known}" if known else "no other is known"
+            return (
+                f"{asked}: {self.status.message}: {count} slides were not computed, the "
+                f"first at {limit.free} = {first}; {shown}"
+            )
+        pulls = pulling_text(normal_force(self.bristle), self.bristle)
+        told = f"; {pulls}" if pulls else ""
+        return f"{asked}: {self.status.message}, {value}{told}"
+
+    @property
+    def _in_the_limit(self) -> str:
+        """Where the limit's design would pull. Slides of those are not computed."""
+        pulls = self.limit.status == FitStatus.PULLS
+        return f"; in the limit: {self.limit.message}" if pulls else ""
+
+    def to_json(self, path: Any = None) -> str:
+        """Everything as JSON; written to `path` where given."""
+        return written(slide_to_json(self), path)
+
+    @classmethod
+    def from_json(cls, source: Any) -> "SlideFit":
+        """The result again, from the text or the path of its JSON.
+
+        A bristle or a surface given as functions is None. Raises `ValueError` for what is
+        no such JSON.
+        """
+        return cls(**slide_from_json(source))
+
+    def __repr__(self) -> str:
+        return f"SlideFit({self.message})"
+
+
+class _Asked(NamedTuple):
+    """Of a design: number of the quantity, whether of peaks, (eps, gamma, rate, k_h)."""
+
+    which: Any
+    peak: Any
+    scene: tuple
+
+
+class _Slide(NamedTuple):
+    """At one coordinate: the quantity and the number, each with its slope, the slide."""
+
+    shown: Any
+    slope: Any
+    speed: Any
+    value: Any
+    slide: SteadySlide
+
+
+def _quantity(free, bristle, profile, asked: _Asked, x):
+    """The quantity at a coordinate of the number, and the slide."""
+    wiggle = BristlePotential(profile, free.at(bristle, x))
+    slide = slide_at(wiggle, *asked.scene)
+    mean, peak = (quantity_of(forces_of(slide, f), asked.which) for f in SLIDE_FORCES)
+    return jnp.where(asked.peak, peak, mean), slide
+
+
+@Program
+def _quantities(free, bristle, profile, asked, places):
+    """The quantity at coordinates (n,), NaN where there is no slide."""
+
+    def one(x):
+        found, slide = _quantity(free, bristle, profile, asked, x)
+        return jnp.where(slide.ok, found, jnp.nan)
+
+    return jax.vmap(one)(places)
+
+
+@Program
+def _alone(free, bristle, profile, asked, x):
+    """A slide, its quantity and the number, and how both change with the coordinate."""
+
+    def one(x):
+        found, slide = _quantity(free, bristle, profile, asked, x)
+        return (found, free.value(bristle, x)), slide
+
+    (found, value), slopes, slide = jax.jvp(one, (x,), (jnp.ones_like(x),), has_aux=True)
+    return _Slide(found, *slopes, value, slide)
+
+
+@Program
+def _follows(free, bristle, profile, places, eps):
+    """Whether bristles at coordinates (n,) follow the surface at this eps: G > 0."""
+
+    def one(x):
+        return smallest_stretch(BristlePotential(profile, free.at(bristle, x)), eps) > 0
+
+    return jax.vmap(one)(places)
+
+
+@Program
+def _coordinates(free, bristle, ends):
+    return jax.vmap(jax.vmap(lambda value: free.coordinate(bristle, value)))(ends)
+
+
+@Program
+def _values(free, bristle, places):
+    return jax.vmap(lambda x: free.value(bristle, x))(places)
+
+
+@with_nan
+def fit_slide(
+    profile: AbstractProfile,
+    bristle: AbstractBristle,
+    eps: Any,
+    gamma: Any = 1.0,
+    rate: Any = 1.0,
+    support: Spring | None = None,
+    force: str = "mean",
+    **wanted: Any,
+) -> SlideFit:
+    """The bristle whose steady slide at `eps` (m) has a wanted friction.
+
+    `gamma`, `rate` (N/s), `support`: as in `steady_slide`. `force`: "mean", over time, or
+    "peak", the largest. `wanted`: one target (`rho_plus`, `rho_minus`, `ratio` or
+    `difference`, of these forces), `free`, `bounds` and `pulling`, as in `fit_angle`. The
+    admissible intervals of the limit are scanned as far as bristles slide at this eps,
+    turns of the quantity are found, and each change of sign is polished by
+    `scipy.optimize.brentq`: 50 to 200 slides, so this takes seconds, not a millisecond.
+    `.status` tells what no bristle reaches from what could not be evaluated (`UNKNOWN`).
+
+    Raises `ValueError` as `fit_angle` and `steady_slide` do, and for several targets.
+    """
+    support = spring_of(support)
+    require_force(force)
+    for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
+        require_real(name, value, f"{name} > 0", lambda v: v > 0)
+    limit = fit_angle(profile, bristle, **wanted)
+    require(is_concrete(limit), "targets", "traced", "known numbers: this is a search")
+    require(limit.code.ndim == 0, limit.quantity, limit.target, "one number")
+    scene = tuple(as_real(v) for v in (eps, gamma, rate, support.stiffness))
+    which = QUANTITIES.index(limit.quantity)
+    asked = _Asked(np.asarray(which), np.asarray(force == "peak"), scene)
+    free = free_parameter(limit.bristle, limit.free)
+    parts = _sliding_parts(limit, free, profile, scene[0])
+    require(parts, "eps", eps, "an eps at which some bristle slides (G > 0)")
+    target = float(limit.target)
+
+    def shown(places):
+        fixed = free, limit.bristle, profile, asked
+        return in_chunks(_quantities, _TOGETHER, fixed, (places,))
+
+    def alone(x):
+        return _alone(free, limit.bristle, profile, asked, np.asarray(x))
+
+    def gap(x):
+        return float(alone(x).shown) - target
+
+    def slope(x):
+        return float(alone(x).slope)
+
+    scans = [scan_slides(shown, slope, *ends) for ends in parts]
+    roots = np.concatenate([crossings(gap, one, target) for one in scans])
+    turns = np.concatenate([touching(one, target) for one in scans])
+    failed = np.concatenate([one.failed(target) for one in scans])
+    found = roots if roots.size else turns
+    good = np.array([alone(x).slide.ok for x in found], dtype=bool)
+    failed, found = np.concatenate([failed, found[~good]]), found[good]
+
+    def values(places):
+        return _values(free, limit.bristle, places)
+
+    at = _nearest(scans, target)
+    status = FitStatus.UNKNOWN if failed.size else FitStatus.UNREACHABLE
+    if found.size:
+        now = float(free_parameter(bristle, limit.free).now(bristle))
+        at = found[np.argmin(np.abs(values(found) - now))]
+        status = FitStatus.TANGENT if at in turns else FitStatus.OK
+    best = alone(at)
+    part = free.put(limit.bristle, best.value)
+    tangent = status == FitStatus.TANGENT
+    return SlideFit(
+        part,
+        best.value,
+        best.shown,
+        limit.target,
+        jnp.sort(values(found)),
+        jnp.asarray([one.reach for one in scans if one.known]).reshape(-1, 2),
+        jnp.sort(values(failed)),
+        jnp.asarray(np.inf) if tangent else best.speed / best.slope,
+        best.slide,
+        limit,
+        status,
+        force,
+    )
+
+
+def _sliding_parts(
+    limit: AngleFit, free: FreeParameter, profile: AbstractProfile, eps: Any
+) -> list[tuple[float, float]]:
+    """Intervals of the coordinate that are admissible, and where G > 0 at this eps."""
+    ends = np.asarray(limit.admissible)
+    ends = ends[~np.isnan(ends[:, 0])]
+    places = np.sort(np.asarray(_coordinates(free, limit.bristle, ends)), axis=1)
+
+    def follows(some):
+        return np.asarray(_follows(free, limit.bristle, profile, some, eps))
+
+    return [part for low, high in places for part in sliding(follows, low, high)]
+
+
+def _nearest(scans: list[Scan], target: float) -> float:
+    """The coordinate whose quantity is nearest, or the first where none is known."""
+    nodes = np.concatenate([one.nodes for one in scans])
+    away = np.abs(np.concatenate([one.values for one in scans]) - target)
+    return float(nodes[np.nanargmin(away)] if np.isfinite(away).any() else nodes[0])

@@ -1,0 +1,102 @@
+"""What a design of the limit shows on the dynamics: the gap, at a few eps."""
+
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+
+from ..._checks import Real, as_real, is_known, with_nan
+from ...bristles import AbstractBristle, pulling_text
+from ...model import Coefficients, friction
+from ...profiles import AbstractProfile
+from ...supports import Spring
+from ..common import aligned
+from .slide_friction import SteadySlide, steady_slide
+
+_MEANS = ("eps/m", "mean +/N", "gap", "mean -/N", "gap", "ratio", "gap")
+_HEADER = (*_MEANS, "peak +/N", "peak -/N", "status")
+
+
+class DesignCheck(eqx.Module):
+    """The limit `law`, the steady `slide` at every eps, and the gaps between them."""
+
+    law: Coefficients
+    slide: SteadySlide
+    gamma: Real
+    rate: Real
+
+    @property
+    def ratio(self) -> Real:
+        """`-rho_plus/rho_minus` of the limit."""
+        return -self.law.rho_plus / self.law.rho_minus
+
+    @property
+    def gap_plus(self) -> Real:
+        """`mean_plus/rho_plus - 1`, shape (n,)."""
+        return self.slide.mean_plus / self.law.rho_plus - 1
+
+    @property
+    def gap_minus(self) -> Real:
+        """`mean_minus/rho_minus - 1`, shape (n,)."""
+        return self.slide.mean_minus / self.law.rho_minus - 1
+
+    @property
+    def gap_ratio(self) -> Real:
+        """The slide's ratio over that of the limit, less 1, shape (n,)."""
+        return self.slide.ratio / self.ratio - 1
+
+    @property
+    def table(self) -> str:
+        """The gaps as text, one line an eps, the limit below."""
+        rows = [_HEADER, *(self._row(i) for i in range(self.slide.eps.size))]
+        plus, minus = float(self.law.rho_plus), float(self.law.rho_minus)
+        last = ("limit", f"{plus:.6g}", "", f"{minus:.6g}", "", f"{float(self.ratio):.6g}")
+        rows.append((*last, "", f"{plus:.6g}", f"{minus:.6g}", ""))
+        return aligned(rows)
+
+    def _row(self, i: int) -> tuple[str, ...]:
+        found, worst = self.slide, np.atleast_1d(self.slide.status)[i]
+        return (
+            f"{float(found.eps[i]):.3g}",
+            f"{float(found.mean_plus[i]):.6g}",
+            f"{float(self.gap_plus[i]):+.2%}",
+            f"{float(found.mean_minus[i]):.6g}",
+            f"{float(self.gap_minus[i]):+.2%}",
+            f"{float(found.ratio[i]):.6g}",
+            f"{float(self.gap_ratio[i]):+.3%}",
+            f"{float(found.peak_plus[i]):.6g}",
+            f"{float(found.peak_minus[i]):.6g}",
+            worst.name.lower(),
+        )
+
+    def __repr__(self) -> str:
+        if not is_known(self):
+            return super().__repr__()
+        if shape := np.shape(self.law.rho_plus):
+            return f"DesignCheck(batch {shape}: {self.slide!r})"
+        told = f"gamma = {float(self.gamma):.4g}, rate = {float(self.rate):.4g} N/s"
+        pulls = "" if self.law.alpha is None else pulling_text(self.law.alpha)
+        pulls = f"\n({pulls})" if pulls else ""
+        return f"Steady slide, {told}; gaps to the limit\n{self.table}{pulls}"
+
+
+@with_nan
+def check_design(
+    profile: AbstractProfile,
+    bristle: AbstractBristle,
+    eps: Any = (1e-2, 1e-3, 1e-4),
+    gamma: float = 1.0,
+    rate: float = 1.0,
+    support: Spring | None = None,
+) -> DesignCheck:
+    """Steady slides at a few eps (m) beside the limit; prints as a table.
+
+    `gamma`, `rate` (N/s), `support`: as in `steady_slide`. The mean force nears the limit
+    from above where viscosity rules, and from below by half the drop of a slip,
+    `k_h eps/2`, where the tip rests between slips.
+
+    Raises `ValueError` as `steady_slide` does.
+    """
+    slide = steady_slide(profile, bristle, np.atleast_1d(eps), gamma, rate, support)
+    law = friction(profile, bristle)
+    return DesignCheck(law, slide, as_real(gamma), as_real(rate))

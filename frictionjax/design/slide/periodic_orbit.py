@@ -1,0 +1,283 @@
+"""One period of a steady slide, in the tip coordinate; traceable and differentiable.
+
+Under a load that grows at a constant rate a spring-held tip comes to slide periodically:
+z(t + T) = z(t) + eps, T = eps k_h/rate. There z' > 0 throughout, since v = z' obeys
+`eps^gamma v' = rate - (k_h + V'') v`, so time is a function of the tip. With
+`D = eps^gamma z'` (what drives the tip), `U = V_eps'` and `c = rate eps^(gamma+1)`,
+
+    dD/dy = c G/D - k_h eps G - dU/dy,    D(1) = D(0),
+
+one scalar equation over one period, however small eps is. The map D(0) -> D(1) increases,
+its slope is below 1 and grows: Newton's method from below never overshoots. The force in
+the spring is `f = U + D`, and its mean over time is its mean over the way (its own
+equation, times f), so `mean f = int_0^1 D G dy`: what a slip dissipates, over eps.
+"""
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from ..._checks import Real
+from ...model import AbstractPotential
+from ...wiggly import RODAS5P, combine, dense_output
+
+STEPS = 2048  # of one period; 50 to 600 are needed, plateaus of nearly equal folds: 1200
+_TABLEAU = RODAS5P
+_TIMES = np.array(_TABLEAU.times)
+# Of D in a step, in units of the highest wiggle: errors of D never grow, as c G/D^2 > 0,
+# so log D needs few digits where D is small; in log D throughout: 3 times the steps.
+_TOLERANCE, _LOOSEST = 1e-9, 1e-3
+_FIRST, _SHORTEST = 1e-4, 1e-60
+_LARGEST = 0.02  # of the period: a step must not look over a fold
+_NEWTON, _AGAIN = 30, 12
+_ROUGH, _CLOSED = 1e-2, 1e-12  # of log D over a period
+# Of the steepest wiggle, squared: a smaller c is replaced by it. Narrower landings than
+# floats near 1 resolve do not replay. `least_pull` tells what that adds to forces.
+_LEAST = 2e-15
+_FOLD = 2.338  # first zero of Ai(-x): how late a fold is left, in its own scale
+_X, _W = np.polynomial.legendre.leggauss(4)
+_SHARES = 0.5 * (_X + 1)
+
+
+class SlideScene(NamedTuple):
+    """What a period is made of: numbers, all traced.
+
+    `sign`: 1 to the right, -1 to the left. `pull` c = rate eps^(gamma+1), `give` = k_h eps.
+    """
+
+    potential: AbstractPotential
+    eps: Real
+    sign: Real
+    pull: Real
+    give: Real
+
+    def ground(self, x: Real) -> tuple[Real, Real]:
+        """`sign U` and G at the way `x` in the direction of motion, in periods."""
+        force, stretch = self.potential.tip_force(self.sign * x, self.eps)
+        return self.sign * force, stretch
+
+    def terrain(self, x: Real) -> tuple[Real, Real]:
+        """G and `d(sign U)/dx` at the way `x`."""
+        (_, stretch), (climb, _) = jax.jvp(self.ground, (x,), (jnp.ones_like(x),))
+        return stretch, climb
+
+    def slope(self, level: Real, stretch: Real, climb: Real) -> Real:
+        """`dL/dx` of `L = log D`: positive D without a check, and layers of any depth."""
+        drive = jnp.exp(-level)
+        return drive * (self.pull * stretch * drive - self.give * stretch - climb)
+
+
+class PeriodicOrbit(NamedTuple):
+    """A period found: where it starts, its steps (STEPS,) padded with 0, and L there."""
+
+    start: Real
+    steps: Float[Array, " steps"]
+    level: Real
+    kept: Real
+    closed: Real
+    used: Int[Array, ""]
+
+
+def least_pull(slide: SlideScene) -> tuple[SlideScene, Real]:
+    """The slide with a viscosity that floats resolve, and about what that adds to f (N).
+
+    A fold of curvature K is left late by `2.338 K^(-1/3) (c G)^(2/3)`, and away from
+    wiggles a tip is dragged along with `c/(k_h eps)`.
+    """
+    still = jax.lax.stop_gradient(slide)
+    start, steepest, _ = survey_ground(still)
+    least = _LEAST * steepest**2
+    resolved = jnp.maximum(still.pull, least)
+    (stretch, _), (_, bend) = jax.jvp(still.terrain, (start,), (jnp.ones_like(start),))
+    sharp = jnp.maximum(-bend, 1e-300) ** (-1 / 3)
+    late, before = ((c * stretch) ** (2 / 3) for c in (resolved, still.pull))
+    added = _FOLD * sharp * (late - before) + (resolved - still.pull) / still.give
+    return slide._replace(pull=jnp.maximum(slide.pull, least)), added
+
+
+def survey_ground(slide: SlideScene) -> tuple[Real, Real, Real]:
+    """Way to the highest sample of `sign U`, steepest climb, and smallest G."""
+    points = slide.potential.points
+    grid = jnp.arange(points) / points
+    both = jax.vmap(slide.ground)
+    (force, stretch), (climb, _) = jax.jvp(both, (grid,), (jnp.ones_like(grid),))
+    return grid[jnp.argmax(force)], jnp.max(climb), jnp.min(stretch)
+
+
+def _step(slide: SlideScene, x: Real, step: Real, level: Real) -> tuple[Real, list]:
+    """One Rosenbrock step and its stages.
+
+    The terrain does not see L: it is evaluated at all stages at once, a sixth of the
+    time to compile.
+    """
+    stretch, climb = jax.vmap(slide.terrain)(x + step * _TIMES)
+    _, bends = jax.jvp(slide.terrain, (x,), (jnp.ones_like(x),))
+    drive = jnp.exp(-level)
+    first = slide.pull * stretch[0] * drive
+    by_state = -drive * (2 * first - slide.give * stretch[0] - climb[0])
+    by_way = slide.slope(level, *bends)  # linear in both
+    inverse = 1 / (1 / (step * _TABLEAU.gamma) - by_state)
+    stages: list = []
+    for i, (a, c) in enumerate(zip(_TABLEAU.a, _TABLEAU.c, strict=True)):
+        inside = level + combine(a, stages)
+        push = slide.slope(inside, stretch[i], climb[i]) + combine(c, stages) / step
+        push = push + step * _TABLEAU.time_derivative[i] * by_way
+        stages.append(push * inverse)
+    return inside + stages[-1], stages
+
+
+def _once(slide: SlideScene, start: Real, level: Real):
+    """Adaptive steps over a period from `level`; the steps, where it ends, and how many."""
+    height, _ = slide.ground(start)
+
+    def body(state):
+        way, level, step, steps, count, tried = state
+        last = way + step >= 1.0
+        step = jnp.where(last, 1.0 - way, step)
+        new, stages = _step(slide, start + way, step, level)
+        share = height * jnp.exp(-jnp.maximum(level, new))
+        allowed = jnp.clip(_TOLERANCE * share, _TOLERANCE, _LOOSEST)
+        error = jnp.abs(stages[-1]) / allowed
+        good = jnp.isfinite(error) & (error <= 1.0) & (jnp.abs(new - level) < 5.0)
+        ratio = 0.9 * jnp.maximum(error, 1e-6) ** (-1 / _TABLEAU.order)
+        ratio = jnp.where(jnp.isfinite(error), jnp.clip(ratio, 0.2, 5.0), 0.2)
+        ratio = jnp.where(good, ratio, jnp.minimum(ratio, 0.5))
+        steps = jnp.where(good, steps.at[count].set(step), steps)
+        way = jnp.where(good, jnp.where(last, 1.0, way + step), way)
+        level = jnp.where(good, new, level)
+        step = jnp.clip(step * ratio, _SHORTEST, _LARGEST)
+        return way, level, step, steps, count + good, tried + 1
+
+    def go_on(state):
+        way, level, _, _, count, tried = state
+        return (way < 1.0) & (count < STEPS) & (tried < 4 * STEPS) & jnp.isfinite(level)
+
+    state = jnp.zeros(()), level, jnp.asarray(_FIRST), jnp.zeros(STEPS), 0, 0
+    way, level, _, steps, count, _ = jax.lax.while_loop(go_on, body, state)
+    return steps, jnp.where(way >= 1.0, level, jnp.nan), count
+
+
+def _end(slide: SlideScene, period: PeriodicOrbit, level: Real) -> Real:
+    """L after the same steps from another level; in forward mode differentiable."""
+
+    def one(i, state):
+        way, level = state
+        new, _ = _step(slide, period.start + way, period.steps[i], level)
+        return way + period.steps[i], new
+
+    return jax.lax.fori_loop(0, period.used, one, (jnp.zeros(()), level))[1]
+
+
+def replay(
+    slide: SlideScene, period: PeriodicOrbit, level: Real
+) -> tuple[Real, Array, Array]:
+    """The same steps from another level: where it ends, mean and peak of each step.
+
+    Differentiable: steps are given. Returns L at the end, `int D G dx` (N) of each step
+    and the largest `sign f` (N) at its end or a turn inside.
+    """
+    shares = jnp.asarray(_SHARES)
+    turn = jnp.log(slide.pull / slide.give)
+
+    def one(state, step):
+        way, level = state
+        there = step > 0
+        # A step that is not there goes nowhere: its derivatives must stay finite.
+        safe = jnp.where(there, step, 1e-3)
+        x = period.start + way
+        new, stages = _step(slide, x, safe, level)
+
+        def inside(share):
+            return dense_output(_TABLEAU, level, new, stages, share)
+
+        share = _turn(level, new, turn)
+        places = jnp.append(shares, share)
+        forces, stretches = jax.vmap(slide.ground)(x + safe * places)
+        drives = jnp.exp(inside(places))
+        mean = 0.5 * safe * jnp.sum(_W * drives[:-1] * stretches[:-1])
+        peak = forces[-1] + drives[-1]
+        new = jnp.where(there, new, level)
+        mean, peak = jnp.where(there, mean, 0.0), jnp.where(there, peak, -jnp.inf)
+        return (way + step, new), (mean, peak)
+
+    (_, last), (means, peaks) = jax.lax.scan(one, (jnp.zeros(()), level), period.steps)
+    return last, means, peaks
+
+
+def _turn(level: Real, new: Real, turn: Real) -> Real:
+    """Share of a step at which D rises through `rate eps^gamma/k_h`, so that f turns.
+
+    Else its end. Not differentiated, and a straight line does: f is stationary there.
+    """
+    low, high = jax.lax.stop_gradient((level - turn, new - turn))
+    turns = (low < 0) & (high > 0)
+    return jnp.where(turns, -low / jnp.where(turns, high - low, 1.0), 1.0)
+
+
+def find_periodic_orbit(slide: SlideScene) -> PeriodicOrbit:
+    """The periodic slide by Newton's method from below; not differentiable.
+
+    First with steps chosen anew each time, then, as these make the map rough, on the last
+    ones to rounding.
+    """
+    start, steepest, thinnest = survey_ground(slide)
+    low = slide.pull * thinnest / (slide.give * thinnest + steepest)
+    none, far = jnp.zeros(STEPS), jnp.asarray(jnp.inf)
+    begin = PeriodicOrbit(start, none, jnp.log(low), jnp.zeros(()), far, jnp.asarray(0))
+
+    def remeshed(period):
+        steps, _, used = _once(slide, start, period.level)
+        return period._replace(steps=steps, used=used)
+
+    def iterated(renew, limit, most, period):
+        def body(state):
+            period, count = state
+            return _newton(slide, renew(period), limit), count + 1
+
+        def go_on(state):
+            period, count = state
+            good = jnp.isfinite(period.level) & (period.used < STEPS)
+            return (period.closed > limit) & (count < most) & good
+
+        return jax.lax.while_loop(go_on, body, (period, 0))[0]
+
+    rough = iterated(remeshed, _ROUGH, _NEWTON, begin)
+    return iterated(lambda p: p, _CLOSED, _AGAIN, rough._replace(closed=far))
+
+
+def _newton(slide: SlideScene, period: PeriodicOrbit, limit: Real) -> PeriodicOrbit:
+    """A step of Newton's method in D, where the map is convex: dD1/dD0 = kept D1/D0."""
+    one = jnp.ones(())
+    end, kept = jax.jvp(lambda v: _end(slide, period, v), (period.level,), (one,))
+    here, there = jnp.exp(period.level), jnp.exp(end)
+    slope = jnp.clip(kept * there / here, 0.0, 1.0 - 1e-9)
+    new = here + (there - here) / (1 - slope)
+    new = jnp.log(jnp.where(new > 0, new, 0.5 * here))
+    closed = jnp.abs(end - period.level)
+    level = jnp.where(closed <= limit, period.level, new)
+    return period._replace(level=level, kept=kept, closed=closed)
+
+
+def slide_forces(slide: SlideScene) -> tuple[Real, Real, PeriodicOrbit]:
+    """Mean and peak force (N, positive) of a steady slide, and its period.
+
+    Differentiable once: the start of the period by the implicit function theorem, the rest
+    through its steps, which are kept.
+    """
+    still = jax.lax.stop_gradient(slide)
+    period = jax.lax.stop_gradient(find_periodic_orbit(still))
+
+    def totals(slide, level):
+        last, means, peaks = replay(slide, period, level)
+        return last, jnp.sum(means), jnp.max(peaks)
+
+    along = (jnp.ones(()),)
+    _, tangents = jax.jvp(lambda v: totals(still, v), (period.level,), along)
+    _, *by_level = jax.lax.stop_gradient(tangents)
+    end, *both = totals(slide, period.level)
+    moved = (end - jax.lax.stop_gradient(end)) / (1 - period.kept)
+    mean, peak = (value + by * moved for value, by in zip(both, by_level, strict=True))
+    return mean, peak, period

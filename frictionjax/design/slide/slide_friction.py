@@ -1,0 +1,203 @@
+"""The friction that a steady slide shows at a given eps, gamma and rate."""
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+
+from ..._checks import (
+    Real,
+    as_real,
+    as_text,
+    checked,
+    counted,
+    flags,
+    is_known,
+    outcomes,
+    require,
+    require_numbers,
+    require_real,
+    require_x64,
+    with_nan,
+)
+from ..._compile import Program, padded_size
+from ...bristles import AbstractBristle
+from ...model import potential, require_admissible, require_reach
+from ...profiles import AbstractProfile
+from ...supports import Spring
+from ...wiggly import Status
+from .periodic_orbit import (
+    STEPS,
+    PeriodicOrbit,
+    SlideScene,
+    least_pull,
+    slide_forces,
+)
+
+SLIDE_FORCES = ("mean", "peak")  # of a slide, that designs may ask for
+_LANES = 4  # eps at least that are solved at once: one program for a few of them
+_OPEN = 1e-7  # of log D over a period: mean forces right to that
+_ADDED = 1e-5  # of the force: more than that by a viscosity that floats resolve is told
+
+
+class SteadySlide(eqx.Module):
+    """Forces in the spring while a tip slides steadily, of the shape of `eps`.
+
+    `mean_plus`, `peak_plus` (N, > 0): mean over time, and largest, of `l - Phi'(z)` in a
+    slide to the right; `mean_minus`, `peak_minus` (N, < 0) to the left. All tend to
+    rho_plus and rho_minus with eps. `code_plus`, `code_minus`: a `Status` as an integer.
+    """
+
+    eps: Real
+    mean_plus: Real
+    mean_minus: Real
+    peak_plus: Real
+    peak_minus: Real
+    code_plus: Real
+    code_minus: Real
+
+    @property
+    def ratio(self) -> Real:
+        """`-mean_plus/mean_minus`, which tends to `-rho_plus/rho_minus`."""
+        return -self.mean_plus / self.mean_minus
+
+    @property
+    def ok(self) -> Any:
+        """Whether the numbers can be trusted: one bool, or one an eps."""
+        return flags((self.code_plus == 0) & (self.code_minus == 0))
+
+    @property
+    def status(self) -> Any:
+        """The worse `Status` of the two slides, an array of them; integers where traced."""
+        return outcomes(Status, self._worse)
+
+    @property
+    def _worse(self) -> Any:
+        return jnp.maximum(self.code_plus, self.code_minus)
+
+    def __repr__(self) -> str:
+        if not is_known(self):
+            return super().__repr__()
+        names = ("eps", "mean_plus", "mean_minus", "peak_plus", "peak_minus")
+        known = ", ".join(f"{name}={as_text(getattr(self, name))}" for name in names)
+        return f"SteadySlide({known}, status={counted(Status, self._worse)})"
+
+
+class _Sides(NamedTuple):
+    mean: Real
+    peak: Real
+    code: Real
+
+
+class SlideForces(NamedTuple):
+    """Forces of slides to the right and to the left."""
+
+    rho_plus: Real
+    rho_minus: Real
+
+
+def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> _Sides:
+    def one(sign: Real):
+        slide = SlideScene(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
+        resolved, added = least_pull(slide)
+        mean, peak, period = slide_forces(resolved)
+        return _Sides(sign * mean, sign * peak, _code(period, mean, added))
+
+    return jax.vmap(one)(jnp.array([1.0, -1.0]))
+
+
+def slide_at(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> SteadySlide:
+    """The steady slide at one eps; without checks, traceable."""
+    return _joined(eps, _both_sides(potential, eps, gamma, rate, stiffness))
+
+
+def _joined(eps: Real, both: _Sides) -> SteadySlide:
+    return SteadySlide(
+        eps,
+        both.mean[..., 0],
+        both.mean[..., 1],
+        both.peak[..., 0],
+        both.peak[..., 1],
+        both.code[..., 0],
+        both.code[..., 1],
+    )
+
+
+def require_force(force: str) -> None:
+    """Raise `ValueError` unless designs know this force."""
+    require(force in SLIDE_FORCES, "force", force, "'mean' or 'peak'")
+
+
+def forces_of(slide: SteadySlide, force: str) -> SlideForces:
+    """Its mean or its peak forces."""
+    plus, minus = getattr(slide, f"{force}_plus"), getattr(slide, f"{force}_minus")
+    return SlideForces(plus, minus)
+
+
+@Program
+def _forces(potential, eps, gamma, rate, stiffness):
+    return jax.vmap(lambda e: _both_sides(potential, e, gamma, rate, stiffness))(eps)
+
+
+def _code(period: PeriodicOrbit, mean: Real, added: Real) -> Real:
+    closed = period.closed <= _OPEN
+    known = jnp.where(
+        added <= _ADDED * jnp.abs(mean), int(Status.OK), int(Status.STEP_TOO_SMALL)
+    )
+    code = jnp.where(closed, known, int(Status.SOLVER_FAILED))
+    code = jnp.where(~closed & (period.used >= STEPS), int(Status.MAX_STEPS), code)
+    return jnp.where(jnp.isfinite(mean), code, int(Status.NOT_FINITE))
+
+
+def spring_of(support: Spring | None) -> Spring:
+    """The support, of 1 N/m where none is given; raises `ValueError` for other kinds."""
+    if support is None:
+        return Spring(as_real(1.0))
+    known = isinstance(support, Spring)
+    require(known, "support", type(support).__name__, "a frictionjax.supports.Spring")
+    return checked(support)
+
+
+@with_nan
+def steady_slide(
+    profile: AbstractProfile,
+    bristle: AbstractBristle,
+    eps: Any,
+    gamma: Any = 1.0,
+    rate: Any = 1.0,
+    support: Spring | None = None,
+) -> SteadySlide:
+    """Mean and peak force of a steady slide, in both directions.
+
+    `eps` (m): a number or an array of shape (n,). `gamma`: exponent of the viscosity
+    eps^gamma. `rate` (N/s, > 0): of the load, so that the tip moves at rate/k_h on
+    average. `support`: a `Spring`, of 1 N/m where none is given.
+
+    One period is integrated, to its fixed point: see `slide_period`. No transient and no
+    number of slips enters, and derivatives (first ones, in every number of the parts and
+    in eps, gamma, rate) are those of the fixed point. Where rate eps^(gamma+1) is below
+    2e-15 of the steepest wiggle, squared, that takes its place. Where that adds more than
+    1e-5 of a force, as on bristles with ratios in the hundreds, the status is
+    `STEP_TOO_SMALL`.
+
+    Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, and for
+    numbers that are not positive. A slide that is not found has its `status`.
+    """
+    support = spring_of(support)
+    wiggle = potential(profile, bristle)
+    require_x64(wiggle, support)
+    require_numbers("eps", eps, "eps > 0, one or an array of shape (n,)", lambda v: v > 0)
+    require_real("gamma", gamma, "gamma > 0", lambda v: v > 0)
+    require_real("rate", rate, "rate > 0", lambda v: v > 0)
+    require_admissible(wiggle)
+    sizes = jnp.asarray(eps, dtype=float)
+    require(sizes.ndim < 2, "eps", f"shape {sizes.shape}", "a number or shape (n,)")
+    require_reach(wiggle, eps)
+    numbers = as_real(gamma), as_real(rate), support.stiffness
+    several = jnp.atleast_1d(sizes)
+    count = several.shape[0]
+    padded = jnp.pad(several, (0, padded_size(count, _LANES, 2) - count), mode="edge")
+    found = _forces(wiggle, padded, *numbers)
+    wanted = slice(count) if sizes.ndim else 0
+    return _joined(sizes, jax.tree_util.tree_map(lambda leaf: leaf[wanted], found))

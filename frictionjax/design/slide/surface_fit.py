@@ -1,0 +1,249 @@
+"""Inverse design at finite eps: a surface whose steady slides have the wanted friction."""
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..._checks import as_text, require_real, with_nan
+from ...bristles import AbstractBristle
+from ...io import written
+from ...profiles import Fourier
+from ...supports import Spring
+from ..common import Target, require_targets
+from ..surface import MET, ProfileFit, ProfileStatus, fit_profile
+from .json import dump_profile, profile_fields
+from .slide_friction import (
+    SteadySlide,
+    forces_of,
+    require_force,
+    spring_of,
+    steady_slide,
+)
+
+_SETTLED = 1e-6  # of log forces; slides are right to 1e-7
+_DESIGNS = 30
+_FAR = 0.5  # of log forces, the longest step
+_HALVINGS = 6
+_DESIGNED = (*MET, ProfileStatus.CONTRADICTORY)
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class SlideProfileFit:
+    """A surface, least bent for its coefficients, with wanted steady slides at `eps`.
+
+    `targets`, `achieved` (targets, 2): forces to the right and to the left in N, of the
+    kind `force` ("mean" or "peak"). `slides`: of the design, one a target. `fit`: the limit
+    design behind it, with its history and identifiability, whose coefficients are those
+    that the slides need; `limit`: the one for the targets themselves, which slides miss.
+    `history` (designs,): largest relative difference between the forces that a design was
+    made for and those that its slides show; `steps`: how many designs.
+    """
+
+    force: str
+    targets: np.ndarray
+    achieved: np.ndarray
+    slides: tuple[SteadySlide, ...]
+    fit: ProfileFit
+    limit: ProfileFit
+    history: np.ndarray
+    steps: int
+    status: ProfileStatus
+
+    @property
+    def profile(self) -> Fourier:
+        """The surface."""
+        return self.fit.profile
+
+    @property
+    def bristles(self) -> tuple[AbstractBristle | None, ...]:
+        """The bristles on it, one for each target."""
+        return self.fit.bristles
+
+    @property
+    def success(self) -> bool:
+        """Whether the slides show the forces asked for."""
+        return self.status in MET
+
+    @property
+    def residuals(self) -> np.ndarray:
+        """What is missing, relative (targets, 2)."""
+        return self.achieved / self.targets - 1
+
+    @property
+    def message(self) -> str:
+        """Why, for people."""
+        asked = f"{self.force} forces {_text(self.targets)} at eps = "
+        asked += as_text(self.slides[0].eps)
+        if self.status == ProfileStatus.MET:
+            return f"{asked}: found in {self.steps} designs"
+        shown = f"slides show {_text(self.achieved)}"
+        if self.status in _DESIGNED:
+            return f"{asked}: {self.status.message}; {shown}"
+        if self.status in (ProfileStatus.NO_SLIDE, ProfileStatus.NOT_SETTLED):
+            return f"{asked}: {self.status.message} in {self.steps} designs; {shown}"
+        return f"{asked}: not reached; {shown}, in the limit: {self.fit.message}"
+
+    def to_json(self, path: Any = None) -> str:
+        """Everything but the iterates' shapes as JSON; written to `path` where given."""
+        return written(dump_profile(self), path)
+
+    @classmethod
+    def from_json(cls, source: Any) -> "SlideProfileFit":
+        """The result again, from the text or the path of its JSON.
+
+        Bristles given as functions are None, the iterates' shapes empty. Raises
+        `ValueError` for what is no such JSON.
+        """
+        return cls(**profile_fields(source))
+
+    def plot(self):
+        """The surface, beside the limit's, and how it was found."""
+        from ...plot import draw_slide_profile_fit
+
+        return draw_slide_profile_fit(self)
+
+    def __repr__(self) -> str:
+        return f"SlideProfileFit({self.status.name}: {self.message})"
+
+
+def _text(forces: np.ndarray) -> str:
+    return "; ".join(as_text(row) for row in forces) + " N"
+
+
+class _Trial(NamedTuple):
+    """A limit design for slides that show `at` of its coefficients, in logarithms.
+
+    `shown` (targets, 2): log |forces| of its slides; `off`: by how much they show more
+    than the design was made for.
+    """
+
+    at: np.ndarray
+    fit: ProfileFit
+    slides: tuple[SteadySlide, ...]
+    shown: np.ndarray
+    off: np.ndarray
+
+    @property
+    def designed(self) -> bool:
+        """Whether the targets are met in the limit, as well as one surface can."""
+        return self.fit.status in _DESIGNED
+
+    @property
+    def known(self) -> bool:
+        return self.designed and all(slide.ok for slide in self.slides)
+
+    @property
+    def apart(self) -> float:
+        return float(np.max(np.abs(self.off)))
+
+
+@with_nan
+def fit_slide_profile(
+    targets: Any,
+    eps: Any,
+    gamma: Any = 1.0,
+    rate: Any = 1.0,
+    support: Spring | None = None,
+    force: str = "mean",
+    **options: Any,
+) -> SlideProfileFit:
+    """A surface whose steady slides at `eps` (m) have the targets' forces.
+
+    `targets`: a `Target` or several, one surface for all; their `rho_plus` and `rho_minus`
+    (N) are those of slides, `force` "mean", over time, or "peak", the largest. `gamma`,
+    `rate` (N/s), `support`: as in `steady_slide`. `options`: of `fit_profile`.
+
+    Slides show a little more or less than the coefficients of a surface. The limit design
+    is made for what is then left of the targets, until both agree (Broyden's method in
+    logarithms): 2 to 6 designs to 1e-6 where it was tried. Only surfaces that are least
+    bent for their coefficients are looked at: one with other curvatures at its folds may
+    meet several targets better. Targets that contradict each other, or are out of reach,
+    end as those of `fit_profile` do, with its statuses.
+
+    Raises `ValueError` as `fit_profile` and `steady_slide` do.
+    """
+    many, _ = require_targets(targets, options.get("pulling", False))
+    require_force(force)
+    for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
+        require_real(name, value, f"{name} > 0", lambda v: v > 0)
+    support = spring_of(support)
+
+    def tried(at: np.ndarray) -> _Trial:
+        shares = np.exp(at).reshape(-1, 2)
+        asked = [_shared(t, s) for t, s in zip(many, shares, strict=True)]
+        fit = fit_profile(asked, **options)
+        parts: Any = fit.bristles
+        slides = tuple(
+            steady_slide(fit.profile, part, eps, gamma, rate, support) for part in parts
+        )
+        found = np.array([forces_of(slide, force) for slide in slides], dtype=float)
+        has = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in fit.coefficients])
+        shown = np.log(np.abs(found))
+        off = (shown - np.log(np.abs(has))).ravel() - at
+        return _Trial(at, fit, slides, shown, off)
+
+    first = tried(np.zeros(2 * len(many)))
+    last, history = _settled(tried, first)
+    wanted = np.array([[float(t.rho_plus), float(t.rho_minus)] for t in many])
+    return SlideProfileFit(
+        force=force,
+        targets=wanted,
+        achieved=np.sign(wanted) * np.exp(last.shown),
+        slides=last.slides,
+        fit=last.fit,
+        limit=first.fit,
+        history=history,
+        steps=history.size,
+        status=_status(last, wanted),
+    )
+
+
+def _shared(target: Target, shares: np.ndarray) -> Target:
+    """The coefficients of slides that show `shares` (2,) of them as the target."""
+    forces = target.rho_plus / shares[0], target.rho_minus / shares[1]
+    uncertainty = target.uncertainty
+    if uncertainty is not None:
+        uncertainty = np.broadcast_to(np.asarray(uncertainty, dtype=float), 2) / shares
+    return target._replace(
+        rho_plus=float(forces[0]), rho_minus=float(forces[1]), uncertainty=uncertainty
+    )
+
+
+def _status(last: _Trial, wanted: np.ndarray) -> ProfileStatus:
+    if not last.designed:
+        return last.fit.status
+    if not last.known:
+        return ProfileStatus.NO_SLIDE
+    if last.apart > _SETTLED:
+        return ProfileStatus.NOT_SETTLED
+    # What several slides show is right to that: the limit design takes it for a conflict.
+    met = np.max(np.abs(last.shown - np.log(np.abs(wanted)))) <= _SETTLED
+    return ProfileStatus.MET if met else last.fit.status
+
+
+def _settled(
+    tried: Callable[[np.ndarray], _Trial], last: _Trial
+) -> tuple[_Trial, np.ndarray]:
+    """Broyden's method from the first trial, and how far each design was from settled.
+
+    A step to a design or a slide that is not found is halved; where that does not help,
+    the design that could not be made is the answer.
+    """
+    pull, history = -np.eye(last.at.size), [last.apart]
+    while last.known and last.apart > _SETTLED and len(history) < _DESIGNS:
+        move = np.linalg.solve(pull, -last.off)
+        move *= min(1.0, _FAR / np.max(np.abs(move)))
+        for _ in range(_HALVINGS):
+            found = tried(last.at + move)
+            history.append(found.apart)
+            if found.known:
+                break
+            move = 0.5 * move
+        else:
+            return found, np.array(history)
+        change = found.off - last.off - pull @ move
+        pull = pull + np.outer(change, move) / (move @ move)
+        last = found
+    return last, np.array(history)

@@ -1,0 +1,5 @@
+"""The surface that gives wanted friction coefficients, least bent of all."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,263 @@
+"""A surface that gives the friction one wants: least bending energy at given targets."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..._checks import require, require_flags, require_real, require_whole, with_nan
+from ..._compile import padded_size
+from ..common import (
+    AbstractLaw,
+    FixedLaw,
+    FreeLaw,
+    Geometry,
+    Target,
+    extreme_slopes,
+    free_parameter,
+    require_bounds,
+    require_targets,
+    with_arrays,
+)
+from .barrier import FitShape, FitTask, free_energy
+from .least_bent import least_bent
+from .multistart import StartRuns, descended
+from .report import report_fit
+from .result import ProfileFit
+from .starts import SHARES, places
+
+_KEPT = 1000  # steps that there is room for: other budgets compile nothing new
+_FIRM = 50.0  # above every multiplier of the extreme slopes, which their ratio raises
+
+
+class SurfaceProblem(NamedTuple):
+    """A fit, checked: what was asked for and the task of the program.
+
+    `scale`: of the residuals that the program takes, so that the largest weighs 1.
+    """
+
+    targets: list[Target]
+    law: AbstractLaw
+    layout: FitShape
+    task: FitTask
+    scale: float
+    bounds: dict[str, float | None]
+
+
+@with_nan
+def fit_profile(
+    targets: Any,
+    harmonics: int = 16,
+    starts: int = 8,
+    free: Sequence[str] = (),
+    bounds: Mapping[str, Any] | None = None,
+    smallest_radius: float | None = None,
+    largest_amplitude: float | None = None,
+    seed: int = 0,
+    max_steps: int = 1000,
+    pulling: bool = False,
+) -> ProfileFit:
+    """The least bent surface whose friction coefficients are the targets.
+
+    `targets`: a `Target` or several, one surface for all. `harmonics`: of the profile.
+    `starts`: optimisations from random surfaces, and free parameters, at once. `free`:
+    numbers of the bristles that are fitted too, by name, each within its `bounds`
+    `{name: (low, high)}`; a bristle in several targets is one bristle. Bristles press,
+    alpha > 0, before and after, unless `pulling`, which allows those with alpha < 0; a fit
+    does not change the sign. `smallest_radius`: of curvature, `1/max |w''|`, and
+    `largest_amplitude`: `max w - min w`, in periods.
+
+    Coefficients see only the extreme slopes (Lemmas 2 and 3), so infinitely many surfaces
+    fit: this is the one with the least `int_0^1 w''^2`; `.bending_bound` proves how near.
+    `.identifiability` and `.family` say what is left open. Where nothing is flattened and
+    no bound is felt it has a closed form, taken in one step; where the problem is convex,
+    a start whose optimum is proven stands for the others, which do not run. Every iterate
+    is admissible (`1 + a omega > 0`, the bristles' own bounds; free bristles keep 0.1% from
+    the steepest slopes that they follow) and keeps the other bounds with a margin of 0.5%.
+    Targets that no surface meets come back with the best weighted compromise and a
+    `.status` and `.message` that say why.
+
+    Raises `ValueError` for targets of the wrong sign, shape or kind, weights or
+    uncertainties that are not positive, bristles that press on nothing, or pull, and names
+    and bounds of free parameters that do not fit together.
+    """
+    require_flags(pulling=pulling)
+    counts = ("harmonics", harmonics), ("starts", starts), ("max_steps", max_steps)
+    for name, value in counts:
+        require_whole(name, value)
+    require_whole("seed", seed, 0)
+    problem = surface_problem(
+        targets, harmonics, free, bounds, smallest_radius, largest_amplitude, pulling
+    )
+    apart: Any = np.array(places(problem.layout, starts))
+    runs = least_bent(problem.layout, problem.task, starts)
+    if runs is None:
+        runs = _descended(problem, apart, seed, max_steps)
+    return report_fit(problem, runs, apart)
+
+
+def _descended(problem: SurfaceProblem, apart: Any, seed: int, max_steps: int) -> StartRuns:
+    """From random surfaces and free parameters to the optimum of each start."""
+    layout, law, starts = problem.layout, problem.law, apart.size
+    keys: Any = jax.random.split(jax.random.PRNGKey(seed), starts)
+    shares: Any = np.random.default_rng(seed).uniform(*SHARES, size=(starts, layout.free))
+    if isinstance(law, FreeLaw):
+        shares[0] = np.clip(np.asarray(law.shares()), *SHARES)
+    kept = padded_size(max_steps, _KEPT)
+    return descended(layout, problem.task, apart, keys, shares, kept, max_steps)
+
+
+def surface_problem(
+    targets: Any,
+    harmonics: int = 16,
+    free: Sequence[str] = (),
+    bounds: Mapping[str, Any] | None = None,
+    radius: float | None = None,
+    amplitude: float | None = None,
+    pulling: bool = False,
+) -> SurfaceProblem:
+    """The problem, checked, in the units of its targets; see `fit_profile`."""
+    asked, known = require_targets(targets, pulling)
+    for name, value in (("smallest_radius", radius), ("largest_amplitude", amplitude)):
+        if value is not None:
+            require_real(name, value, f"{name} > 0 in periods", lambda v: v > 0)
+    law = _law(asked, known, free, bounds)
+    count = len(law.free) if isinstance(law, FreeLaw) else 0
+    layout = FitShape(int(harmonics), radius is not None, amplitude is not None, count)
+    wanted = np.array([[float(t.rho_plus), float(t.rho_minus)] for t in asked])
+    sizes = np.abs(wanted)
+    if asked[0].uncertainty is not None:
+        sizes = np.array([np.broadcast_to(t.uncertainty, 2) for t in asked], dtype=float)
+    weights = np.array([[float(t.weight)] for t in asked])
+    factors = np.sqrt(weights) / sizes
+    scale = float(np.max(factors * np.abs(wanted)))
+    plus, minus = _expected(wanted, _own_geometry(law))
+    slope = 0.5 * (plus + minus)
+    if radius is not None:
+        slope = min(slope, 0.25 / float(radius))
+    if amplitude is not None:
+        slope = min(slope, harmonics * float(amplitude))
+    uneven = max(plus / minus, minus / plus)
+    array: Any = np.asarray
+    task = FitTask(
+        law=law,
+        coefficients=array(wanted),
+        factors=array(factors / scale),
+        curvature=array(np.inf if radius is None else 1 / float(radius) / slope),
+        height=array(np.inf if amplitude is None else float(amplitude) / slope),
+        slope=array(slope),
+        energy=array(free_energy(plus / slope, minus / slope, harmonics)),
+        firm=array(_FIRM * min(uneven, float(harmonics))),
+    )
+    given = {
+        "smallest_radius": None if radius is None else float(radius),
+        "largest_amplitude": None if amplitude is None else float(amplitude),
+    }
+    return SurfaceProblem(asked, law, layout, task, scale, given)
+
+
+def _expected(wanted: np.ndarray, known: Geometry) -> tuple[float, float]:
+    """Slopes of about the size asked for, inside what the bristles can follow."""
+    plus, minus = extreme_slopes(wanted[:, 0], wanted[:, 1], known.a, known.alpha)
+    highest, lowest = 0.9 * np.min(known.upper), -0.9 * np.max(known.lower)
+    mean_plus, mean_minus = (
+        float(np.mean(np.minimum(np.where(side > 0, side, np.inf), limit)))
+        for side, limit in ((plus, highest), (-minus, lowest))
+    )
+    finite = [side for side in (mean_plus, mean_minus) if np.isfinite(side)]
+    other = max(finite, default=1.0)
+    return min(mean_plus, 1e3 * other), min(mean_minus, 1e3 * other)
+
+
+def _law(
+    targets: list[Target],
+    known: list[Geometry],
+    free: Sequence[str],
+    bounds: Mapping[str, Any] | None,
+) -> FixedLaw | FreeLaw:
+    names = _names_of(free)
+    meant = "a mapping from names to pairs (low, high)"
+    require(bounds is None or isinstance(bounds, Mapping), "bounds", bounds, meant)
+    given = dict(bounds or {})
+    for name in given:
+        require(name in names, "bounds", name, f"names in free = {names}")
+    if not names:
+        return FixedLaw(Geometry(*(np.stack(one) for one in zip(*known, strict=True))))
+    distinct: list[Any] = []
+    which = [_index_of(target.bristle, distinct) for target in targets]
+    bristles = tuple(with_arrays(bristle) for bristle in distinct)
+    numbers, lows, highs = [], [], []
+    for name in names:
+        allowed = f"bounds = {{{name!r}: (low, high), ...}}"
+        require(name in given, "bounds", ", ".join(given) or "none", allowed)
+        for index, number in _numbers_called(name, bristles):
+            low, high = _bounds_of(name, number, bristles[index], given[name])
+            numbers.append((index, number))
+            lows.append(low)
+            highs.append(high)
+    law = FreeLaw(
+        bristles, tuple(which), tuple(numbers), jnp.asarray(lows), jnp.asarray(highs)
+    )
+    _require_geometry(law, names)
+    return law
+
+
+def _names_of(free: Any) -> list[str]:
+    names = [free] if isinstance(free, str) else free
+    words = isinstance(names, list | tuple) and all(isinstance(n, str) for n in names)
+    require(words, "free", str(free), "a name or a list of names")
+    require(len(set(names)) == len(names), "free", str(free), "every name once")
+    return [str(name) for name in names]
+
+
+def _own_geometry(law: FixedLaw | FreeLaw) -> Geometry:
+    """Of the bristles as they are."""
+    if isinstance(law, FixedLaw):
+        return law.known
+    return Geometry(*map(np.asarray, law.at(law.shares())))
+
+
+def _index_of(bristle: Any, distinct: list[Any]) -> int:
+    for index, known in enumerate(distinct):
+        if known is bristle:
+            return index
+    distinct.append(bristle)
+    return len(distinct) - 1
+
+
+def _numbers_called(name: str, bristles: tuple) -> list[tuple[int, Any]]:
+    found, problem = [], None
+    for index, bristle in enumerate(bristles):
+        try:
+            found.append((index, free_parameter(bristle, name)))
+        except ValueError as error:
+            problem = error
+    if not found and problem is not None:
+        raise problem
+    return found
+
+
+def _bounds_of(name: str, number: Any, bristle: Any, given: Any) -> tuple[float, float]:
+    label = f"bounds of {name!r}"
+    require(given is not None, label, None, "a pair (low, high)")
+    require_bounds(number, bristle, given, label)
+    low, high = np.clip(np.asarray(given, dtype=float), *number.range_of(bristle)).tolist()
+    own = float(number.now(bristle))
+    inside = low <= own <= high
+    require(inside, label, (low, high), f"low <= {own!r} <= high")
+    return low, high
+
+
+def _require_geometry(law: FreeLaw, names: list[str]) -> None:
+    """Every free parameter at either end leaves a bristle there is."""
+    own = np.asarray(law.shares())
+    for index, (_, number) in enumerate(law.free):
+        for end in (0.0, 1.0):
+            share = own.copy()
+            share[index] = end
+            known = Geometry(*map(np.asarray, law.at(jnp.asarray(share))))
+            good = np.all(np.isfinite(known.a)) and np.all(np.isfinite(known.alpha))
+            value = float(law.values(jnp.asarray(share))[index])
+            require(good, f"bounds of {number.name!r}", value, "a bristle with that number")

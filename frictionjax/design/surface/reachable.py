@@ -1,0 +1,138 @@
+"""Which coefficients a surface within the bounds can reach, in numbers."""
+
+from typing import Any
+
+import jax
+import numpy as np
+
+from ..._checks import as_text, no_less, no_more
+from ..common import AbstractLaw, FreeLaw, Geometry, extreme_slopes
+from .barrier import ORDERS, FitShape, basis
+
+_SAMPLES = 512  # of free numbers within their bounds, ends not counted
+_CORNERS = 6  # free numbers of which every combination of ends is looked at
+
+
+def slopes_asked(known: Geometry, coefficients: np.ndarray) -> np.ndarray:
+    """Extreme slopes (omega_plus, -omega_minus) of each target, (targets, 2).
+
+    NaN where no slope gives the coefficient.
+    """
+    rho_plus, rho_minus = coefficients.T
+    plus, minus = extreme_slopes(rho_plus, rho_minus, known.a, known.alpha)
+    both = np.stack([plus, -minus], axis=1)
+    return np.where(np.isfinite(both) & (both > 0), both, np.nan)
+
+
+def followed(known: Geometry, slopes: np.ndarray) -> bool:
+    """Whether every bristle follows the slopes that its target asks for."""
+    limits = np.stack([known.upper, -np.asarray(known.lower)], axis=1)
+    return bool(np.all(slopes < limits))
+
+
+def limits_of(law: AbstractLaw, free: Any) -> list[tuple[float, float]]:
+    """`coefficient_limits` of each target; the widest where bristles have free numbers."""
+    if not isinstance(law, FreeLaw):
+        return [coefficient_limits(one) for one in _each(law.at(free))]
+    own, count = np.asarray(law.shares()), len(law.free)
+    shares = np.random.default_rng(0).uniform(size=(_SAMPLES, count))
+    corners = np.indices((2,) * count).reshape(count, -1).T if count <= _CORNERS else own
+    shares = np.concatenate([own[None], np.atleast_2d(free), shares, corners])
+    known = Geometry(*map(np.asarray, jax.jit(jax.vmap(law.at))(shares)))
+    rows = []
+    for index in range(known.alpha.shape[1]):
+        some = Geometry(*(value[:, index] for value in known))
+        ends = [coefficient_limits(one) for one in _each(some) if _alike(one, some)]
+        rows.append((max(high for high, _ in ends), min(low for _, low in ends)))
+    return rows
+
+
+def _each(known: Geometry) -> list[Geometry]:
+    return [Geometry(*map(float, row)) for row in zip(*known, strict=True)]
+
+
+def _alike(one: Geometry, every: Geometry) -> bool:
+    """Whether a bristle presses the way that the first does."""
+    return bool(np.isfinite(one.a) and one.alpha * every.alpha[0] > 0)
+
+
+def coefficient_limits(known: Geometry) -> tuple[float, float]:
+    """Ends of the coefficients (N) that slopes the bristle can follow give.
+
+    `rho_plus` lies between 0 and the first, `rho_minus` between the second and 0.
+    """
+    high = known.alpha * _mu(known.a, known.upper)
+    low = known.alpha * _mu(known.a, known.lower)
+    return max(high, low), min(high, low)
+
+
+def _mu(a: float, omega: float) -> float:
+    """`omega/(1 + a omega)` (Lemma 3) with its limits at infinity and at `-1/a`."""
+    if np.isinf(omega):
+        return 1 / a if a * omega > 0 else omega
+    stretch = 1 + a * omega
+    return omega / stretch if stretch > 1e-12 else float(np.copysign(np.inf, omega))
+
+
+def reachable_share(
+    layout: FitShape, plus: float, minus: float, curvature: float, height: float
+) -> float:
+    """The largest multiple of the slopes (`plus`, -`minus`) that the bounds leave room for.
+
+    A linear program (HiGHS), the lowest slope half a period from the highest.
+    """
+    from scipy.optimize import linprog  # 0.3 s, for targets out of reach only
+
+    slopes, bends, heights = (basis(layout.harmonics, layout.points, k) for k in ORDERS)
+    half, none = layout.points // 2, np.zeros((layout.points, 1))
+    one = none + 1
+    blocks = [
+        (slopes, -plus * one, none, none, 0.0),
+        (-slopes, -minus * one, none, none, 0.0),
+        (-slopes[:1], plus * one[:1], none[:1], none[:1], 0.0),
+        (slopes[half : half + 1], minus * one[:1], none[:1], none[:1], 0.0),
+    ]
+    if layout.sharp:
+        blocks += [(side * bends, none, none, none, curvature) for side in (1, -1)]
+    if layout.high:
+        blocks += [(heights, none, -one, none, 0.0), (-heights, none, none, -one, 0.0)]
+        blocks += [(0 * slopes[:1], none[:1], one[:1], one[:1], height)]
+    rows = np.concatenate([np.concatenate(block[:4], axis=1) for block in blocks])
+    ends = np.concatenate([np.full(len(block[0]), block[4]) for block in blocks])
+    aim = np.zeros(rows.shape[1])
+    aim[-3] = -1.0
+    found = linprog(aim, rows, ends, bounds=(None, None), method="highs")
+    return float(-found.fun) if found.status == 0 else np.inf
+
+
+def reachable_text(
+    limits: list[tuple[float, float]],
+    harmonics: int,
+    asked: np.ndarray,
+    within: str = "",
+) -> str:
+    """The reachable set in words, one sentence.
+
+    `limits`: of each target's coefficients; `asked`: slopes of `slopes_asked`. `within`:
+    what the bounds on the surface leave room for, if there are any.
+    """
+    parts = []
+    for index, (high, low) in enumerate(limits):
+        name = f"targets[{index}]: " if len(limits) > 1 else ""
+        span = [f"rho_plus < {no_more(high)} N"] if np.isfinite(high) else []
+        span += [f"rho_minus > {no_less(low)} N"] if np.isfinite(low) else []
+        parts.append(f"{name}{' and '.join(span) or 'any rho_plus > 0 > rho_minus'}")
+    ratios = ", ".join(as_text(p / m) for p, m in asked if np.isfinite(p / m))
+    parts.append(
+        f"omega_plus/|omega_minus| from 1/{harmonics} to {harmonics} with {harmonics} "
+        f"harmonics{f' (asked for: {ratios})' if ratios else ''}"
+    )
+    return "reachable: " + "; ".join([*parts, within] if within else parts)
+
+
+def share_text(share: float, slopes: np.ndarray) -> str:
+    """What `reachable_share` found for these slopes (omega_plus, -omega_minus)."""
+    return (
+        f"{as_text(min(share, 1.0))} of the slopes asked for, {as_text(slopes[0])} and "
+        f"{as_text(-slopes[1])}, within the bounds on the surface"
+    )

@@ -1,0 +1,261 @@
+"""From what the program computed to what the user is told."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..._checks import as_text
+from ..._compile import Program
+from ...model import coefficients_jit, potential
+from ...profiles import Fourier
+from ..common import FreeLaw, Geometry
+from .barrier import EDGE, ROW_MARGIN, bending_energy, heights_of_waves
+from .history import History, Start
+from .multistart import TARGET_MET, StartRuns, targets_met
+from .open_directions import identifiability
+from .reachable import (
+    followed,
+    limits_of,
+    reachable_share,
+    reachable_text,
+    share_text,
+    slopes_asked,
+)
+from .result import ProfileFit
+from .status import MET, ProfileStatus
+
+_SURE = 0.99  # of random targets that agree with one surface have a smaller chi2
+_TIE = 1e-9  # relative difference of losses that counts as none
+_NEAR = 1e-3  # share of a bound that counts as reached
+
+
+def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
+    """The result of the best start; see `ProfileFit`."""
+    task = problem.task
+    slope = float(task.slope)
+    losses = np.sum(np.asarray(runs.settled.residuals) ** 2, axis=1) * problem.scale**2
+    energies = slope**2 * np.sum(np.asarray(runs.settled.waves) ** 2, axis=1)
+    order = _sorted(losses, energies)
+    best = int(order[0])
+    profile = Fourier(*_series(runs.settled.waves[best], np.asarray(task.slope)))
+    cos: Any = np.asarray(profile.cos)
+    sin: Any = np.asarray(profile.sin)
+    free = runs.settled.free[best]
+    bristles = _bristles(problem, free)
+    # They are computed while the starts are listed.
+    found = tuple(coefficients_jit(potential(profile, bristle)) for bristle in bristles)
+    wanted = np.asarray(task.coefficients)
+    met = targets_met(task, runs.settled.residuals)
+    statuses = [_status(problem, runs, i, losses[i], met[i]) for i in range(order.size)]
+    status = statuses[best]
+    starts = tuple(
+        _start(problem, runs, int(i), statuses[i], losses[i], energies[i], places[i])
+        for i in order
+    )
+    history = _history(problem, runs)
+    reached = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in found])
+    return ProfileFit(
+        profile=profile,
+        bristles=bristles,
+        coefficients=found,
+        targets=wanted,
+        bending_energy=bending_energy(cos, sin),
+        bending_bound=slope**2 * max(0.0, float(runs.bound[best])),
+        residuals=reached - wanted,
+        largest_error=float(np.max(np.abs(reached / wanted - 1))),
+        chi2=float(losses[best]),
+        degrees_of_freedom=_freedom(problem),
+        misfit=float(np.sqrt(losses[best] / wanted.size)),
+        success=status in MET,
+        status=status,
+        message=_message(problem, runs, best, status, reached, losses[best]),
+        starts=starts,
+        history=history,
+        identify=partial(identifiability, task.law, cos, sin, free),
+        free=_free_values(problem, free),
+        bounds=problem.bounds,
+    )
+
+
+@Program
+def _series(waves: Any, slope: Any) -> tuple[Any, Any]:
+    """Compiled: NumPy arrays become JAX arrays in 30 us so, by `asarray` in 70."""
+    cos, sin = heights_of_waves(waves)
+    return slope * cos, slope * sin
+
+
+def _sorted(losses: np.ndarray, energies: np.ndarray) -> np.ndarray:
+    """Best first: by loss, and by bending energy among losses that tie."""
+    filled = np.where(np.isfinite(losses), losses, np.inf)
+    level = np.min(filled)
+    tied = filled <= level * (1 + _TIE) + TARGET_MET**2
+    return np.lexsort((np.where(tied, energies, filled), ~tied))
+
+
+def _bristles(problem: Any, free: Any) -> tuple:
+    if not isinstance(problem.law, FreeLaw):
+        return tuple(target.bristle for target in problem.targets)
+    bristles = problem.law.bristles_at(free)
+    return tuple(bristles[index] for index in problem.law.which)
+
+
+def _free_values(problem: Any, free: Any) -> dict[str, float]:
+    """By name; with the bristle's index in front where several have it."""
+    if not isinstance(problem.law, FreeLaw):
+        return {}
+    values = np.asarray(problem.law.values(free))
+    names = [number.name for _, number in problem.law.free]
+    labels = [
+        name if names.count(name) == 1 else f"bristles[{index}].{name}"
+        for (index, _), name in zip(problem.law.free, names, strict=True)
+    ]
+    return dict(zip(labels, map(float, values), strict=True))
+
+
+def _status(
+    problem: Any, runs: StartRuns, index: int, loss: float, met: bool
+) -> ProfileStatus:
+    if not np.isfinite(loss):
+        return ProfileStatus.NOT_FINITE
+    if not bool(runs.path.done[index]):
+        return ProfileStatus.MAX_STEPS
+    if not bool(runs.settled.met[index]):
+        return _bound_reached(problem, runs, index)
+    if met:
+        return ProfileStatus.MET
+    given = problem.targets[0].uncertainty is not None
+    if given and loss <= _likely(_freedom(problem)):
+        return ProfileStatus.WITHIN_UNCERTAINTY
+    return ProfileStatus.CONTRADICTORY
+
+
+def _freedom(problem: Any) -> int:
+    """Residuals that two slopes and the free parameters leave."""
+    return max(0, problem.task.coefficients.size - 2 - problem.layout.free)
+
+
+def _likely(freedom: int) -> float:
+    from scipy.stats import chi2  # 0.5 s, for targets with uncertainties only
+
+    return float(chi2.ppf(_SURE, max(freedom, 1)))
+
+
+def _bound_reached(problem: Any, runs: StartRuns, index: int) -> ProfileStatus:
+    room = {name: float(values[index]) for name, values in runs.room.items()}
+    fixed = not problem.layout.free
+    if fixed and not followed(problem.law.known, _asked(problem, runs, index)):
+        return ProfileStatus.INADMISSIBLE
+    if room["slopes"] < _NEAR + EDGE:
+        return ProfileStatus.INADMISSIBLE
+    margin = 1 - ROW_MARGIN + _NEAR
+    if room.get("curvature", 1.0) < margin:
+        return ProfileStatus.TOO_SHARP
+    if room.get("height", 1.0) < margin:
+        return ProfileStatus.TOO_HIGH
+    wanted = np.asarray(runs.settled.wanted[index])
+    if not fixed and _within(wanted, problem.layout.harmonics):
+        return ProfileStatus.OUT_OF_BOUNDS
+    return ProfileStatus.TOO_FEW_HARMONICS
+
+
+def _within(wanted: np.ndarray, harmonics: int) -> bool:
+    return bool(np.all(wanted > 0) and np.max(wanted / wanted[::-1]) < harmonics)
+
+
+def _message(
+    problem: Any,
+    runs: StartRuns,
+    best: int,
+    status: ProfileStatus,
+    reached: Any,
+    loss: float,
+) -> str:
+    if status == ProfileStatus.MET:
+        return status.message
+    nearest = "; ".join(
+        f"rho_plus = {as_text(row[0])} N, rho_minus = {as_text(row[1])} N"
+        for row in reached
+    )
+    if status in (ProfileStatus.CONTRADICTORY, ProfileStatus.WITHIN_UNCERTAINTY):
+        misfit = np.sqrt(loss / reached.size)
+        unit = "uncertainties" if problem.targets[0].uncertainty is not None else "targets"
+        return f"{status.message}; rms residual {misfit:.3g} of the {unit}: {nearest}"
+    if status in (ProfileStatus.MAX_STEPS, ProfileStatus.NOT_FINITE):
+        return status.message
+    return f"{status.message}; {_reachable(problem, runs, best)}; nearest: {nearest}"
+
+
+def _asked(problem: Any, runs: StartRuns, index: int) -> np.ndarray:
+    """Slopes that the targets ask of their bristles as a start found them."""
+    known = Geometry(*map(np.asarray, problem.law.at(runs.settled.free[index])))
+    return slopes_asked(known, np.asarray(problem.task.coefficients))
+
+
+def _reachable(problem: Any, runs: StartRuns, best: int) -> str:
+    task, layout = problem.task, problem.layout
+    asked = _asked(problem, runs, best)
+    within = ""
+    if (layout.sharp or layout.high) and np.all(np.isfinite(asked)):
+        # The best compromise, which lies between the targets.
+        wanted = np.asarray(runs.settled.wanted[best]) * float(task.slope)
+        slopes = np.clip(wanted, np.min(asked, axis=0), np.max(asked, axis=0))
+        plus, minus = (slopes / float(task.slope)).tolist()
+        bounds = float(task.curvature), float(task.height)
+        share = reachable_share(layout, plus, minus, *bounds)
+        within = share_text(share, slopes)
+    limits = limits_of(task.law, runs.settled.free[best])
+    return reachable_text(limits, layout.harmonics, asked, within)
+
+
+def _start(
+    problem: Any,
+    runs: StartRuns,
+    index: int,
+    status: ProfileStatus,
+    loss: float,
+    energy: float,
+    place: float,
+) -> Start:
+    values = _free_values(problem, runs.settled.free[index])
+    ran = bool(runs.ran[index])
+    return Start(
+        number=index,
+        status=status,
+        loss=float(loss),
+        bending_energy=float(energy),
+        place=float(place),
+        steps=int(runs.path.steps[index]) if ran else 0,
+        free=tuple(values.values()),
+        ran=ran,
+    )
+
+
+def _history(problem: Any, runs: StartRuns) -> History:
+    slope, layout = float(problem.task.slope), problem.layout
+    x: Any = np.asarray(runs.path.x)[:, : int(np.max(np.asarray(runs.path.steps)))]
+    first = 2 * layout.harmonics
+    cos, sin = heights_of_waves(x[..., :first])
+    steps = x.shape[1]
+    free = x[..., x.shape[-1] - layout.free :]
+    if isinstance(problem.law, FreeLaw):
+        low, high = np.asarray(problem.law.low), np.asarray(problem.law.high)
+        free = low + (high - low) * free
+    rows = History(
+        loss=problem.scale**2 * np.asarray(runs.misfit)[:, :steps],
+        bending_energy=slope**2 * np.sum(x[..., :first] ** 2, axis=-1),
+        barrier=np.asarray(runs.path.weight)[:, :steps],
+        decrement=np.asarray(runs.path.decrement)[:, :steps],
+        omega_plus=slope * x[..., first + 1],
+        omega_minus=-slope * x[..., first + 3],
+        cos=slope * np.asarray(cos),
+        sin=slope * np.asarray(sin),
+        free=free,
+    )
+    run = np.asarray(runs.ran)
+    return rows if run.all() else History(*(_of_starts(run, row) for row in rows))
+
+
+def _of_starts(run: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """The rows of starts that were run, NaN for others."""
+    return np.where(run.reshape(-1, *(1,) * (rows.ndim - 1)), rows, np.nan)

@@ -1,0 +1,93 @@
+"""What slips say: where the tip has passed, the surface did not hold it."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..._compile import padded_size
+from ...model import Scene
+from ..measured_trace import forces_at
+from .start import wiggle
+
+_APART = 1 / 24  # eps: between two places of a way
+_SURE = 4.0  # standard deviations of z: ways are shorter by this at both ends
+_MOST = 4096  # places
+_ROOM = 128
+
+
+class Passages(NamedTuple):
+    """Places that the tip passed: states `z` in m and `bound` in N, (m,); `side` 1 or -1.
+
+    On a way to the right `V_eps' = l - Phi' - eps^gamma z' < max l - Phi'`, over the time
+    between two samples; to the left the other way round. No speed is needed, and no
+    surface that gives the trace breaks it. `known`: how many these are; the rest of `z`
+    fills a program.
+    """
+
+    z: np.ndarray
+    bound: np.ndarray
+    side: np.ndarray
+    known: int
+
+
+class Held(NamedTuple):
+    """Excess over the bounds, `r` >= 0 in N, and its derivative `by`, (m, unknowns)."""
+
+    r: np.ndarray
+    by: np.ndarray
+
+
+def passages_of(scene: Any, ts: np.ndarray, z: np.ndarray, sd: np.ndarray, eps: float):
+    """Ways between samples that are further apart than their errors."""
+    turns = np.asarray(scene.turning_points())
+    highest, lowest = _load_range(scene, ts, turns)
+    states, bounds, sides = [], [], []
+    for i in range(ts.size - 1):
+        side = np.sign(z[i + 1] - z[i])
+        begin, end = z[i] + side * _SURE * sd[i], z[i + 1] - side * _SURE * sd[i + 1]
+        count = int(np.floor(side * (end - begin) / (_APART * eps)))
+        if count < 1:
+            continue
+        count = min(count, _MOST)  # of a trace in nm, 1e9
+        states.append(np.linspace(begin, end, count + 1))
+        bounds.append(np.full(count + 1, highest[i] if side > 0 else lowest[i]))
+        sides.append(np.full(count + 1, side))
+    if not states:
+        return Passages(np.zeros(0), np.zeros(0), np.zeros(0), 0)
+    every = [np.concatenate(parts) for parts in (states, bounds, sides)]
+    keep = np.linspace(0, every[0].size - 1, min(every[0].size, _MOST)).astype(int)
+    places, loads, side = (part[keep] for part in every)
+    more = padded_size(keep.size, _ROOM, 2) - keep.size
+    padded = np.pad(places, (0, more), mode="edge")
+    force = np.asarray(forces_at(scene, np.zeros_like(padded), padded)[1])[: keep.size]
+    return Passages(padded, loads - force, side, keep.size)
+
+
+def _load_range(scene: Scene, ts: np.ndarray, turns: np.ndarray):
+    """Largest and smallest load between each two samples."""
+    times = np.concatenate([ts, turns])
+    known = np.asarray(forces_at(scene, times, np.zeros_like(times))[0])
+    ends, corners = known[: ts.size], known[ts.size :]
+    high, low = np.maximum(ends[1:], ends[:-1]), np.minimum(ends[1:], ends[:-1])
+    place = np.searchsorted(ts, turns) - 1
+    for i, value in zip(place, corners, strict=True):
+        if 0 <= i < high.size:
+            high[i], low[i] = max(high[i], value), min(low[i], value)
+    return high, low
+
+
+def held(passages: Passages, scene: Any, eps: Any, numbers: np.ndarray) -> Held:
+    """How far the wiggle force of the surface would have held the tip where it passed."""
+    count = passages.known
+    if count == 0:
+        return Held(np.zeros(0), np.zeros((0, numbers.size)))
+    force, _, by = map(np.asarray, wiggle(numbers, scene, eps, passages.z))
+    excess = passages.side * (force[:count] - passages.bound)
+    over = excess > 0
+    rows = np.where(over[:, None], passages.side[:, None] * by[:count], 0.0)
+    return Held(np.where(over, excess, 0.0), rows)
+
+
+def unbounded(numbers: np.ndarray, rough: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """No bounds: what `Problem.held` gives where there are none."""
+    return np.zeros(0), np.zeros((0, numbers.size))

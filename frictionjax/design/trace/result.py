@@ -1,0 +1,130 @@
+"""What the fit to a trace returns."""
+
+import dataclasses
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...io import written
+from ...profiles import Fourier
+from ..measured_trace import Trace
+from .json import trace_from_json, trace_to_json
+from .status import TraceStatus
+from .weights import TraceIdentifiability
+
+
+class TraceHistory(NamedTuple):
+    """Every iterate of a fit, arrays (steps,).
+
+    `objective`: robust, with the prior, per sample. `chi2`: mean square of the residuals
+    used, in standard deviations, infinite where none is. `used`, `slipping`, `disputed`:
+    samples that count, are inside slips of the model, and are more than a quarter of a well
+    off outside of them. `damping`: Marquardt's. `blur`: of the samples, in eps.
+    """
+
+    objective: np.ndarray
+    chi2: np.ndarray
+    used: np.ndarray
+    slipping: np.ndarray
+    disputed: np.ndarray
+    damping: np.ndarray
+    blur: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class TraceFit:
+    """Result of `fit_trace`.
+
+    `profile`: the surface found. `trace`: what was asked for, at `eps` and `gamma`.
+    `achieved`: the same quantity of the surface found; `residuals`: achieved minus
+    measured; `deviation`: standard deviation of a sample, with the accuracy of
+    trajectories, or taken from the residuals where it was not known; N or m, (n,).
+    `used`: samples that count; `slipping`: inside a slip of the model, left out;
+    `disputed`: how many others are in another well. `tips`: phases of the tip, (n,).
+    `chi2`: of samples used, in units of `deviation`, where they outnumber the coefficients,
+    else of all outside slips, else of all; `degrees_of_freedom` of them, samples less
+    coefficients, at least 1. `identifiability`: what the trace determines of the surface.
+    `odd`: what is odd about the trace, or was left undone, in words; empty where nothing.
+    """
+
+    profile: Fourier
+    trace: Trace
+    eps: float
+    gamma: float
+    achieved: np.ndarray
+    residuals: np.ndarray
+    deviation: np.ndarray
+    used: np.ndarray
+    slipping: np.ndarray
+    disputed: int
+    tips: np.ndarray
+    chi2: float
+    degrees_of_freedom: int
+    status: TraceStatus
+    history: TraceHistory
+    identifiability: TraceIdentifiability
+    odd: str = ""
+
+    @property
+    def success(self) -> bool:
+        """Whether the surface explains the trace, and the trace determines some of it."""
+        return self.status == TraceStatus.FITTED
+
+    @property
+    def message(self) -> str:
+        """Why, for people, and what is determined."""
+        seen = self.identifiability
+        why = f"{self.status.message}: {self.odd}" if self.odd else self.status.message
+        if not seen.determined.any():
+            return f"{why}; no slope is determined"
+        parts = ", ".join(f"[{a:.3f}, {b:.3f}]" for a, b in seen.intervals)
+        return f"{why}; slopes determined at y in {parts} ({seen.share:.0%})"
+
+    @property
+    def reduced_chi2(self) -> float:
+        """`chi2` per degree of freedom."""
+        return self.chi2 / self.degrees_of_freedom
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Of cos and sin, without a prior; see `identifiability`."""
+        return self.identifiability.covariance
+
+    @property
+    def singular_values(self) -> np.ndarray:
+        """Of the derivatives of the samples used; see `identifiability`."""
+        return self.identifiability.singular_values
+
+    def plot(self, truth: Any = None):
+        """Data, fit, residuals and slopes with their errors, as a Figure.
+
+        `truth`: a profile to draw beside the one found.
+        """
+        from ...plot import draw_trace_fit
+
+        return draw_trace_fit(self, truth)
+
+    def to_json(self, path: Any = None) -> str:
+        """Everything as JSON; written to `path` where given."""
+        return written(trace_to_json(self), path)
+
+    @classmethod
+    def from_json(cls, source: Any) -> "TraceFit":
+        """The result again, from the text or the path of its JSON.
+
+        Raises `ValueError` for what is no such JSON.
+        """
+        known = trace_from_json(source)
+        known["history"] = TraceHistory(**known["history"])
+        return cls(**known)
+
+    def __repr__(self) -> str:
+        used = f"{int(np.sum(self.used))} of {self.used.size} samples used"
+        left = f"{int(np.sum(self.slipping))} in slips, {self.disputed} in other wells"
+        return "\n".join(
+            [
+                f"TraceFit({self.status.name}: {self.message})",
+                f"  {used}, {left}; reduced chi2 = {self.reduced_chi2:.4g}, "
+                f"{self.history.chi2.size} steps",
+            ]
+        )

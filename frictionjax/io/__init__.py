@@ -1,0 +1,5 @@
+"""Scenes and results as files: TOML for scenes, JSON for results."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,14 @@
+from .documents import array_of as array_of
+from .documents import document_of as document_of
+from .documents import plain as plain
+from .documents import written as written
+from .registry import part_entry as part_entry
+from .registry import part_of as part_of
+from .scene_files import default_study as default_study
+from .scene_files import load_scene as load_scene
+from .scene_files import load_study as load_study
+from .scene_files import save_scene as save_scene
+from .scene_files import scene_document as scene_document
+from .whole_files import FULL as FULL
+from .whole_files import naming as naming
+from .whole_files import write_whole as write_whole

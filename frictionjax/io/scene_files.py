@@ -1,0 +1,229 @@
+"""Scene files: a scene and its study as TOML."""
+
+import inspect
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import numpy as np
+import tomli_w
+
+from .. import bristles, loads, profiles, supports
+from .._checks import require
+from ..measured import fit_profile, read_heights
+from ..model import BristlePotential, Scene
+from .whole_files import write_whole
+
+_PARTS = {
+    "profile": (profiles, ("Sine", "Fourier", "Spline", "Polyline")),
+    "bristle": (
+        bristles,
+        ("Homothetic", "VerticalSpring", "SlantedSpring", "AngularSpring"),
+    ),
+    "support": (supports, ("Spring",)),
+    "load": (loads, ("Ramp", "Sine", "Triangle", "PiecewiseLinear")),
+}
+_TOP = ("duration", "z0")
+_STUDY = ("eps", "gamma", "accuracy")
+_TEXTS = ("length_unit", "height_unit", "decimal", "outliers")
+_READING = ("pixel", "height_scale", *_TEXTS)
+_WHOLE = ("harmonics", "row")
+_FIT = ("period", "smoothing", *_WHOLE)
+
+
+_SAVE = "save it as UTF-8, which TOML is"
+_SAVED = "a profile and a bristle: what Python functions give cannot be saved"
+
+
+class SceneFile(NamedTuple):
+    """What a scene file holds: the scene, and `eps`, `gamma`, `accuracy` where given."""
+
+    scene: Scene
+    study: dict[str, Any]
+
+
+def load_scene(path: Any) -> Scene:
+    """Read the scene of a TOML file.
+
+    Tables `[profile] [bristle] [support] [load]`, each with `kind` (the class's name) and
+    the constructor's arguments by name; `duration` and `z0` on top. A table `[study]` may
+    be there and is not used. A `Fourier` profile may give `heights`, the file of a measured
+    surface (relative to this one), with the options of `read_heights` and `fit_profile`.
+
+    Raises `ValueError` naming the file, the table and the key, and what is allowed.
+    """
+    return load_study(path).scene
+
+
+def load_study(path: Any) -> SceneFile:
+    """Read scene and study of a TOML file; see `load_scene`."""
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")  # Windows' editors mark a file
+    except OSError as problem:
+        raise ValueError(f"{path}: cannot be read ({problem.strerror})") from None
+    except UnicodeDecodeError as problem:
+        raise ValueError(f"{path}: cannot be read ({_encoding(problem)})") from None
+    if "\0" in text:
+        raise ValueError(f"{path}: cannot be read (UTF-16 or no text; {_SAVE})")
+    return parse_scene(text, str(path), Path(path).parent)
+
+
+def _encoding(problem: UnicodeDecodeError) -> str:
+    """What is in a file that is not UTF-8, and where."""
+    data, at = problem.object, problem.start
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return f"UTF-16; {_SAVE}"
+    if b"\0" in data:
+        return f"no text; {_SAVE}"
+    line = data.count(b"\n", 0, at) + 1
+    return f"not UTF-8, byte 0x{data[at]:02x} in line {line}; {_SAVE}"
+
+
+def default_study() -> SceneFile:
+    """The embedded scene, for commands that name none."""
+    source = resources.files(__package__) / "default_scene.toml"
+    return parse_scene(source.read_text(encoding="utf-8"), source.name)
+
+
+def parse_scene(text: str, name: str, folder: Path | None = None) -> SceneFile:
+    """Scene and study of the TOML document `text`, called `name` in errors.
+
+    `folder`: where a measured surface that it names is looked for.
+    """
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise ValueError(f"{name}: not TOML ({problem})") from None
+    try:
+        scene = _scene_of(document, folder or Path())
+        return SceneFile(scene, _study_of(document.get("study", {})))
+    except ValueError as problem:
+        raise ValueError(f"{name}: {problem}") from None
+
+
+def _scene_of(document: dict[str, Any], folder: Path) -> Scene:
+    known = (*_TOP, *_PARTS, "study")
+    _require_keys("", document, known, ("duration", *_PARTS))
+    parts = {table: _part_of(table, document[table], folder) for table in _PARTS}
+    top = {key: document.get(key, 0.0) for key in _TOP}
+    for key, value in top.items():
+        _need(not isinstance(value, list), f"{key} = {value!r}", "a number")
+    return Scene(**parts, **{key: _numbers(key, value) for key, value in top.items()})
+
+
+def _part_of(table: str, entries: Any, folder: Path) -> Any:
+    _need(isinstance(entries, dict), f"{table} = {entries!r}", f"a table [{table}]")
+    module, kinds = _PARTS[table]
+    kind = entries.get("kind")
+    known = isinstance(kind, str) and kind in kinds
+    said = "no kind" if kind is None else f"kind = {kind!r}"
+    _need(known, f"[{table}] {said}", f"a kind that is one of {', '.join(kinds)}")
+    build = getattr(module, kind)
+    given = {key: value for key, value in entries.items() if key != "kind"}
+    if kind == "Fourier" and "heights" in given:
+        return _measured_profile(given, folder)
+    signature = inspect.signature(build.__init__).parameters
+    names = [name for name in signature if name != "self"]
+    needed = [n for n in names if signature[n].default is inspect.Parameter.empty]
+    _require_keys(f"[{table}] ", given, names, needed)
+    return build(**{key: _numbers(f"[{table}] {key}", v) for key, v in given.items()})
+
+
+def _measured_profile(given: dict[str, Any], folder: Path) -> profiles.Fourier:
+    _require_keys("[profile] ", given, ("heights", *_FIT, *_READING), ())
+    name = given["heights"]
+    text = isinstance(name, str)
+    _need(text, f"[profile] heights = {name!r}", "the name of a file")
+    options = {key: _option(key, given[key]) for key in given if key != "heights"}
+    reading = {key: options.pop(key) for key in _READING if key in options}
+    measured = read_heights(folder / name, **reading)
+    try:
+        return fit_profile(measured, **options).profile
+    except ValueError as error:
+        raise ValueError(f"{folder / name}: {error}") from None
+
+
+def _option(key: str, value: Any) -> Any:
+    if key in _TEXTS:
+        _need(isinstance(value, str), f"[profile] {key} = {value!r}", "a text")
+        return value
+    whole = isinstance(value, int) and not isinstance(value, bool)
+    said = f"[profile] {key} = {value!r}"
+    _need(whole or key not in _WHOLE, said, "a whole number")
+    _need(not isinstance(value, list), said, "a number")
+    return value if key in _WHOLE else _numbers(f"[profile] {key}", value)
+
+
+def _require_keys(where: str, entries: dict, known, needed) -> None:
+    for key in entries:
+        _need(key in known, f"{where}{key} is unknown", f"one of {', '.join(known)}")
+    for key in needed:
+        _need(key in entries, f"{where}{key} is missing", f"all of {', '.join(needed)}")
+
+
+def _need(condition: Any, said: str, allowed: str) -> None:
+    """Like `require`, in the words of the file rather than of a constructor."""
+    if not condition:
+        raise ValueError(f"{said}: needs {allowed}")
+
+
+def _numbers(name: str, value: Any) -> Any:
+    """A number or a list of them, as floats."""
+    rows = value if isinstance(value, list) else [value]
+    plain = all(isinstance(v, int | float) and not isinstance(v, bool) for v in rows)
+    _need(plain, f"{name} = {value!r}", "a number or a list of numbers")
+    try:
+        numbers = [float(v) for v in rows]
+    except OverflowError:
+        raise ValueError(f"{name}: needs 64-bit numbers, one is larger") from None
+    return numbers if isinstance(value, list) else numbers[0]
+
+
+def _study_of(entries: Any) -> dict[str, Any]:
+    _need(isinstance(entries, dict), f"study = {entries!r}", "a table [study]")
+    _require_keys("[study] ", entries, _STUDY, ())
+    study = {key: _numbers(f"[study] {key}", value) for key, value in entries.items()}
+    for key, value in study.items():
+        good = np.size(value) > 0 and np.all(np.isfinite(value)) and np.min(value) > 0
+        single = key != "accuracy" or np.ndim(value) == 0
+        needs = "a number > 0" if key == "accuracy" else "one or more numbers > 0"
+        _need(good and single, f"[study] {key} = {value!r}", needs)
+    return study
+
+
+def save_scene(scene: Scene, path: Any, study: dict[str, Any] | None = None) -> None:
+    """Write a scene, and a `[study]` table where one is given, so that it reads back equal.
+
+    (A spline within a rounding: the file holds its heights, not B-spline coefficients.)
+    Raises `ValueError` for parts given as functions, which a file cannot hold.
+    """
+    write_whole(path, scene_document(scene, study))
+
+
+def scene_document(scene: Scene, study: dict[str, Any] | None = None) -> str:
+    """The TOML document of a scene; see `save_scene`."""
+    known = isinstance(scene.potential, BristlePotential)
+    require(known, "scene.potential", type(scene.potential).__name__, _SAVED)
+    document: dict[str, Any] = {key: float(getattr(scene, key)) for key in _TOP}
+    for table in _PARTS:
+        document[table] = _entries_of(table, getattr(scene, table))
+    if study:
+        document["study"] = {key: _plain(value) for key, value in study.items()}
+    return tomli_w.dumps(document)
+
+
+def _entries_of(table: str, part: eqx.Module) -> dict[str, Any]:
+    kind = type(part).__name__
+    module, kinds = _PARTS[table]
+    saved = kind in kinds and type(part) is getattr(module, kind)
+    require(saved, f"scene.{table}", kind, f"one of {', '.join(kinds)}: no functions")
+    names = list(inspect.signature(type(part).__init__).parameters)[1:]  # without self
+    given = {name: getattr(part, name) for name in names}
+    known = {name: value for name, value in given.items() if value is not None}
+    return {"kind": kind} | {name: _plain(value) for name, value in known.items()}
+
+
+def _plain(value: Any) -> Any:
+    return np.asarray(value, dtype=float).tolist()

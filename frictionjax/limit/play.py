@@ -1,0 +1,160 @@
+"""The rate-independent limit system (eq. 2.3) as an associative scan of clips."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from .._checks import (
+    Outcome,
+    Real,
+    counted,
+    flags,
+    is_concrete,
+    is_known,
+    no_less,
+    no_more,
+    outcomes,
+    require,
+    with_nan,
+)
+from .._compile import Program
+from ..model import (
+    Coefficients,
+    Scene,
+    coefficients_jit,
+    dissipation_potential,
+    known_scene,
+    require_times,
+    strip_of,
+    strips_at,
+)
+from ..supports import AbstractSupport
+
+
+class LimitStatus(Outcome):
+    """Why a limit solution can or cannot be trusted; `message` says it for people."""
+
+    OK = 0, "every number can be trusted"
+    NOT_FINITE = 1, "not finite, or the load turns more often than there is room for"
+
+
+class LimitSolution(eqx.Module):
+    """Limit trajectory: times `ts` (s), states `z` (m), `dissipation` (J), shapes (n,).
+
+    `dissipation` is cumulative, `int_0^ts R(z')`. `ok`, `status`: not finite only where
+    the scene was traced, so that nothing could be checked.
+    """
+
+    ts: Float[Array, " n"]
+    z: Float[Array, " n"]
+    dissipation: Float[Array, " n"]
+
+    @property
+    def _codes(self) -> Array:
+        good = jnp.all(jnp.isfinite(self.z) & jnp.isfinite(self.dissipation), axis=-1)
+        return jnp.where(good, int(LimitStatus.OK), int(LimitStatus.NOT_FINITE))
+
+    @property
+    def ok(self) -> Any:
+        """One bool; of a batch (`jax.vmap`), or where traced, an array of them."""
+        return flags(self._codes == LimitStatus.OK)
+
+    @property
+    def status(self) -> Any:
+        """A `LimitStatus`; an array of them of a batch, integers where traced."""
+        return outcomes(LimitStatus, self._codes)
+
+    def __repr__(self) -> str:
+        if not is_known(self):
+            return super().__repr__()
+        codes, count = self._codes, np.shape(self.z)[-1]
+        batch = f"batch {codes.shape}: " if codes.ndim else ""
+        return f"LimitSolution({batch}{counted(LimitStatus, codes)}, {count} times)"
+
+
+def strip(support: AbstractSupport, found: Coefficients, load: Real) -> tuple[Real, Real]:
+    """States that rest under `load` (N): `[z_minus, z_plus]` in m (Section 5.1)."""
+    return strip_of(support, found.rho_plus, found.rho_minus, load)
+
+
+def play_step(support: AbstractSupport, found: Coefficients, z: Real, load: Real) -> Real:
+    """The limit state after a monotone change of the load to `load`, from state `z`."""
+    lower, upper = strip(support, found, load)
+    return jnp.clip(z, lower, upper)
+
+
+def _then(first, second):
+    """The clip that two clips make one after the other; associative."""
+    (a, b), (lower, upper) = first, second
+    return jnp.clip(a, lower, upper), jnp.clip(b, lower, upper)
+
+
+def limit_on_grid(
+    scene: Scene, found: Coefficients, grid: Float[Array, " m"]
+) -> tuple[Float[Array, " m"], Float[Array, " m"]]:
+    """State and cumulative dissipation on a sorted grid that holds the turning points.
+
+    Between grid points the load is monotone, so the solution is too, and a clip to the
+    strip at the grid point is exact: there is no time-stepping error.
+    """
+    loads = jax.vmap(scene.load)(grid)
+    lower, upper = jax.vmap(lambda load: strip(scene.support, found, load))(loads)
+    lower, upper = jax.lax.associative_scan(_then, (lower, upper))
+    z = jnp.clip(scene.z0, lower, upper)
+    moves = jnp.diff(z, prepend=scene.z0)
+    spent = dissipation_potential(found.rho_plus, found.rho_minus, moves)
+    return z, jnp.cumsum(spent)
+
+
+@Program
+def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSolution:
+    turns = scene.turning_points()
+    order = jnp.argsort(jnp.concatenate([ts, turns]))
+    z, dissipation = limit_on_grid(scene, found, jnp.concatenate([ts, turns])[order])
+    back = jnp.argsort(order)[: ts.shape[0]]
+    # Too little room for the turning points of a traced load is NaN, never a wrong number,
+    # and so are derivatives: added, NaN would leave them as they are.
+    poison = jnp.where(jnp.any(jnp.isnan(turns)), jnp.nan, 1.0)
+    return LimitSolution(ts, z[back] * poison, dissipation[back] * poison)
+
+
+def require_start_in_strip(scene: Scene) -> None:
+    """Check that z0 lies in the strip at t = 0, as Theorem 1 asks (eq. 2.11)."""
+    if not is_concrete(scene):
+        return
+    found = coefficients_jit(scene.potential)
+    rho = float(found.rho_plus), float(found.rho_minus)
+    _, lower, upper = (float(v[0]) for v in strips_at(scene, *rho, np.zeros(1)))
+    slack = 4 * float(np.finfo(float).eps) * max(abs(lower), abs(upper))
+    z0 = float(scene.z0)
+    low, high = no_less(lower, 9), no_more(upper, 9)
+    needs = f"z_minus(0) <= z0 <= z_plus(0), the interval [{low}, {high}]"
+    require(lower - slack <= z0 <= upper + slack, "scene.z0", z0, needs)
+
+
+@with_nan
+def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
+    """Solve `0 in dR(z') + Phi'(z) - l(t)` (eq. 2.3), exactly up to rounding.
+
+    `ts`: times in s, not decreasing, in [0, duration], shape (n,); 201 evenly spaced ones
+    where None. The grid inside always holds the turning points of the load, so values do
+    not depend on which other times are asked for.
+
+    Raises `ValueError` for bad times, 32 bits, or z0 outside the strip at t = 0 (with the
+    allowed interval). Source: the play operator, see A. Mielke and T. Roubicek,
+    Rate-Independent Systems (2015).
+    """
+    scene = known_scene(scene)
+    ts = require_times(scene, ts)
+    require_start_in_strip(scene)
+    return _solve(scene, coefficients_jit(scene.potential), ts)
+
+
+def dissipation_between(scene: Scene, t1: Any, t2: Any) -> Real:
+    """`int_t1^t2 R(z')` in J of the limit solution, for 0 <= t1 <= t2 <= duration."""
+    cumulative = solve_limit(scene, jnp.stack([jnp.asarray(t1), jnp.asarray(t2)]))
+    return cumulative.dissipation[1] - cumulative.dissipation[0]

@@ -1,0 +1,297 @@
+"""The wiggly potential `V_eps` (eq. 2.8), of a bristle or given directly."""
+
+import abc
+import inspect
+from collections.abc import Callable
+from functools import partial
+from typing import ClassVar
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from .._checks import (
+    Part,
+    Real,
+    as_plain,
+    checked,
+    require,
+    require_function,
+    require_whole,
+    require_x64,
+)
+from ..bristles import AbstractBristle
+from ..numerics import bracketed_root, increment, mean_slope, second_remainder, smallest
+from ..profiles import AbstractProfile, require_smooth
+
+_ZOOM = 256  # samples between two neighbours of a scan: its minimum to 1e-8
+
+
+def _slope(fn: Callable[[Real], Real], x: Real) -> tuple[Real, Real]:
+    return jax.jvp(fn, (x,), (jnp.ones_like(x),))
+
+
+class AbstractPotential(Part):
+    """`V_eps(z) = eps W(Y) + eps^2 Q(eps; Y)` with `Y = z/eps`, lengths in m, V in J.
+
+    An implementer gives the potential in the tip coordinate `y = p/eps`, in which nothing
+    has to be inverted, as scalar functions that are 1-periodic in `y`; and the two parts
+    of the expansion, computed without cancellation.
+    """
+
+    @abc.abstractmethod
+    def offset(self, y: Real, eps: Real) -> Real:
+        """`z - p = A(eps w(y))` in m, at tip coordinate `y` in periods."""
+
+    @abc.abstractmethod
+    def tip_energy(self, y: Real, eps: Real) -> Real:
+        """`V_eps` in J at the tip coordinate `y`."""
+
+    @abc.abstractmethod
+    def tip_energy_change(self, y: Real, eps: Real) -> Real:
+        """`V_eps` in J as a difference of energies: cheap, digits lost at small eps."""
+
+    @abc.abstractmethod
+    def well_coordinate(self, Y: Real, eps: Real) -> Real:
+        """The tip coordinate `y` that belongs to the state `Y`, both near 0."""
+
+    @abc.abstractmethod
+    def _leading(self, Y: Real) -> Real:
+        """`W` for |Y| <= 1/2."""
+
+    @abc.abstractmethod
+    def _rest(self, eps: Real, Y: Real) -> Real:
+        """`Q` for |Y| <= 1/2."""
+
+    @property
+    @abc.abstractmethod
+    def points(self) -> int:
+        """How many samples a period resolve `W'`."""
+
+    def tip(self, z: Real, eps: Real) -> tuple[Real, Real]:
+        """Well number and tip coordinate inside that well: y = number + inside."""
+        Y = z / eps
+        number = jnp.round(Y)
+        return number, self.well_coordinate(Y - number, eps)
+
+    def tip_force(self, y: Real, eps: Real) -> tuple[Real, Real]:
+        """`V_eps'(z)` in N and `G = dz/dp` at the tip coordinate `y`."""
+        _, ahead = _slope(lambda s: self.offset(s, eps), y)
+        _, climb = _slope(lambda s: self.tip_energy(s, eps), y)
+        stretch = 1 + ahead / eps
+        return climb / (eps * stretch), stretch
+
+    def energy(self, z: Real, eps: Real) -> Real:
+        """`V_eps(z)` in J; z in m and eps in m, any shapes that broadcast."""
+        return _elementwise(type(self)._energy, self, *_floats(self, z, eps))
+
+    def force(self, z: Real, eps: Real) -> Real:
+        """`V_eps'(z)` in N by autodiff of the exact inverse; shapes as `energy`."""
+        return _elementwise(_energy_slope, self, *_floats(self, z, eps))
+
+    def W(self, Y: Real) -> Real:
+        """Leading part `W(Y)` in N (Lemma 2), any shape."""
+        return _elementwise(_leading_anywhere, self, *_floats(self, Y))
+
+    def Q(self, eps: Real, Y: Real) -> Real:
+        """Rest `Q(eps; Y)` in N/m, bounded as eps -> 0; defined at eps = 0 too."""
+        return _elementwise(_rest_anywhere, self, *_floats(self, eps, Y))
+
+    def _energy(self, z: Real, eps: Real) -> Real:
+        return self.tip_energy(self.tip(z, eps)[1], eps)
+
+
+def _floats(potential: AbstractPotential, *values):
+    require_x64(potential, values)
+    return tuple(jnp.asarray(value, dtype=float) for value in values)
+
+
+@eqx.filter_jit
+def _elementwise(fn: Callable, potential: AbstractPotential, *values):
+    return jnp.vectorize(lambda *scalars: fn(potential, *scalars))(*values)
+
+
+def _energy_slope(potential: AbstractPotential, z: Real, eps: Real) -> Real:
+    return jax.grad(potential._energy)(z, eps)
+
+
+def _leading_anywhere(potential: AbstractPotential, Y: Real) -> Real:
+    return potential._leading(Y - jnp.round(Y))
+
+
+def _rest_anywhere(potential: AbstractPotential, eps: Real, Y: Real) -> Real:
+    return potential._rest(eps, Y - jnp.round(Y))
+
+
+class BristlePotential(AbstractPotential):
+    """`V_eps(z) = F(w_eps(p(z))) - F(0)` with `z = p + A(w_eps(p))` (eqs. 2.20, 3.28)."""
+
+    profile: AbstractProfile
+    bristle: AbstractBristle
+
+    def offset(self, y: Real, eps: Real) -> Real:
+        return self.bristle.offset(eps * self.profile(y))
+
+    def tip_energy(self, y: Real, eps: Real) -> Real:
+        return increment(self.bristle.energy, eps * self.profile(y))
+
+    def tip_energy_change(self, y: Real, eps: Real) -> Real:
+        end = self.bristle.energy(eps * self.profile(y))
+        return end - self.bristle.energy(jnp.zeros_like(y))
+
+    def tip_force(self, y: Real, eps: Real) -> tuple[Real, Real]:
+        # The chain rule by hand: F' and A' once each, not through `increment`.
+        height, slope = _slope(self.profile, y)
+        _, climb = _slope(self.bristle.energy, eps * height)
+        _, ahead = _slope(self.bristle.offset, eps * height)
+        stretch = 1 + ahead * slope
+        return climb * slope / stretch, stretch
+
+    def well_coordinate(self, Y: Real, eps: Real) -> Real:
+        def state(y):
+            return y + increment(self.bristle.offset, eps * self.profile(y)) / eps
+
+        return _invert(state, Y)
+
+    @property
+    def points(self) -> int:
+        return self.profile.points
+
+    def a(self) -> Real:
+        """`A'(0)`."""
+        return _slope(self.bristle.offset, jnp.zeros(()))[1]
+
+    def alpha(self) -> Real:
+        """`F'(0)` in N (eq. 2.15)."""
+        return _slope(self.bristle.energy, jnp.zeros(()))[1]
+
+    def flat_tip(self, Y: Real) -> Real:
+        """`g^-1(Y)` with `g(y) = y + a w(y)` (Lemma 3): the tip coordinate at eps = 0."""
+        a = self.a()
+        return _invert(lambda y: y + a * self.profile(y), Y)
+
+    def _leading(self, Y: Real) -> Real:
+        return self.alpha() * self.profile(self.flat_tip(Y))
+
+    def _rest(self, eps: Real, Y: Real) -> Real:
+        # With eta = eps w(y), A = a eta + eta^2 C and F = F(0) + alpha eta + eta^2 B,
+        # y - y_flat = -eps w^2 C/(1 + a m) and w(y) - w(y_flat) = m (y - y_flat), m the
+        # mean slope of w between the two: Q = w^2 (B - alpha m C/(1 + a m)), no 1/eps.
+        safe = jnp.where(eps == 0, 1e-30, eps)  # any bristle reaches that far
+        flat = self.flat_tip(Y)
+        y = jnp.where(eps == 0, flat, self.well_coordinate(Y, safe))
+        height = self.profile(y)
+        curved_offset = second_remainder(self.bristle.offset, eps * height)
+        curved_energy = second_remainder(self.bristle.energy, eps * height)
+        slope = mean_slope(self.profile, flat, y)
+        bend = self.alpha() * slope * curved_offset / (1 + self.a() * slope)
+        return height**2 * (curved_energy - bend)
+
+
+def _invert(state: Callable[[Real], Real], Y: Real) -> Real:
+    """Solve state(y) = Y, where state(y) - y is 1-periodic and state increases.
+
+    state(y) - y varies by less than 1 then, so the root lies within 1 of Y - state(0).
+    """
+    centre = Y - state(jnp.zeros_like(Y))
+    return bracketed_root(lambda y: state(y) - Y, centre - 1, centre + 1)
+
+
+def _nothing(eps: Real, Y: Real) -> Real:
+    return jnp.zeros_like(Y)
+
+
+def _takes_two(fn: Callable) -> bool:
+    try:
+        inspect.signature(fn).bind(None, None)
+    except TypeError:
+        return False
+    except ValueError:
+        pass  # no signature to be had
+    return True
+
+
+class GivenPotential(AbstractPotential):
+    """The abstract setting: `W` and `Q` as functions (eq. 2.8), z its own tip coordinate.
+
+    `W_fn(Y)` in N: 1-periodic, C^2; `Q_fn(eps, Y)` in N/m: 1-periodic and C^2 in Y, and
+    bounded with its derivative as eps -> 0; scalar functions written with `jax.numpy`. Q is
+    looked at where an eps is in use, and refused there.
+
+    Raises `ValueError` where `W` does not repeat as a C^2 function or is constant.
+    """
+
+    _stored: ClassVar = {"W": "W_fn", "Q": "Q_fn"}
+
+    W_fn: Callable[[Real], Real]
+    Q_fn: Callable[[Real, Real], Real]
+    points: int = eqx.field(static=True, default=4096, converter=as_plain)
+
+    def __init__(self, W: Callable, Q: Callable | None = None, points: int = 4096):
+        self.W_fn = W
+        self.Q_fn = _nothing if Q is None else Q
+        self.points = points
+
+    def __check_init__(self):
+        require_function("potential.W", self.W_fn, "a function of Y")
+        if self.Q_fn is not _nothing:
+            what = "a function of (eps, Y)"
+            Q = self.Q_fn
+            require(callable(Q) and _takes_two(Q), "potential.Q", Q, what)
+            require_function("potential.Q", partial(Q, jnp.asarray(1e-3)), what)
+        require_whole("potential.points", self.points, 16)
+        require_smooth("potential.W", self._leading_inside, self.points)
+
+    def _leading_inside(self, Y: Real) -> Real:
+        return jnp.asarray(self.W_fn(Y))
+
+    def offset(self, y: Real, eps: Real) -> Real:
+        return jnp.zeros_like(y)
+
+    def tip_energy(self, y: Real, eps: Real) -> Real:
+        Y = y - jnp.floor(y)
+        return eps * self.W_fn(Y) + eps**2 * self.Q_fn(eps, Y)
+
+    def tip_energy_change(self, y: Real, eps: Real) -> Real:
+        return self.tip_energy(y, eps)
+
+    def well_coordinate(self, Y: Real, eps: Real) -> Real:
+        return Y
+
+    def _leading(self, Y: Real) -> Real:
+        return jnp.asarray(self.W_fn(Y - jnp.floor(Y)))
+
+    def _rest(self, eps: Real, Y: Real) -> Real:
+        return jnp.asarray(self.Q_fn(eps, Y - jnp.floor(Y)))
+
+
+def potential(profile: AbstractProfile, bristle: AbstractBristle) -> BristlePotential:
+    """The wiggly potential of a bristle on a surface.
+
+    Returns an object with `.energy(z, eps)`, `.force(z, eps)`, `.W(Y)` and `.Q(eps, Y)`.
+    Raises `ValueError` for arguments of another kind.
+    """
+    known = isinstance(profile, AbstractProfile)
+    require(known, "profile", type(profile).__name__, "a part of frictionjax.profiles")
+    known = isinstance(bristle, AbstractBristle)
+    require(known, "bristle", type(bristle).__name__, "a part of frictionjax.bristles")
+    return BristlePotential(checked(profile), checked(bristle))
+
+
+def smallest_stretch(
+    potential: AbstractPotential, eps: Real, points: int | None = None
+) -> Real:
+    """Smallest `G = dz/dp` over a period, NaN where the bristle does not reach.
+
+    A scan, then a finer one around its minimum and around the ends of the offset, where
+    the bristle reaches last.
+    """
+    count = points or potential.points
+    grid = jnp.arange(count) / count
+    stretch = jax.vmap(lambda y: potential.tip_force(y, eps)[1])
+    offset = jax.vmap(lambda y: potential.offset(y, eps))(grid)
+    coarse = stretch(grid)
+    places = [jnp.argmin(coarse), jnp.argmin(offset), jnp.argmax(offset)]
+    fine = grid[jnp.stack(places)][:, None] + np.linspace(-1, 1, _ZOOM + 1) / count
+    return smallest(jnp.concatenate([coarse, stretch(fine.ravel())]))

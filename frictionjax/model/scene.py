@@ -1,0 +1,295 @@
+"""What is simulated, as data."""
+
+import dataclasses
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from .._checks import (
+    ByIdentity,
+    Real,
+    as_real,
+    asked_names,
+    checked,
+    eagerly,
+    exchanged,
+    in_64_bits,
+    is_checked,
+    is_concrete,
+    is_known,
+    known_numbers,
+    mark_checked,
+    no_less,
+    no_more,
+    require,
+    require_real,
+    require_x64,
+)
+from .._compile import Program
+from ..bristles import AbstractBristle, pulling_text
+from ..loads import AbstractLoad
+from ..profiles import AbstractProfile
+from ..supports import AbstractSupport
+from .admissibility import admissible_coefficients, require_convex
+from .potentials import AbstractPotential, BristlePotential, potential
+
+_TRACED_TURNS = 64  # turning points allowed for where the load's numbers are traced
+# Of the largest |z|: rounding of z itself is 1e-4 eps there. (At 1e-13 to 3e-13 most sweeps
+# of five scenes held ROUGH_SURVEY, at accuracy 1e-3; at 5e-13 to 8e-13 a stiff one did, and
+# 1 in 100 above.)
+_TOLD_APART = 2.0**-40
+_ANEW = ByIdentity()  # the scene built of one with other leaves
+_ALPHA = ByIdentity()  # the normal force in N that was computed when it was checked
+_ROUNDED = 8  # spacings of floats by which a time may exceed the duration
+_MOST_TURNS = 2**20  # in a scene: 8 MB a copy of their times
+
+
+class Scene(eqx.Module):
+    """A bristle on a wiggly surface, pulled through a support by a load.
+
+    `Scene(profile, bristle, support, load, duration, z0=0.0, effects=())`, or
+    `Scene(potential=GivenPotential(W, Q), support=..., load=..., duration=...)`.
+
+    `duration` T in s, `z0` the state at t = 0 in m. `effects`: what else the scene calls
+    for; a scene without effects is the plain system of the paper.
+
+    All numbers are traced leaves. Only the room for turning points of the load is static
+    (`turns`, a power of two), so a scene of the same shape and other values compiles
+    nothing new.
+
+    `scene.replace(duration=6.0)` is the scene with other arguments, built anew. Scenes
+    changed leaf by leaf (`equinox.tree_at`) are checked, and given their room, where they
+    are used; where their numbers are traced the room is what it was, and where it is too
+    small results have a status that says so.
+
+    Raises `ValueError` for parts of another kind, a duration that is not positive, and
+    every hypothesis of the paper that can be told without eps: see `friction`, and
+    `Phi` uniformly convex on the range that the load reaches.
+    """
+
+    potential: AbstractPotential
+    support: AbstractSupport
+    load: AbstractLoad
+    duration: Real
+    z0: Real
+    effects: tuple
+    turns: int = eqx.field(static=True, init=False)
+
+    def __init__(
+        self,
+        profile: AbstractProfile | None = None,
+        bristle: AbstractBristle | None = None,
+        support: AbstractSupport | None = None,
+        load: AbstractLoad | None = None,
+        duration: Any = None,
+        z0: Any = 0.0,
+        effects: tuple = (),
+        *,
+        potential: AbstractPotential | None = None,
+    ):
+        self.potential = _potential_of(profile, bristle, potential)
+        self.support = _part("support", support, AbstractSupport)
+        load = _part("load", load, AbstractLoad)
+        require(duration is not None, "scene.duration", "None", "a time > 0 in s")
+        require(
+            isinstance(effects, tuple | list) and len(effects) == 0,
+            "scene.effects",
+            effects if effects is None else repr(effects),
+            "(): this version has no optional effects",
+        )
+        self.duration, self.z0 = as_real(duration), as_real(z0)
+        self.effects = tuple(effects)
+        require_real("scene.duration", self.duration, "duration > 0", lambda t: t > 0)
+        require_real("scene.z0", self.z0, "a position in m")
+        self.load, self.turns = _with_turns(load, self.duration)
+        _require_hypotheses(self)
+
+    def __check_init__(self):
+        mark_checked(self)
+
+    def replace(self, **changes: Any) -> "Scene":
+        """The scene with other constructor arguments, by name, built and checked anew.
+
+        `scene.replace(load=scene.load.replace(period=1.0))` changes a number of a part.
+        Raises `ValueError` for names that there are not, and as the constructor does.
+        """
+        known = asked_names(Scene, changes)
+        given = {name: getattr(self, name) for name in known}
+        # The wiggly potential is given, or follows from profile and bristle.
+        if "potential" in changes or not changes.keys() & {"profile", "bristle"}:
+            del given["profile"], given["bristle"]
+        else:
+            del given["potential"]
+        return Scene(**(given | changes))
+
+    def __replace__(self, **changes: Any) -> "Scene":
+        return self.replace(**changes)
+
+    def __repr__(self) -> str:
+        alpha = _ALPHA.get(self)
+        pulls = "" if alpha is None else pulling_text(alpha)
+        return f"{super().__repr__()}{f': {pulls}' if pulls else ''}"
+
+    @property
+    def profile(self) -> AbstractProfile | None:
+        """The surface profile; None in the abstract setting."""
+        if isinstance(self.potential, BristlePotential):
+            return self.potential.profile
+        return None
+
+    @property
+    def bristle(self) -> AbstractBristle | None:
+        """The bristle; None in the abstract setting."""
+        if isinstance(self.potential, BristlePotential):
+            return self.potential.bristle
+        return None
+
+    def turning_points(self) -> Real:
+        """Turning points of the load in (0, T), shape (turns,), padded with T."""
+        return self.load.turning_points(jnp.asarray(self.duration), self.turns)
+
+
+def _potential_of(profile, bristle, given) -> AbstractPotential:
+    if given is None:
+        return potential(profile, bristle)
+    for name, part in (("profile", profile), ("bristle", bristle)):
+        needs = f"none beside potential; `scene.replace({name}=...)` exchanges it"
+        require(part is None, f"scene.{name}", type(part).__name__, needs)
+    known = isinstance(given, AbstractPotential)
+    require(known, "scene.potential", type(given).__name__, "a GivenPotential")
+    return checked(given)
+
+
+def _part(name: str, part: Any, kind: type) -> Any:
+    needs = f"a part of frictionjax.{name}s"
+    require(isinstance(part, kind), f"scene.{name}", type(part).__name__, needs)
+    return checked(part)
+
+
+def _with_turns(load: AbstractLoad, duration: Any) -> tuple[AbstractLoad, int]:
+    """All that follows from load and duration: what the load does, room for its turns."""
+    load = load.prepared(duration)
+    return load, _room_for_turns(load, duration)
+
+
+def _room_for_turns(load: AbstractLoad, duration: Any) -> int:
+    if not is_concrete(load, duration):
+        return _TRACED_TURNS
+    count = load.turning_count(float(duration))
+    allowed = f"at most {_MOST_TURNS} in [0, duration]"
+    require(count <= _MOST_TURNS, "load: turning points", count, allowed)
+    return 1 << max(2, (count - 1).bit_length()) if count else 0
+
+
+def load_range(scene: Scene) -> tuple[Real, Real]:
+    """Smallest and largest load on [0, T]: it is monotone between turning points."""
+    ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
+    values = jax.vmap(scene.load)(jnp.concatenate([ends, scene.turning_points()]))
+    return jnp.min(values), jnp.max(values)
+
+
+@Program
+def _forces_met(scene: Scene) -> tuple[Real, Real, Real]:
+    """Smallest and largest load, and the support's force at z0, in N."""
+    return *load_range(scene), scene.support.force(jnp.asarray(scene.z0))
+
+
+def _require_hypotheses(scene: Scene) -> None:
+    if not is_concrete(scene) or not in_64_bits():
+        return  # traced values cannot be looked at; 32 bits raise at the entry points
+    found = admissible_coefficients(scene.potential)
+    if found.alpha is not None:
+        _ALPHA.put(scene, float(found.alpha))
+    low, high, start = (float(v) for v in _forces_met(scene))
+    finite = np.isfinite(low) and np.isfinite(high)
+    require(finite, "load", f"[{low:.6g}, {high:.6g}]", "finite values on [0, duration]")
+    low = min(low - float(found.rho_plus), start)
+    high = max(high - float(found.rho_minus), start)
+    require_convex(scene.support, low, high)
+
+
+@Program
+def _farthest(scene: Scene) -> Real:
+    """Largest |z| in m that the load reaches on the flat surface, or that of z0."""
+    forces = jnp.stack(load_range(scene))
+    states = jax.vmap(scene.support.state_of)(forces)
+    return jnp.maximum(jnp.max(jnp.abs(states)), jnp.abs(scene.z0))
+
+
+def known_scene(scene: Any) -> Scene:
+    """The scene that its numbers make, in 64 bits: what entry points work with.
+
+    Itself unless leaves were exchanged (`eqx.tree_at`): then what the constructor makes
+    of them. Raises `ValueError` for what is no scene, and as the constructor does.
+    """
+    needs = "a Scene, as frictionjax.Scene or load_scene make it"
+    require(isinstance(scene, Scene), "scene", type(scene).__name__, needs)
+    require_x64(scene)
+    if is_checked(scene):
+        return scene
+    anew = _ANEW.get(scene)
+    if anew is None:
+        anew = _built_anew(scene)
+        if is_checked(anew):  # else it was made in a trace, which it must not outlive
+            _ANEW.put(scene, anew)
+    return anew
+
+
+def _built_anew(scene: Scene) -> Scene:
+    if is_known(scene):
+        with eagerly(scene):
+            return dataclasses.replace(scene)
+    if not is_known(scene.load, scene.duration):
+        return scene
+    # Derivatives by other numbers of a scene that was made longer.
+    with eagerly(scene.load, scene.duration):
+        load, turns = _with_turns(checked(scene.load), scene.duration)
+    return exchanged(scene, {"load": load, "turns": turns})
+
+
+def require_told_apart(scene: Scene, eps: Any) -> None:
+    """Check that floats tell the wells apart that a scene goes through.
+
+    Raises `ValueError` naming the smallest eps.
+    """
+    if not is_concrete(scene, eps):
+        return
+    least, far = float(np.min(np.asarray(eps, dtype=float))), float(_farthest(scene))
+    smallest = _TOLD_APART * far
+    allowed = (
+        f"eps >= {no_less(smallest, 4)}: wells at {far:.3g} m that floats can tell apart"
+    )
+    require(least >= smallest, "eps", least, allowed)
+
+
+def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " n"]:
+    """Check requested times: sorted, inside [0, duration]; evenly spaced where None.
+
+    Times that exceed it by rounding are moved to its end.
+    """
+    duration = jnp.asarray(scene.duration)
+    if ts is None:
+        return duration * jnp.linspace(0.0, 1.0, fallback)
+    if is_known(ts):
+        numbers = known_numbers(ts)
+        require(numbers.dtype != object, "ts", ts, "times, shape (n,), n > 0")
+        ts = numbers
+    ts = jnp.asarray(ts, dtype=float)
+    if not is_known(ts, scene.duration):
+        return ts
+    known = np.asarray(ts)
+    require(known.ndim == 1 and known.size > 0, "ts", known, "times, shape (n,), n > 0")
+    require(np.all(np.isfinite(known)), "ts", known, "finite times")
+    require(np.all(np.diff(known) >= 0), "ts", known, "times that do not decrease")
+    end = float(duration)
+    # 3 * 0.1 > 0.3, and what is added up n times is n spacings off.
+    slack = (_ROUNDED + known.size) * np.spacing(end)
+    inside = known[0] >= -slack and known[-1] <= end + slack
+    require(inside, "ts", known[[0, -1]], f"times in [0, duration] = [0, {no_more(end)}]")
+    if known[0] >= 0 and known[-1] <= end:
+        return ts
+    return jnp.asarray(np.clip(known, 0.0, end))

@@ -1,0 +1,37 @@
+"""The strip of states that rest under a load (Section 5.1)."""
+
+import jax
+import numpy as np
+from jaxtyping import Array, Float
+
+from .._checks import Real
+from .._compile import Program, in_chunks
+from ..supports import AbstractSupport
+from .scene import Scene
+
+CHUNK = 1024  # times of one compiled call
+
+
+def strip_of(
+    support: AbstractSupport, rho_plus: Real, rho_minus: Real, load: Real
+) -> tuple[Real, Real]:
+    """States in m that rest under `load` (N): `[z_minus, z_plus]`."""
+    return support.state_of(load - rho_plus), support.state_of(load - rho_minus)
+
+
+@Program
+def _strips(scene: Scene, rho_plus: Real, rho_minus: Real, times: Float[Array, " n"]):
+    loads = jax.vmap(scene.load)(times)
+    ends = jax.vmap(lambda load: strip_of(scene.support, rho_plus, rho_minus, load))
+    return loads, *ends(loads)
+
+
+def strips_at(
+    scene: Scene, rho_plus: float, rho_minus: float, times: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Load in N, `z_minus` and `z_plus` in m at each time, for known values."""
+    if times.size == 0:
+        return times, times, times
+    rho = np.asarray(rho_plus, dtype=float), np.asarray(rho_minus, dtype=float)
+    load, lower, upper = in_chunks(_strips, CHUNK, (scene, *rho), (times,))
+    return load, lower, upper

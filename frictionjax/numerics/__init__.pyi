@@ -1,0 +1,14 @@
+from .extrema import Extrema as Extrema
+from .extrema import periodic_extrema as periodic_extrema
+from .extrema import slope_of as slope_of
+from .extrema import smallest as smallest
+from .hermite import cubic as cubic
+from .hermite import cubic_slope as cubic_slope
+from .roots import bracketed_root as bracketed_root
+from .roots import find_root as find_root
+from .roots import increasing_root as increasing_root
+from .taylor import increment as increment
+from .taylor import mean_slope as mean_slope
+from .taylor import second_remainder as second_remainder
+from .trigonometry import fourier_sum as fourier_sum
+from .trigonometry import sin_cos as sin_cos

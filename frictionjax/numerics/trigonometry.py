@@ -1,0 +1,126 @@
+"""Sine and cosine of whole turns, as one pair that XLA vectorises."""
+
+import math
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+from jax.custom_derivatives import SymbolicZero
+
+from .._checks import Real
+
+# Taylor series of sin(2 pi r) and cos(2 pi r): on |r| <= 1/8 the first terms left out
+# are 3e-19 and 3e-18.
+_SINE = tuple(
+    (-1) ** k * (2 * math.pi) ** (2 * k + 1) / math.factorial(2 * k + 1) for k in range(9)
+)
+_COSINE = tuple(
+    (-1) ** k * (2 * math.pi) ** (2 * k) / math.factorial(2 * k) for k in range(9)
+)
+
+# Harmonics written out one by one; of more, blocks in a loop. With 64 written out a lane's
+# step takes 55 s to compile; with 14 and the fast flags LLVM wants more than 20 GB for the
+# narrow loop. Seconds of 16 and 64 harmonics, every slip: blocks of 8 0.29 and 0.68, of 4
+# 0.38 and 0.75, of 16 0.29 and 0.94.
+_UNROLLED, _BLOCK = 8, 8
+
+
+def _horner(coefficients: tuple[float, ...], x: Real) -> Real:
+    total = jnp.full_like(x, coefficients[-1])
+    for coefficient in coefficients[-2::-1]:
+        total = total * x + coefficient
+    return total
+
+
+@partial(jax.jit, inline=True)  # traced once, not at every use
+def _evaluate(y: Real) -> tuple[Real, Real]:
+    quarter = jnp.round(4 * y)
+    r = y - 0.25 * quarter  # exact: both are multiples of the spacing of floats at y
+    square = r * r
+    sine = r * _SINE[0] + r * (square * _horner(_SINE[1:], square))
+    cosine = 1 + square * _horner(_COSINE[1:], square)
+    quadrant = quarter - 4 * jnp.floor(0.25 * quarter)
+    swapped = (quadrant == 1) | (quadrant == 3)
+    sine, cosine = jnp.where(swapped, cosine, sine), jnp.where(swapped, sine, cosine)
+    sine = jnp.where(quadrant >= 2, -sine, sine)
+    return sine, jnp.where((quadrant == 1) | (quadrant == 2), -cosine, cosine)
+
+
+@jax.custom_jvp
+def sin_cos(y: Real) -> tuple[Real, Real]:
+    """`sin(2 pi y)` and `cos(2 pi y)`, any shape, to 2 ulp on the whole circle.
+
+    The argument is reduced in turns, which loses nothing. XLA calls the scalar libm for
+    float64 sines, 1.0 us for a step of one of 64 lanes against 0.09 with this pair.
+    """
+    return _evaluate(jnp.asarray(y, dtype=float))
+
+
+@sin_cos.defjvp
+def _sin_cos_jvp(primals, tangents):
+    sine, cosine = sin_cos(primals[0])
+    turn = 2 * jnp.pi * tangents[0]
+    return (sine, cosine), (cosine * turn, -sine * turn)
+
+
+@jax.custom_jvp
+def fourier_sum(cos: Real, sin: Real, y: Real) -> Real:
+    """`sum_n cos_n cos(2 pi n y) + sin_n sin(2 pi n y)`, n = 1, 2, ...
+
+    `cos`, `sin`: shape (harmonics,); `y`: any shape. Harmonics by the addition theorem
+    from one pair, the same for the sum and all its derivatives.
+    """
+    return _add_up(cos, sin, y)
+
+
+@partial(jax.jit, inline=True)
+def _add_up(cos: Real, sin: Real, y: Real) -> Real:
+    first = _evaluate(y)
+    pair, total = first, cos[0] * first[1] + sin[0] * first[0]
+    if cos.shape[0] <= _UNROLLED:
+        for n in range(1, cos.shape[0]):
+            pair, total = _next_harmonic(first, pair, total, cos[n], sin[n])
+        return total
+    rows = [
+        jnp.pad(c[1:], (0, (1 - c.size) % _BLOCK)).reshape(-1, _BLOCK) for c in (cos, sin)
+    ]
+
+    def block(state, coefficients):
+        for c, s in zip(*coefficients, strict=True):
+            state = _next_harmonic(first, *state, c, s)
+        return state, None
+
+    (_, total), _ = jax.lax.scan(block, (pair, total), tuple(rows))
+    return total
+
+
+def _next_harmonic(first: tuple, pair: tuple, total: Real, cos: Real, sin: Real) -> tuple:
+    """The pair of the next harmonic by the addition theorem, and the sum with it."""
+    sine = pair[0] * first[1] + pair[1] * first[0]
+    cosine = pair[1] * first[1] - pair[0] * first[0]
+    return (sine, cosine), total + cos * cosine + sin * sine
+
+
+def _fourier_sum_jvp(primals, tangents):
+    cos, sin, y = primals
+    cos_dot, sin_dot, y_dot = tangents
+    total = fourier_sum(cos, sin, y)
+    change = jnp.zeros_like(total)
+    # Zero tangents leave no trace: without this, programs triple with every derivative.
+    if not _is_zero(y_dot):
+        turns = 2 * jnp.pi * jnp.arange(1, cos.shape[0] + 1)
+        change = fourier_sum(turns * sin, -turns * cos, y) * y_dot
+    if not (_is_zero(cos_dot) and _is_zero(sin_dot)):
+        change = change + fourier_sum(_filled(cos_dot), _filled(sin_dot), y)
+    return total, change
+
+
+def _is_zero(tangent) -> bool:
+    return isinstance(tangent, SymbolicZero)
+
+
+def _filled(tangent):
+    return jnp.zeros(tangent.shape) if _is_zero(tangent) else tangent
+
+
+fourier_sum.defjvp(_fourier_sum_jvp, symbolic_zeros=True)

@@ -1,0 +1,95 @@
+"""Units, meanings and origin of a data set, in its attributes."""
+
+import platform
+from functools import lru_cache
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import equinox as eqx
+import jax
+import numpy as np
+
+from ..model import Scene
+from ..wiggly import FLAGS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_PACKAGES = ("jax", "diffrax", "equinox", "numpy", "xarray")
+
+_MEANING = {
+    "eps": ("m", "period of the surface, length scale eps"),
+    "gamma": ("1", "exponent of the viscosity eps^gamma"),
+    "time": ("s", "time"),
+    "z": ("m", "state of the wiggly system, z_eps"),
+    "sup_error": ("m", "sup over [0, T] of |z_eps - z|"),
+    "strip_excess": ("m", "sup over [0, T] of the distance of z_eps from the strip"),
+    "status": (None, "how the cell ended"),
+    "steps": ("1", "steps tried"),
+    "rejected": ("1", "steps rejected"),
+    "tolerance": ("1", "tolerance of a step in periods of the surface"),
+    "dissipation": ("J", "energy dissipated since t = 0, int eps^gamma z'^2"),
+    "dissipation_error": ("J", "sup over [0, T] of |dissipation - dissipation_limit|"),
+    "dissipation_gap": ("J", "estimate of the error of the dissipation at T"),
+    "how": ("1", "0: every slip since z0; 1: a bracket has closed; 2: from a slip map"),
+    "bracket": ("1", "how closely brackets have closed, in units of eps"),
+    "sampled": ("1", "share of the way known from some of its slips"),
+    "survey_error": ("m", "estimate of what sampling slips adds to the error of sup_error"),
+    "residual": ("J", "residual of the energy-dissipation balance on [0, T]"),
+    "viscosity": ("N s m-1", "viscosity eps^gamma"),
+    "z_limit": ("m", "state of the limit system"),
+    "dissipation_limit": ("J", "energy dissipated by the limit system, int R(z')"),
+    "load": ("N", "load l(t)"),
+    "z_minus": ("m", "lower edge of the strip"),
+    "z_plus": ("m", "upper edge of the strip"),
+}
+
+
+@lru_cache
+def _versions(*packages: str) -> list[str]:
+    """Read from files, 1 ms each."""
+    return [version(name) for name in packages]
+
+
+def scene_text(scene: Scene) -> str:
+    """The scene's parts and numbers, readable."""
+    numbers = jax.tree_util.tree_map(
+        lambda leaf: np.asarray(leaf).tolist() if eqx.is_array_like(leaf) else leaf, scene
+    )
+    return eqx.tree_pformat(numbers, short_arrays=False, width=88)
+
+
+def explain(data: "xr.Dataset", meanings: dict[str, tuple[str | None, str]]) -> None:
+    """Attach units and long names, and CF flags to `status`."""
+    for name, variable in data.variables.items():
+        units, meaning = meanings[str(name)]
+        variable.attrs["long_name"] = meaning
+        if units is not None:
+            variable.attrs["units"] = units
+    status = data.variables["status"].attrs
+    status["flag_values"] = np.array(FLAGS["flag_values"], dtype=np.int8)
+    status["flag_meanings"] = FLAGS["flag_meanings"]
+
+
+def origin(title: str, scene: Scene, **facts: Any) -> dict[str, Any]:
+    """Where a data set comes from: the scene, versions, and more facts."""
+    known = _versions(*_PACKAGES)
+    return {
+        "title": title,
+        "source": f"frictionjax {_versions('frictionjax')[0]}",
+        "scene": scene_text(scene),
+        "dtype": "float64",
+        "versions": ", ".join(map(" ".join, zip(_PACKAGES, known, strict=True))),
+        "python": platform.python_version(),
+        **facts,
+    }
+
+
+def describe(
+    data: "xr.Dataset", scene: Scene, accuracy: float, solver: str
+) -> "xr.Dataset":
+    """Attach units, long names, CF flags and provenance to the data set of a sweep."""
+    explain(data, _MEANING)
+    title = "Convergence of a wiggly viscous system to directional dry friction"
+    data.attrs = origin(title, scene, method=solver, accuracy=accuracy)
+    return data

@@ -1,0 +1,43 @@
+"""A sweep's data set of which one gamma, eps or time was selected, as a grid again."""
+
+from typing import TYPE_CHECKING
+
+from .._checks import require
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_AXES = ("gamma", "eps")
+_OF_TIME = ("z_limit", "dissipation_limit", "load", "z_minus", "z_plus")
+_SERIES = ("z", "dissipation", "how", "bracket", *_OF_TIME)
+
+
+def whole_grid(dataset: "xr.Dataset") -> "xr.Dataset":
+    """With dims gamma, eps and time, where `sel` or `isel` has left one value of some.
+
+    Raises `ValueError` where a coordinate was dropped: then nobody knows the value.
+    """
+    for name in (*_AXES, "time"):
+        known = name in dataset.coords
+        allowed = f"the values of {name}, as `isel({name}=0)` leaves them, not `drop=True`"
+        require(known, "dataset", f"one without the coordinate {name}", allowed)
+        if dataset[name].ndim == 0:
+            dataset = _with_axis(dataset, name)
+    return dataset
+
+
+def _with_axis(dataset: "xr.Dataset", name: str) -> "xr.Dataset":
+    given = list(dataset.data_vars)
+    along = _SERIES if name == "time" else [v for v in given if v not in _OF_TIME]
+    value = dataset[name]
+    columns = {v: dataset[v] for v in given}
+    bare = dataset.drop_vars([name, *given])
+    columns = {
+        v: column.drop_vars(name).expand_dims({name: [value.item()]})
+        if v in along
+        else column.drop_vars(name)
+        for v, column in columns.items()
+    }
+    found = bare.assign(columns)
+    found[name].attrs = value.attrs
+    return found

@@ -1,0 +1,22 @@
+"""What closing the brackets of a sweep gives."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..lanes import SegmentEnds, Segments
+
+
+class BracketValues(NamedTuple):
+    """Values at all stops of a layout, shape (S,), and of the legs that lead to them.
+
+    `gap`: how closely brackets have closed, in eps; `how`: as in `CellResults`.
+    `steps`, `rejected`: of each cell.
+    """
+
+    arrivals: SegmentEnds
+    legs: Segments
+    gap: np.ndarray
+    how: np.ndarray
+    steps: np.ndarray
+    rejected: np.ndarray

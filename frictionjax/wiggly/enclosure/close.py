@@ -1,0 +1,280 @@
+"""Rounds of windows through the lanes, further back each time until brackets close."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+
+from ...model import Scene
+from ..equation import Status
+from ..lanes import WIDTH, LaneCells, Lanes, LaneScene, SegmentEnds, Segments, Sums, march
+from ..limit_path import Path, states_at
+from ..rosenbrock import Tableau
+from .bracket_values import BracketValues
+from .brackets import BracketPlan, Brackets, plan_brackets
+from .closeness import gaps_of, shifts_of
+from .layout import Layout
+from .requirements import AFFORDABLE, Requirements
+from .starts import CellBounds, Starts, slow_share, starts_of
+
+WORKERS = 2  # XLA runs each queue of lanes on one core
+CLOSED = 0.5  # of the accuracy: gaps of brackets accepted
+ROUNDS = 3
+EARLIER = 4  # times as far back in each round
+MARGIN = 3  # wells: one to fall behind, one to catch up, one to forget
+LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast slides are
+_FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
+_LONGEST = 1.5  # times what its longest job takes: the shortest batch
+_BATCH = 1e5  # wells: a few seconds, between two reports
+# Steps beyond those for the wells of the path, of the longest lane in each march, added up,
+# that a cell may wait for in an attempt: 2 to 8 seconds. One lane alone, where that is
+# affordable, has its own budget. (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: where tips
+# do not follow, lanes went through 40 times the wells of the path, for maps that never
+# begin, and there was no answer in 10 minutes.)
+PATIENCE, _STEPS_A_WELL = 2e6, 200.0
+
+Report = Callable[[float], None]
+
+
+# Started with the first sweep, and kept: a pool for each took 1 ms.
+_POOL = ThreadPoolExecutor(WORKERS)
+
+
+def _seats(count: int, seats: int) -> np.ndarray:
+    """Seats dealt there and back, so that none gets all the lanes behind of brackets."""
+    row, seat = np.divmod(np.arange(count), seats)
+    return np.where(row % 2 == 0, seat, seats - 1 - seat)
+
+
+def _batches(work: np.ndarray, workers: int) -> int:
+    """Batches of jobs, as often as a report is wanted and lanes do not idle.
+
+    They do where a batch has less than two jobs a lane, or is done in hardly more time than
+    its longest takes. (Every slip of 48 cells, the tiles of gamma = 1/2 in four batches:
+    1.2 to 1.5 times as long. Fewer than need be: larger tables, and another loop to
+    compile.)
+    """
+    lanes = workers * WIDTH
+    longest = _LONGEST * work.max(initial=1.0)
+    most = min(work.size // (2 * lanes), int(work.sum() / (lanes * longest)))
+    return max(min(int(np.ceil(work.sum() / _BATCH)), most), 1)
+
+
+def _of_jobs(plan: BracketPlan, of_legs: np.ndarray) -> np.ndarray:
+    """Sums over the legs of each job, (jobs,)."""
+    so_far = np.concatenate([[0.0], np.cumsum(of_legs)])
+    return so_far[plan.jobs.past_leg] - so_far[plan.jobs.first_leg]
+
+
+class BracketRound(NamedTuple):
+    """What one round of windows has found."""
+
+    plan: BracketPlan
+    found: SegmentEnds
+
+
+class BracketContext(NamedTuple):
+    """What all rounds of one sweep share.
+
+    `brief` (cells,): tolerances of lanes on rides through a few wells; None: those of the
+    others. `workers`: queues at once. `spent` (2, cells): steps and rejected steps so far,
+    `waited` (cells,): those of `PATIENCE`, added in place. `lanes_run` is called as
+    lanes set off.
+    """
+
+    scene: Scene
+    lanes: LaneScene
+    path: Path
+    ground: CellBounds
+    cells: LaneCells
+    tableau: Tableau
+    wanted: Sums
+    accuracy: float
+    report: Report
+    spent: np.ndarray
+    waited: np.ndarray
+    brief: np.ndarray | None
+    workers: int = WORKERS
+    lanes_run: Callable[[], None] = lambda: None
+
+    def run(self, windows: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
+        """March all windows, from `wells` of the path or `back` of a ride before them."""
+        where = windows.cell, windows.begin, wells, back
+        starts = starts_of(self.scene, self.path, self.ground, *where)
+        return self.march_from(windows, starts)
+
+    def march_from(self, windows: Brackets, starts: Starts) -> BracketRound:
+        """March all windows from their starts."""
+        return self.through(self.planned(windows, starts))
+
+    def planned(self, windows: Brackets, starts: Starts) -> BracketPlan:
+        """What lanes are to do for windows, from their starts."""
+        return plan_brackets(self.scene, self.path, self.ground, windows, starts)
+
+    def through(self, plan: BracketPlan) -> BracketRound:
+        """March all windows of a plan."""
+        able, plan = self._within_patience(plan)
+        found = self._march(plan, able)
+        self._wait(plan, found)
+        owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
+        for total, steps in zip(self.spent, (found.steps, found.rejected), strict=True):
+            total += np.bincount(owner, np.nan_to_num(steps), total.size)
+        return BracketRound(plan, found)
+
+    def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
+        """Which jobs their cells can still wait for, and the plan with what is left."""
+        jobs, legs = plan.jobs, plan.legs
+        left = np.where(self._alone(plan), np.inf, PATIENCE - self.waited[jobs.cell])
+        owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
+        wells = np.abs(legs.guide1 - legs.guide0) / self.ground.eps[jobs.cell[owner]]
+        allowed = left[owner] + _STEPS_A_WELL * wells
+        legs = legs._replace(budget=np.minimum(legs.budget, allowed))
+        return left > 0, plan._replace(legs=legs)
+
+    def _wait(self, plan: BracketPlan, found: SegmentEnds) -> None:
+        """Add up what the longest lane has taken beyond its share, for each cell.
+
+        Of one that gave up everything counts: it would take its share again in each march.
+        """
+        cell, steps = plan.jobs.cell, _of_jobs(plan, np.nan_to_num(found.steps))
+        beyond = np.maximum(steps - _STEPS_A_WELL * self._wells(plan), 0.0)
+        gave_up = _of_jobs(plan, np.nan_to_num(found.code)) > 0
+        beyond = np.where(gave_up, steps, beyond)
+        longest = np.zeros(self.waited.size)
+        np.maximum.at(longest, cell, np.where(self._alone(plan), 0.0, beyond))
+        self.waited[:] += longest
+
+    def _alone(self, plan: BracketPlan) -> np.ndarray:
+        """Jobs from a known start, in cells that one lane can go through, (jobs,)."""
+        known = np.zeros(plan.jobs.cell.size, dtype=bool)
+        known[: plan.known.size] = plan.known
+        wells = self.path.travel[-1] / self.ground.eps[plan.jobs.cell]
+        return known & (wells <= AFFORDABLE)
+
+    def _wells(self, plan: BracketPlan) -> np.ndarray:
+        """Wells of the path that jobs go through, (jobs,)."""
+        ways = _of_jobs(plan, np.abs(plan.legs.guide1 - plan.legs.guide0))
+        return ways / self.ground.eps[plan.jobs.cell]
+
+    def _march(self, plan: BracketPlan, able: np.ndarray) -> SegmentEnds:
+        """Deal the jobs that are `able` to the cores, the longest first.
+
+        Others end as lanes do that give up.
+        """
+        jobs, legs = plan.jobs, plan.legs
+        work = self._wells(plan) + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
+        work = np.where(plan.brief, _FAST, 1.0) * work
+        jobs, cells = self._steered(jobs, plan.brief | plan.calm)
+        order = np.argsort(-work, kind="stable")
+        order = order[able[order]]
+        batches = _batches(work[able], self.workers)
+        found = np.full((len(SegmentEnds._fields), legs.start.size), np.nan)
+        # Overwritten by lanes that run.
+        found[SegmentEnds._fields.index("code")] = int(Status.MAX_STEPS)
+        seat = _seats(order.size, batches * self.workers)
+        for batch in range(batches):
+            queues = [order[seat == batch + i * batches] for i in range(self.workers)]
+            for rows, part in self._through(cells, jobs, legs, queues, work):
+                found[:, rows] = part
+            self.report(1 / batches)
+        return SegmentEnds(*found)
+
+    def _steered(self, jobs: Lanes, brief: np.ndarray) -> tuple[Lanes, LaneCells]:
+        """Jobs that are `brief` in cells of their own, with their tolerance."""
+        if self.brief is None or not brief.any():
+            return jobs, self.cells
+        loosest = np.maximum(self.brief, self.cells.loosest)
+        others = self.cells._replace(tolerance=self.brief, loosest=loosest)
+        both = (np.concatenate(pair) for pair in zip(self.cells, others, strict=True))
+        return jobs._replace(cell=jobs.cell + brief * self.brief.size), LaneCells(*both)
+
+    def _through(self, cells: LaneCells, jobs: Lanes, legs: Segments, queues: list, work):
+        """Legs of each queue and what is found there; the first is run by this thread.
+
+        Beside other cells' lanes two of the pool's would wait for each other.
+        """
+        parts = [(cells, jobs, legs, queue, work) for queue in queues if queue.size]
+        self.lanes_run()
+        beside = [_POOL.submit(self._queue, *part) for part in parts[1:]]
+        found = [self._queue(*part) for part in parts[:1]]
+        return found + [part.result() for part in beside]
+
+    def _queue(self, cells, jobs, legs, chosen: np.ndarray, work: np.ndarray) -> tuple:
+        """Legs of some jobs, and what is found there."""
+        mine = Lanes(*(np.asarray(column)[chosen] for column in jobs))
+        # Rows of this queue's legs only, in the order of its jobs.
+        count = mine.past_leg - mine.first_leg
+        past = np.cumsum(count)
+        rows = np.repeat(mine.first_leg - (past - count), count) + np.arange(count.sum())
+        mine = mine._replace(first_leg=past - count, past_leg=past)
+        some = Segments(*(column[rows] for column in legs))
+        fixed = self.tableau, self.wanted
+        return rows, march(self.lanes, cells, mine, some, *fixed, work[chosen])
+
+
+def close_brackets(
+    rounds: BracketContext, layout: Layout, needs: Requirements
+) -> tuple[BracketValues, np.ndarray]:
+    """Rounds of windows, further back each time; and windows that never closed."""
+    windows = layout.windows
+    size = windows.stop.size
+    values = np.full((len(SegmentEnds._fields), size), np.nan)
+    legs = np.full((len(Segments._fields), size), np.nan)
+    gap, how = np.full(size, np.inf), np.zeros(size, dtype=int)
+    open_ = np.arange(windows.cell.size)
+    wells = run_ups(rounds, windows, needs.warm)
+    back = np.zeros(wells.size)
+    for _ in range(ROUNDS):
+        some = windows.chosen(open_)
+        place = np.flatnonzero(np.isin(windows.owner, open_))
+        place = place[np.argsort(windows.owner[place], kind="stable")]
+        plan, found = rounds.run(some, wells[open_], back[open_])
+        speed = rounds.path.speed
+        gaps = gaps_of(found, plan.legs, plan.behind, plan.ahead, speed)
+        begins = plan.meet_behind, plan.meet_ahead
+        meets = gaps_of(found, plan.legs, *begins, speed)
+        # Stops that one lane alone has reached count as closed as their window's begin.
+        alone = plan.ahead < 0
+        gaps = np.where(alone, meets[some.owner], gaps)
+        values[:, place] = np.stack([v[plan.behind] for v in found])
+        legs[:, place] = np.stack([v[plan.behind] for v in plan.legs])
+        gap[place] = gaps
+        how[place] = np.where(plan.known, 0, 1 + plan.ridden)[some.owner]
+        worst = np.zeros(some.cell.size)
+        np.maximum.at(worst, some.owner, np.nan_to_num(gaps, nan=np.inf))
+        # Lanes that met before a stop part again for a moment where it is at a slip: the
+        # start is forgotten all the same, and the gap is reported as it is. Lanes from
+        # close by have had steps of their own, which part them further: they go back once,
+        # and so do those that set off from a ride where their window begins.
+        far = (wells[open_] > MARGIN) & ~(plan.ridden & (back[open_] < 1))
+        met = np.maximum(meets, shifts_of(found, plan.legs, *begins, speed))
+        met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
+        worst = np.minimum(worst, met)
+        open_ = open_[worst > CLOSED * rounds.accuracy]
+        if open_.size == 0:
+            break
+        wells[open_] = np.maximum(EARLIER * wells[open_], MARGIN + 1)
+        back[open_] = EARLIER * np.maximum(back[open_], 1)
+    result = BracketValues(SegmentEnds(*values), Segments(*legs), gap, how, *rounds.spent)
+    return result, open_
+
+
+def run_ups(rounds: BracketContext, windows: Brackets, warm: np.ndarray) -> np.ndarray:
+    """Wells that each window starts earlier: fewer where its slide is slow, (W,).
+
+    Slides remember in proportion to the square of their speed.
+    """
+    wells = warm[windows.cell].astype(float)
+    long = (wells > LONG_MEMORY) & np.isfinite(wells)
+    if not long.any():
+        return wells
+    near = np.full(wells.size, MARGIN + 1.0)
+    where = windows.cell, windows.begin, near, near
+    scene, path = rounds.scene, rounds.path
+    starts = starts_of(scene, path, rounds.ground, *where, measured=False)
+    states = states_at(scene, path, starts.time)
+    share = slow_share(scene, path, starts.time, states)
+    share = np.where(starts.ridden | starts.lagging, 1.0, share)
+    # Others keep theirs: what they find must not depend on their neighbours.
+    return np.where(long, np.ceil(MARGIN + share * (wells - MARGIN)), wells)

@@ -1,0 +1,74 @@
+"""What a cell's windows need, and how many wells its lanes pass through for it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..limit_path import Path
+
+WELLS_A_LEG = 16
+_LEG = 0.02  # of the whole way: the guide is a cubic on each leg
+# Wells that one lane alone goes through at most: a minute or two.
+AFFORDABLE = 2e5
+TAIL = 4  # wells before a turning point that are always measured
+
+
+class Requirements(NamedTuple):
+    """What a cell's windows need, in wells, shape (cells,).
+
+    `warm`: from a start to where it is forgotten. `settle`: from the start of a slide to
+    where the slide before is forgotten. `tile`: between two cuts of the chain, infinite
+    where it is not cut. `nodes`: periods measured in a slide, 0 for all. `offset` (cells,
+    pieces): from the start of a slide to its first lattice point, which is half a period
+    from the slips of a slow slide: what is measured should not begin in a slip. `cut`
+    (cells, pieces): where the chain is cut however long its tiles are, at a piece's end.
+    """
+
+    warm: np.ndarray
+    settle: np.ndarray
+    tile: np.ndarray
+    nodes: np.ndarray
+    offset: np.ndarray
+    cut: np.ndarray
+
+
+def wells_of(
+    path: Path, eps: np.ndarray, needs: Requirements
+) -> tuple[np.ndarray, np.ndarray]:
+    """Wells of the path in each cell: outside inner parts of slides, and inside."""
+    ways = np.abs(np.diff(path.states))[None, :] / eps[:, None]
+    inner = inner_wells(ways, needs)
+    return np.sum(ways - inner, axis=1), np.sum(inner, axis=1)
+
+
+def cost_of(path: Path, eps: np.ndarray, needs: Requirements, times: int) -> np.ndarray:
+    """Wells that lanes pass through in each cell, about."""
+    outer, inner = wells_of(path, eps, needs)
+    slides = np.sum(inner_wells(np.abs(np.diff(path.states)) / eps[:, None], needs) > 0, 1)
+    shown = times * inner / np.maximum(inner + outer, 1e-9)
+    tiles = outer / needs.tile
+    windows = slides * needs.nodes + shown
+    # The first tile sets off from the known z0.
+    run_ups = 2 * needs.warm * np.maximum(tiles - 1, 0.0)
+    return outer + run_ups + 2 * (needs.warm + 2) * windows
+
+
+def longest_lane(path: Path, eps: np.ndarray, needs: Requirements) -> np.ndarray:
+    """Wells of a tile and its run-up, at most all of them between two cuts."""
+    ends = np.where(needs.cut, path.travel[1:], 0.0)
+    begins = np.maximum.accumulate(np.pad(ends, ((0, 0), (1, 0)))[:, :-1], axis=1)
+    between = np.max(path.travel[1:] - begins, axis=1)
+    return np.minimum(between / eps, needs.tile + needs.warm)
+
+
+def wells_a_leg(path: Path, eps: np.ndarray) -> np.ndarray:
+    """Wells between two stops of each cell's lanes, where nothing else stops them."""
+    span = max(float(path.travel[-1]), 1e-300)
+    return np.clip(np.floor(_LEG * span / eps), 1, WELLS_A_LEG)
+
+
+def inner_wells(ways: np.ndarray, needs: Requirements) -> np.ndarray:
+    """Wells of each slide of which only some are measured, (cells, pieces)."""
+    inner = np.floor(ways) - np.ceil(needs.settle)[:, None] - TAIL - 1
+    nodes = needs.nodes[:, None]
+    return np.where((nodes > 0) & (inner > 2 * nodes), inner, 0.0)

@@ -1,0 +1,225 @@
+"""Where lanes set off: provably below and above the tip, from z0, or from a ride."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...model import Scene
+from ..equation import WiggleFolds
+from ..limit_path import Path, slopes_at, states_at, times_at
+from ..slip_map import FastSlide, ManyTransitTimes, last_begun
+
+ASIDE = 1e-6  # of a stretch of time: where one-sided slopes are taken
+_GAP = 1e-6  # of a well: rounding of z/eps
+FASTER = 1.5  # how much slides may have been faster, squared, where lanes set off
+# Wells: lags that are longer are taken at the speed of the moment. (At the largest speed
+# always: lanes of 300 wells in slow parts of slides at gamma = 0.4, where ten do.)
+_LONG_LAG = 5.0
+_WHOLE = 1e-4  # wells: rounding of times, in numbers of wells
+
+
+class CellBounds(NamedTuple):
+    """What windows need to know of each cell, shape (cells,) each.
+
+    `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
+    most. `shift_plus`, `shift_minus`: by how much in m folds at this eps differ from rho.
+    `relaxed`: time in s from which on a start outside the strip is forgotten, by Lemma 7.
+    `rides`: tuples of `FastSlide`, in time.
+    """
+
+    eps: np.ndarray
+    folds: WiggleFolds
+    lag_plus: np.ndarray
+    lag_minus: np.ndarray
+    shift_plus: np.ndarray
+    shift_minus: np.ndarray
+    start_well: np.ndarray
+    start_tip: np.ndarray
+    relaxed: np.ndarray
+    rides: np.ndarray
+
+
+class Starts(NamedTuple):
+    """Where lanes of windows set off, shape (W,).
+
+    `time` in s. `known`: from the known z0; `ridden`: from a ride, as closely as its error
+    says, which ends at `until` (s); `lagging`: behind one, with the largest lag there is.
+    `behind_*` and `ahead_*`: well and tip of the two lanes of the bracket.
+    """
+
+    time: np.ndarray
+    known: np.ndarray
+    ridden: np.ndarray
+    lagging: np.ndarray
+    until: np.ndarray
+    behind_well: np.ndarray
+    behind_tip: np.ndarray
+    ahead_well: np.ndarray
+    ahead_tip: np.ndarray
+
+
+def way_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
+    """Way in m that the path has come at each time."""
+    piece = path.piece_of(times)
+    states = states_at(scene, path, times)
+    return path.travel[piece] + np.abs(states - path.states[piece])
+
+
+def _run_up(path: Path) -> np.ndarray:
+    """Way in m that the path has come in a piece's direction before it, (P,).
+
+    Rests between do not count as a turn, nor does what was before t = 0.
+    """
+    before = np.zeros(path.direction.size)
+    came, heading = 0.0, 0.0
+    for i, direction in enumerate(path.direction):
+        if direction not in (0.0, heading):
+            came, heading = 0.0, direction
+        before[i] = came
+        came += path.travel[i + 1] - path.travel[i]
+    return before
+
+
+def starts_of(
+    scene: Scene,
+    path: Path,
+    ground: CellBounds,
+    cell: np.ndarray,
+    begin: np.ndarray,
+    wells,
+    back,
+    measured: bool = True,
+) -> Starts:
+    """Starts at least `wells` of the path's way before each window, or `back` of a ride's.
+
+    On a slide the tip cannot be past the first fold beyond the strip's edge: it would have
+    had to climb it against a force. Nor can it be further behind than a steady slide at
+    the largest speed of the scene; where that is many wells, of the moment. Both hold once
+    the path has come further than the lag of the slide before in the other direction.
+    Where no such place is left, lanes start from z0; from a ride where one is nearer.
+    Where not `measured`, errors of rides are not waited for: both lanes start on them.
+    """
+    eps = ground.eps[cell]
+    lag = np.maximum(ground.lag_plus, ground.lag_minus)[cell]
+    wanted = way_at(scene, path, begin) - wells * eps
+    # A start outside the strip rests where it has relaxed to, off the path by this much.
+    astray = path.speed * ground.relaxed[cell]
+    clear = (lag + astray + 2 * eps)[:, None] - _run_up(path)
+    opens = path.travel[:-1] + np.maximum(clear, 0.0)
+    closes = path.travel[1:]
+    usable = (path.direction != 0) & (opens <= closes) & (opens <= wanted[:, None])
+    last = opens.shape[1] - 1 - np.argmax(usable[:, ::-1], axis=1)
+    known = ~np.any(usable, axis=1)
+    piece = np.where(known, 0, last)
+    way = np.minimum(wanted, closes[piece])
+    direction = path.direction[piece]
+    level = path.states[piece] + direction * (way - path.travel[piece])
+    slide = np.flatnonzero(~known)
+    time = np.zeros(begin.size)
+    time[slide] = times_at(scene, path, piece[slide], level[slide])
+    known |= time < ground.relaxed[cell]
+    time[known] = 0.0
+    slide = np.flatnonzero(~known)
+    share = np.ones(begin.size)
+    share[slide] = slow_share(scene, path, time[slide], level[slide])
+    share = np.where(lag > _LONG_LAG * eps, share, 1.0)
+    before = rides, which = last_begun(ground.rides, cell, begin)
+    lagging = _still_lagging(path, rides, which, time)
+    share = np.where(lagging, 1.0, share)
+    lanes = _brackets(ground, cell, direction, level, known, share)
+    none = np.zeros(begin.size, dtype=bool)
+    plain = Starts(time, known, none, lagging, np.full(begin.size, -np.inf), *lanes)
+    reach = wells * eps + 2 * share * lag
+    return _ridden(scene, path, before, begin, plain, back, reach, measured)
+
+
+def _still_lagging(path: Path, rides: list[FastSlide], which: np.ndarray, time: np.ndarray):
+    """Whether a slide that its ride left at full speed may still lag as that did, (W,).
+
+    Lags are not those of the moment there. (Brackets of these left the tip out: 6e-2 eps,
+    16 wells behind a ride.)
+    """
+    some = np.flatnonzero(which >= 0)
+    lagging = np.zeros(which.size, dtype=bool)
+    if some.size:
+        fast = np.array([ride.lags for ride in rides])[which[some]]
+        turns = np.array([path.edges[ride.piece + 1] for ride in rides])[which[some]]
+        lagging[some] = fast & (time[some] <= turns)
+    return lagging
+
+
+def _ridden(
+    scene: Scene, path: Path, before: tuple, begin, plain: Starts, back, way, measured: bool
+) -> Starts:
+    """The same starts, from the last ride where it holds the window or ends nearer to it.
+
+    `before`: as `last_begun` says. `way` (W,): m that a lane of the bracket goes until the
+    window begins, its lag included.
+    """
+    rides, which = before
+    some = np.flatnonzero(which >= 0)
+    if some.size == 0:
+        return plain
+    ridden, inside = _on_rides(rides, which[some], begin[some], back[some], measured)
+    late, early = np.split(way_at(scene, path, np.append(begin[some], ridden.time)), 2)
+    nearer = plain.known[some] | inside | (late - early <= way[some])
+    starts = Starts(*(column.copy() for column in plain))
+    for column, row in zip(starts, ridden, strict=True):
+        column[some[nearer]] = row[nearer]
+    return starts
+
+
+def _on_rides(rides: list[FastSlide], which: np.ndarray, begin, back, measured: bool):
+    """Starts at lattice points of rides, their errors behind and ahead; and what holds
+    `begin`."""
+    curves = ManyTransitTimes([ride.curve for ride in rides])
+    rows = [(r.sign, r.well, r.tip, r.curve.edges[0], r.end) for r in rides]
+    sign, well, tip, first, end = np.array(rows)[which].T
+    number = np.floor(curves.number_at(which, np.minimum(begin, end)) + _WHOLE) - back
+    number = np.maximum(number, first)
+    error = np.zeros(which.size)
+    if measured:
+        errors = np.concatenate([ride.error for ride in rides])
+        error = sign * errors[curves.panel_of(which, number)]
+    time = np.minimum(curves.time_of(which, number), begin)
+    none, well = np.zeros(which.size, dtype=bool), well + sign * number
+    lanes = well, tip - error, well, tip + error
+    starts = Starts(time, none, ~none, none, end, *lanes)
+    return starts, begin <= end
+
+
+def slow_share(scene: Scene, path: Path, time: np.ndarray, state: np.ndarray) -> np.ndarray:
+    """Share of the lag and memory of the fastest slide that there is at these times.
+
+    Both grow with the square of the speed; slides may have been faster a moment before.
+    """
+    before = time - ASIDE * path.edges[-1]  # a slide may end at full speed, in a kink
+    both = [slopes_at(scene, path, t, state) for t in (time, np.maximum(before, 0.0))]
+    share = np.max(np.abs(both), axis=0) / (path.speed or 1.0)  # nothing slides at 0
+    return np.minimum(FASTER * share**2, 1.0)
+
+
+def _brackets(ground: CellBounds, cell, direction, level, known, share):
+    """Well and tip of the lanes behind and ahead of the edge at `level`."""
+    up, eps, folds = direction > 0, ground.eps[cell], ground.folds
+
+    def side(plus, minus) -> np.ndarray:
+        return np.where(up, np.asarray(plus)[cell], np.asarray(minus)[cell])
+
+    place = side(folds.place_plus, folds.place_minus)
+    fold = side(folds.state_plus, folds.state_minus)
+    shift = side(ground.shift_plus, ground.shift_minus)
+    lag = share * side(ground.lag_plus, ground.lag_minus)
+    # Mirrored for slides to the left, so that the tip moves up in both.
+    sign = np.where(up, 1.0, -1.0)
+    at = sign * (level - fold) / eps
+    ahead = np.ceil(at + shift / eps + _GAP)
+    behind = np.floor(at - (shift + lag) / eps - _GAP) - 1
+    start_well, start_tip = ground.start_well[cell], ground.start_tip[cell]
+    tip = np.where(known, start_tip, place)
+    return (
+        np.where(known, start_well, sign * behind),
+        tip,
+        np.where(known, start_well, sign * ahead),
+        tip,
+    )

@@ -1,0 +1,86 @@
+"""What step control needs to know of the wiggly force, from a scan of one period."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from ..._checks import Real
+from ...model import AbstractPotential
+from ...numerics import periodic_extrema, slope_of
+
+
+class WiggleFolds(NamedTuple):
+    """Extreme folds in the tip coordinate of well 0, where slides hang before a slip.
+
+    `place_*`: periods, `state_*`: z in m, `force_*`: V_eps' in N, at its maximum (plus)
+    and minimum (minus).
+    """
+
+    place_plus: Real
+    state_plus: Real
+    force_plus: Real
+    place_minus: Real
+    state_minus: Real
+    force_minus: Real
+
+
+class Landscape(eqx.Module):
+    """What step control needs to know of the wiggly force in the tip coordinate.
+
+    `fold_curvature`, `flat_curvature`: |W'''| at the sharper and at the flatter of the two
+    extreme folds, in N. `steepest`: max |W''| in N. `branch`: width in periods of the
+    narrowest branch on which `W'` is monotone; a tip must cross a falling one to change
+    wells. `stretch`: largest G.
+    """
+
+    fold_curvature: Real
+    flat_curvature: Real
+    steepest: Real
+    branch: Real
+    stretch: Real
+    folds: WiggleFolds
+
+
+def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
+    """Scan one period of `V_eps'` in the tip coordinate."""
+    points = potential.points
+
+    def force(y):
+        return potential.tip_force(y, eps)[0]
+
+    # Nobody differentiates a plan: a tenth less to trace.
+    extrema = periodic_extrema(force, points, differentiable=False)
+    grid = (jnp.arange(points) + 0.5) / points
+    one = jnp.ones_like(grid)
+    every = jax.vmap(lambda y: potential.tip_force(y, eps))
+    (_, stretches), (slopes, _) = jax.jvp(every, (grid,), (one,))
+    top, bottom = extrema.argmax, extrema.argmin
+    states = [eps * y + potential.offset(y, eps) for y in (top, bottom)]
+    # Forward twice: reverse mode takes twice as long to trace.
+    bend = slope_of(slope_of(jax.vmap(force)))
+    curvatures = jnp.abs(bend(jnp.stack([top, bottom])))
+    return Landscape(
+        fold_curvature=jnp.max(curvatures),
+        flat_curvature=jnp.min(curvatures),
+        steepest=jnp.max(jnp.abs(slopes)),
+        branch=jnp.minimum(_narrowest_run(slopes) / points, 0.5),
+        stretch=jnp.max(stretches),
+        folds=WiggleFolds(top, states[0], extrema.max, bottom, states[1], extrema.min),
+    )
+
+
+def _narrowest_run(slopes: Float[Array, " n"]) -> Real:
+    """Samples in the shortest run of one sign of the 1-periodic `slopes`, at least 2.
+
+    Rounding noise on flat stretches counts as rising.
+    """
+    falling: Bool[Array, " twice"] = jnp.tile(slopes < -1e-9 * jnp.max(jnp.abs(slopes)), 2)
+    index, twice = jnp.arange(falling.shape[0]), falling.shape[0]
+    turns = (falling != jnp.roll(falling, 1)) & (index > 0)
+    # Sorted to the front (a running maximum instead compiles three times as long).
+    places = jnp.sort(jnp.where(turns, index, 2 * twice))
+    widths = jnp.where(places[1:] < twice, jnp.diff(places), twice)
+    return jnp.maximum(jnp.min(widths), 2)

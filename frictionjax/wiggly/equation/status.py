@@ -1,0 +1,72 @@
+"""How a computation ended."""
+
+import warnings
+
+import numpy as np
+
+from ..._checks import Outcome
+
+
+class Status(Outcome):
+    """Why a result can or cannot be trusted; `message` says it for people."""
+
+    OK = 0, "every number can be trusted"
+    MAX_STEPS = 1, "the step budget ran out before the last time; raise max_steps"
+    STEP_TOO_SMALL = 2, "slips are shorter than the spacing of floats at t"
+    NOT_FINITE = 3, "the trajectory left the range of finite numbers"
+    SOLVER_FAILED = 4, "the solver gave up on a step"
+    UNBALANCED = 5, "the energy-dissipation balance does not close"
+    TOO_MANY_TURNS = 6, "the load turns more often than the scene has room for"
+    OPEN_BRACKET = 7, "starts are not forgotten, and every slip is too many to integrate"
+    ROUGH_SURVEY = 8, "a slide changes too fast to be known from some of its slips"
+    TOO_SLOW = 9, "the run was ended at the seconds allowed"
+    NOT_TRIED = 10, "not run: the method was too slow at a looser accuracy"
+
+
+# How runs end that have come to their end.
+ENDED = (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY)
+
+_BY_CODE = {int(status): status for status in Status}
+
+
+def status_of(code: int) -> Status:
+    """The status with this integer, as data sets hold it."""
+    return _BY_CODE[code]
+
+
+_NAMED = 4  # cells in the text of a warning
+
+
+class FailedCells(UserWarning):
+    """Some cells of a data set have numbers that cannot be trusted, or none."""
+
+
+def warn_of_failed(
+    codes: np.ndarray, gamma: np.ndarray, eps: np.ndarray, frames: int = 0
+) -> None:
+    """One warning that names the cells (gamma, eps) whose status is not OK.
+
+    `frames`: how many lie between the caller and the line that it is given for.
+    """
+    failed = np.argwhere(codes != int(Status.OK))
+    if not failed.size:
+        return
+    named = [
+        f"gamma = {gamma[i]:.6g}, eps = {eps[j]:.6g}: {status_of(int(codes[i, j])).name}"
+        for i, j in failed[:_NAMED].tolist()
+    ]
+    more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
+    message = status_of(int(codes[tuple(failed[0])])).message
+    warnings.warn(
+        f"{len(failed)} of {codes.size} cells failed ({'; '.join(named)}{more}), the first "
+        f"because {message}; see `status`",
+        FailedCells,
+        stacklevel=3 + frames,
+    )
+
+
+FLAGS = {
+    "flag_values": [int(status) for status in Status],
+    "flag_meanings": " ".join(status.name.lower() for status in Status),
+}
+"""CF conventions for the integer status of a data set."""

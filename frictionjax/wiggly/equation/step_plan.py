@@ -1,0 +1,227 @@
+"""From the accuracy asked for to the tolerance and the reach of a step."""
+
+from functools import partial
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..._checks import Real, known_numbers, require, require_real
+from ...loads import steep_times
+from ...model import Coefficients, Scene, coefficients, load_range
+from .landscape import Landscape, WiggleFolds, landscape
+
+# At 100 and 0.1 below, errors at gamma = 0.65 were 1.6 times as large, and 3e-3 eps where
+# 1e-3 was asked for, for 7% fewer steps.
+_SAFETY = 200.0
+_LOOSEST = 1e-4  # looser ones save little (46 steps a slip for 58): guard and folds rule
+# Share of the way to a fold, half a percent of a slip period before it, that one step may
+# err by. At 0.6 slips came up to 3% of a period early, with closed brackets (eps = 1e-5 to
+# 1e-7, gamma = 2); at 0.2 none did.
+_FOLD = 0.03
+# Speed at folds below which tolerances are tighter in proportion, where slips add up. At
+# gamma = 1/2, eps = 1e-4 (0.006) errors were 2.4e-3 eps without, where 1e-3 was asked for.
+_CREEP = 0.025
+_BEFORE = 0.005  # a slip, in slip periods: the last instants that count as outside it
+# Half a percent of a period before a slip the tip runs up to five times as fast as the
+# slide, and an error of a step is one in time: tolerances are tighter by this share of
+# that speed over the one at the fold. Without, errors of such instants were up to 3.9
+# times the accuracy asked for (slanted spring, gamma = 3/4, eps = 1e-4, accuracy 1e-6);
+# at 0.007 up to 1.7. Steps of windows: 1% more at gamma = 1, 4 to 9% at 3/4.
+_HASTE = 0.012
+_FASTEST_COUNTED = 5.0  # slide speeds: instants with a faster tip are inside a slip
+_LEAST_ASKED = 1e-10  # eps
+_TIGHTEST = 1e-13
+# Errors of a few slips, added up; those of all add up to 1e4 at eps = 1e-8, gamma = 1/4. At
+# 4, surveys at gamma = 0.4 were 4e-3 eps off; 16 to 500 gave the same to 1e-5 eps.
+_FEW_ADD = 30.0
+# Of the accuracy: error of a step in the middle of a slip. At 0.2 steps are 4% fewer, and
+# brackets at eps = 1e-8 stay open.
+_IN_SLIPS = 0.05
+# Wells of a slide from which on its dissipation is as good as its states, and the tightest
+# tolerance for fewer, over that. (What is dissipated within a well, on the way from one
+# rest to the next, was 2e-5 off where 1e-5 was asked for, and 1.4e-6 where 1e-6 was.)
+# In slides of few wells on supports that hold the tip, and where nothing slides, less than
+# a hundredth of a slip is: up to 100 times the accuracy off with the share of the wells
+# itself, 1e-2 at least; 0.16 with its power 3/2, 1e-4 at least, for twice the steps.
+_MANY_WELLS, _FEWEST, _POWER = 100.0, 1e-4, 1.5
+_ROUGHEST = 1e-2  # of it, where tolerances are near the rounding of z
+_ROUNDED = 2e-11  # over |z|: tolerances times `_SAFETY` that are near it
+_DOUBLE_SPACING = 2.0**-50  # shortest step over the duration: four spacings of floats
+
+
+def require_accuracy(
+    accuracy: Any, name: str = "accuracy", least: float = _LEAST_ASKED
+) -> None:
+    """Check the accuracy asked for."""
+    allowed = f"{least:.0e} <= {name} <= 1 (error of z in units of eps)"
+    require_real(name, accuracy, allowed, lambda a: least <= a <= 1)
+
+
+def accuracies_of(accuracies: Any, least: float = _LEAST_ASKED) -> np.ndarray:
+    """Accuracies asked for, one or several, each once and rising.
+
+    Raises `ValueError` where they are none, or less than `least`.
+    """
+    known = known_numbers(accuracies)
+    numbers = known.dtype != object and known.ndim <= 1 and known.size > 0
+    require(numbers, "accuracies", accuracies, "one number or a list of them")
+    for value in np.atleast_1d(known):
+        require_accuracy(float(value), "accuracies", least)
+    return np.unique(known.astype(float))
+
+
+class StepPlan(NamedTuple):
+    """Step control of one trajectory: tolerances and reach in periods, steps in s.
+
+    `loosest`: tolerance in the middle of a slip; `pace`: periods a second of the fastest
+    slide: see `Control`. `brief`: tolerance of a lane that goes through a few wells only.
+    `unit`: the accuracy in m.
+    """
+
+    tolerance: Real
+    loosest: Real
+    brief: Real
+    pace: Real
+    reach: Real
+    first_step: Real
+    shortest_step: Real
+    folds: WiggleFolds
+    unit: Real
+
+
+class PullRange(NamedTuple):
+    """How hard a scene pulls: largest |l'| on [0, T] in N/s, smallest Phi'' in N/m.
+
+    `way`: the most that its limit moves one way, m.
+    """
+
+    fastest: Real
+    softest: Real
+    way: Real
+
+
+def pull_of(scene: Scene, found: Coefficients) -> PullRange:
+    """The same for all cells: sampled between turning points, and over reached states."""
+    ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
+    edges = jnp.sort(jnp.concatenate([ends, scene.turning_points()]))
+    times = jax.vmap(partial(steep_times, scene.load))(edges[:-1], edges[1:]).ravel()
+    slopes = jax.vmap(scene.load.slope)(times)
+    low, high = load_range(scene)
+    forces = jnp.linspace(low - found.rho_plus, high - found.rho_minus, 9)
+    states = jax.vmap(scene.support.state_of)(forces)
+    stiffness = jax.vmap(scene.support.stiffness_at)(states)
+    softest = jnp.min(stiffness)
+    beyond = high - low - (found.rho_plus - found.rho_minus)
+    way = jnp.maximum(beyond, 0.0) / softest
+    return PullRange(jnp.max(jnp.abs(slopes)), softest, way)
+
+
+def remembered_slips(ground: Landscape, pull: PullRange, eps: Real, gamma: Real) -> Real:
+    """How many slips back a disturbance still matters, in the scene's fastest slide.
+
+    Averaging over a well, a slide at speed v lags by a force that is quadratic in
+    eps^gamma v; its slope gives one e-fold of forgetting in
+    `4 pi^2 v^2 eps^(2 gamma - 1)/(|W_fold'''| Phi'')` wells: 40 at gamma = 1/2 on the
+    benchmark scene at any eps (a slip leaves 0.975 of a disturbance, as measured), one or
+    less at gamma = 1.
+    """
+    speed = pull.fastest / pull.softest
+    bend = jnp.maximum(ground.flat_curvature, 1e-300)
+    return 4 * jnp.pi**2 * speed**2 * eps ** (2 * gamma - 1) / (bend * pull.softest)
+
+
+def _way_to_fold(ground: Landscape, pull: PullRange, eps: Real, gamma: Real) -> Real:
+    """How near in periods the tip is to a fold when its slip is half a percent away.
+
+    At rest the force is quadratic in the distance, which so shrinks like sqrt(eps). Where
+    viscosity is large, the passage is wider: `eps^(gamma+1) y' = l' t + b y^2`, with b half
+    the curvature.
+    """
+    bend = jnp.maximum(0.5 * ground.fold_curvature, 1e-300)
+    at_rest = jnp.sqrt(_BEFORE * pull.softest * eps / bend)
+    return jnp.maximum(at_rest, 0.3 * _width_of_fold(ground, pull, eps, gamma))
+
+
+def _width_of_fold(ground: Landscape, pull: PullRange, eps: Real, gamma: Real) -> Real:
+    """Of the passage, in periods: `(eps^(gamma+1) l')^(1/3) b^(-2/3)`."""
+    bend = jnp.maximum(0.5 * ground.fold_curvature, 1e-300)
+    return jnp.cbrt(eps ** (gamma + 1) * pull.fastest / bend**2)
+
+
+def _pace_at_fold(ground: Landscape, pull: PullRange, eps: Real, gamma: Real) -> Real:
+    """Speed of a tip that passes a fold, in periods a slip, in the fastest slide.
+
+    From the scales of time and place of `eps^(gamma+1) y' = l' t + b y^2`.
+    """
+    bend = jnp.maximum(0.5 * ground.fold_curvature, 1e-300)
+    rate = jnp.maximum(pull.fastest, 1e-300)
+    return pull.softest * jnp.cbrt(eps ** (2 - gamma) / (bend * rate))
+
+
+def _adding(
+    ground: Landscape, pull: PullRange, eps: Real, gamma: Real, memory: Real
+) -> Real:
+    """How many times an error of a step at a fold comes up in the state.
+
+    Errors of the slips remembered add up with mixed signs: as the root of their number.
+    (As the number itself: tolerances 6 times smaller at gamma = 1/2, for errors that were
+    10 times below the target already.) They are errors in time, the larger the slower a
+    tip passes the fold. One slip's own counts by the speed of the tip before it: a passage
+    of width s and time s/pace ends like `s^2/(pace (t* - t))`.
+    """
+    pace = _pace_at_fold(ground, pull, eps, gamma)
+    creep = jnp.minimum(memory, 1.0) * _CREEP / pace
+    before = _width_of_fold(ground, pull, eps, gamma) ** 2 / (pace * _BEFORE**2)
+    haste = _HASTE * jnp.minimum(before, _FASTEST_COUNTED) / pace
+    return jnp.maximum(jnp.sqrt(1 + memory) * jnp.maximum(creep, 1.0), haste)
+
+
+def _of_few_wells(way: Real, start: Real, accuracy: Real) -> Real:
+    """Tolerances over those of slides through many wells.
+
+    `way`: wells that the limit moves through one way at most; `start`: wells from the
+    origin at t = 0.
+    """
+    share = way / _MANY_WELLS
+    near = jnp.minimum(_ROUNDED * (start + way) / accuracy, jnp.clip(share, _ROUGHEST, 1.0))
+    return jnp.maximum(jnp.clip(share**_POWER, _FEWEST, 1.0), near)
+
+
+def plan_steps(
+    scene: Scene, eps: Real, gamma: Real, accuracy: Real, pull: PullRange | None = None
+) -> StepPlan:
+    """Step control for an error of `accuracy` eps in z at times outside slips.
+
+    `pull`: that of the scene, where it is known.
+    """
+    if pull is None:
+        pull = pull_of(scene, coefficients(scene.potential))
+    ground = landscape(scene.potential, eps)
+    memory = remembered_slips(ground, pull, eps, gamma)
+    stretch = jnp.maximum(1.0, ground.stretch)
+    adding = _adding(ground, pull, eps, gamma, memory)
+    few = _of_few_wells(pull.way / eps, jnp.abs(scene.z0) / eps, accuracy)
+    share = few * accuracy / (_SAFETY * stretch)
+    at_folds = _FOLD * _way_to_fold(ground, pull, eps, gamma)
+    held = eps * scene.support.stiffness_at(scene.z0)
+    relaxation = eps ** (gamma + 1) / jnp.maximum(ground.steepest, held)
+    shortest = _DOUBLE_SPACING * scene.duration
+    first = jnp.clip(1e-2 * relaxation, 2 * shortest, 1e-2 * scene.duration)
+    tolerance, brief = (
+        jnp.clip(jnp.minimum(share / many, at_folds), _TIGHTEST, _LOOSEST)
+        for many in (adding, jnp.minimum(adding, _FEW_ADD))
+    )
+    plan = StepPlan(
+        tolerance=tolerance,
+        loosest=jnp.maximum(tolerance, _IN_SLIPS * few * accuracy / stretch),
+        brief=brief,
+        pace=jnp.where(pull.fastest > 0, pull.fastest / (pull.softest * eps), jnp.inf),
+        reach=0.25 * ground.branch,
+        first_step=first,
+        shortest_step=shortest,
+        folds=ground.folds,
+        unit=accuracy * eps,
+    )
+    return jax.lax.stop_gradient(plan)

@@ -1,0 +1,5 @@
+"""Lanes: many short integrations side by side in compiled loops."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,281 @@
+"""One lane: a short integration of the wiggly system, step by step, along a guide."""
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Int
+
+from ..._checks import Real
+from ...loads import AbstractLoad
+from ...model import AbstractPotential
+from ...supports import AbstractSupport
+from ..equation import (
+    PER_OCTAVE,
+    Balance,
+    Point,
+    Status,
+    TipField,
+    advance,
+    arrival,
+    slopes_between,
+    step_of,
+)
+from ..rosenbrock import Linearised, Tableau, rosenbrock_step
+from .fold_steps import Foothold, foothold, pause_of
+from .materialise import materialise
+from .running_extrema import Extent, Guide, leave, spend, widen
+from .step_control import Control, StepVerdict, judge
+
+_LOWEST_LEVEL = -900 * PER_OCTAVE
+
+
+class LaneCells(NamedTuple):
+    """What all lanes of a cell share, shape (cells,): eps, eps^gamma and step control."""
+
+    eps: Any
+    viscosity: Any
+    first_step: Any
+    tolerance: Any
+    loosest: Any
+    pace: Any
+    reach: Any
+
+    @property
+    def control(self) -> Control:
+        """What steers their steps."""
+        return Control(*self[2:])
+
+
+class LaneScene(eqx.Module):
+    """What a lane simulates: the parts of the field, without the times of the scene.
+
+    `rho_plus`, `rho_minus`: pulls (N) on the edges of the strip.
+    """
+
+    potential: AbstractPotential
+    support: AbstractSupport
+    load: AbstractLoad
+    rho_plus: Any
+    rho_minus: Any
+
+
+class Sums(NamedTuple):
+    """What lanes add up besides their way: `energies`, and `extremes` of it."""
+
+    energies: bool = True
+    extremes: bool = True
+
+
+class LaneTask(NamedTuple):
+    """What stays the same on a leg; `stop` in s since `origin`, `budget` in steps."""
+
+    job: Int[Array, ""]
+    leg: Int[Array, ""]
+    cell: LaneCells
+    origin: Real
+    guide: Guide
+    well: Real
+    stop: Real
+    budget: Real
+
+
+class LaneState(NamedTuple):
+    """What moves on a leg; `time` in s since the task's origin, `unseen`: what rounding has
+    left out of it."""
+
+    tip: Real
+    time: Real
+    unseen: Real
+    point: Point
+    level: Real
+    trend: Real
+    sums: Balance
+    extent: Extent
+    steps: Real
+    rejected: Real
+    code: Real
+
+
+def field_of_lane(scene: LaneScene, task: LaneTask) -> TipField:
+    cell, parts = task.cell, (scene.potential, scene.support, scene.load)
+    return TipField(*parts, cell.eps, cell.viscosity, well=task.well, origin=task.origin)
+
+
+def keep(condition: Real, new: Any, old: Any) -> Any:
+    return jax.tree_util.tree_map(lambda a, b: jnp.where(condition, a, b), new, old)
+
+
+class _Trial(NamedTuple):
+    """A step before it is accepted: where it ends, how it is judged, and whether its stop
+    or a failure has made it shorter, or nothing of it."""
+
+    step: Real
+    tip: Real
+    time: Real
+    unseen: Real
+    end: Point
+    judged: StepVerdict
+    cut: Bool[Array, ""]
+    live: Bool[Array, ""]
+
+
+def _try_step(
+    scene: LaneScene, tableau: Tableau, task: LaneTask, motion: LaneState
+) -> _Trial:
+    field = field_of_lane(scene, task)
+    live = (motion.time < task.stop) & (motion.code == 0)
+    full = step_of(motion.level, task.cell.first_step)
+    pause = pause_of(motion.point, task.origin + motion.time, _drag(task, motion.point))
+    waits = full < pause
+    full = jnp.where(waits, pause, full)
+    left = task.stop - motion.time - motion.unseen
+    cut = full >= left
+    step = materialise(jnp.where(live, jnp.where(cut, left, full), 1.0), task.cell.eps)
+    place = _foothold(scene, task, motion, step)
+    start = Linearised(place.velocity(), *motion.point[1:3])
+    tip, stages = rosenbrock_step(
+        tableau, field.velocity, start, motion.time, step, motion.tip
+    )
+    tip = jnp.where(waits, motion.tip, tip)
+    time, unseen = _later(motion, step)
+    time = jnp.where(cut, task.stop, time)
+    end = materialise(field.point(time, tip), task.cell.eps)
+    moved = jnp.abs(tip - motion.tip)
+    error = jnp.where(waits, 0.0, place.beyond_rounding(jnp.abs(stages[-1]), end))
+    branches = place.overgrown(), place.resolves(end)
+    found = motion.trend, step, moved, error, *branches
+    judged = judge(tableau.order, task.cell.control, *found)
+    unseen = jnp.where(cut, 0.0, unseen)
+    return _Trial(step, tip, time, unseen, end, judged, cut, live)
+
+
+def step_of_lane(
+    scene: LaneScene, tableau: Tableau, wanted: Sums, task: LaneTask, motion: LaneState
+) -> LaneState:
+    """One step of one lane; a lane that has reached its stop stays as it is."""
+    field = field_of_lane(scene, task)
+    step, tip, time, unseen, end, judged, cut, live = _try_step(
+        scene, tableau, task, motion
+    )
+    fits, level, trend = judged
+    # A step cut short by its stop says nothing about the next one.
+    level = jnp.where(fits & cut, jnp.maximum(level, motion.level), level)
+    trend = jnp.where(cut, motion.trend, trend)
+    accepted = fits & live
+    tip = jnp.where(accepted, tip, motion.tip)
+    sums, extent = motion.sums, motion.extent
+    arrived = arrival(field, motion.time, step, end) if any(wanted) else end
+    if wanted.energies:
+        sums = advance(
+            field,
+            sums,
+            motion.time,
+            step,
+            motion.tip,
+            tip,
+            motion.point,
+            arrived,
+            task.guide.__call__,
+        )
+    if wanted.extremes:
+        extent = _extent(scene, task, motion, step, time, tip, arrived, sums)
+    after = LaneState(
+        tip=tip,
+        time=time,
+        unseen=unseen,
+        point=end,
+        level=level,
+        trend=trend,
+        sums=sums,
+        extent=extent,
+        steps=motion.steps,
+        rejected=motion.rejected,
+        code=motion.code,
+    )
+    failure = jnp.where(level < _LOWEST_LEVEL, float(Status.NOT_FINITE), 0.0)
+    failure = jnp.where(motion.steps >= task.budget, float(Status.MAX_STEPS), failure)
+    return keep(accepted, after, motion)._replace(
+        level=jnp.where(live, level, motion.level),
+        steps=motion.steps + live,
+        rejected=motion.rejected + (live & ~fits),
+        code=jnp.where(live, failure, motion.code),
+    )
+
+
+def _later(motion: LaneState, step: Real) -> tuple[Real, Real]:
+    """The time after a step, and what rounding leaves out of it.
+
+    Short steps add up: at a fold, eps = 1e-12, the load was never seen to go on, where
+    every step was shorter than the spacing of floats at t.
+    """
+    gone = motion.unseen + step
+    time = motion.time + gone
+    return time, gone - (time - motion.time)
+
+
+def _foothold(scene: LaneScene, task: LaneTask, motion: LaneState, step: Real) -> Foothold:
+    point, width = motion.point, scene.rho_plus - scene.rho_minus
+    since = task.origin + motion.time
+    return foothold(step, point, since, _drag(task, point), width)
+
+
+def _drag(task: LaneTask, point: Point) -> Real:
+    """N over periods a second."""
+    return task.cell.viscosity * task.cell.eps * point.stretch
+
+
+def _extent(
+    scene: LaneScene,
+    task: LaneTask,
+    motion: LaneState,
+    step: Real,
+    time: Real,
+    tip: Real,
+    end: Point,
+    sums: Balance,
+) -> Extent:
+    guide, eps, start = task.guide, task.cell.eps, motion.point
+    slopes = slopes_between(start, end, step, tip - motion.tip)
+    speeds = eps * start.stretch * slopes[0], eps * end.stretch * slopes[1]
+    ahead = guide.slope(motion.time), guide.slope(time)
+    guides = guide(motion.time), guide(time)
+    gaps = start.state - guides[0], end.state - guides[1]
+    away = speeds[0] - ahead[0], speeds[1] - ahead[1]
+    extent = widen(motion.extent, step, gaps, away)
+    viscosity, friction = task.cell.viscosity, guide.friction
+    ends = (start, guides[0], speeds[0]), (end, guides[1], speeds[1])
+    left = [_outside(scene, task.cell, *values) for values in ends]
+    extent = leave(extent, step, *zip(*left, strict=True))
+    beyond = (
+        motion.sums.viscous - friction * guide.way(motion.time),
+        sums.viscous - friction * guide.way(time),
+    )
+    rates = (
+        viscosity * speeds[0] ** 2 - friction * ahead[0],
+        viscosity * speeds[1] ** 2 - friction * ahead[1],
+    )
+    return spend(extent, step, beyond, rates)
+
+
+def _outside(
+    scene: LaneScene, cell: LaneCells, point: Point, guide: Real, speed: Real
+) -> tuple[Real, Real]:
+    """How far z is outside the strip in m, negative inside, and how fast it goes away."""
+    support, z = scene.support, point.state
+    forces = support.force(guide), support.force(z)
+
+    def edge_under(rho: Real) -> Real:
+        # Where the guide slides it is the edge; where it rests, the edge is near z outside.
+        held = point.load - rho
+        off = jnp.abs(held - forces[0]), jnp.abs(held - forces[1])
+        return support.state_near(held, jnp.where(off[0] <= off[1], guide, z))
+
+    lower, upper = edge_under(scene.rho_plus), edge_under(scene.rho_minus)
+    below = lower - z > z - upper
+    gap = jnp.where(below, lower - z, z - upper)
+    slope = point.by_time * cell.viscosity * cell.eps * point.stretch
+    away = slope / support.stiffness_at(jnp.where(below, lower, upper)) - speed
+    # The guide is inside.
+    return jnp.minimum(gap, jnp.abs(guide - z)), jnp.where(below, away, -away)

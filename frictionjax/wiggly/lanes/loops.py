@@ -1,0 +1,181 @@
+"""Lanes: many short integrations of the wiggly system, side by side in compiled loops."""
+
+import contextlib
+import threading
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array
+
+from ..._compile import flattened
+from ..rosenbrock import Tableau
+from .lane import LaneCells, LaneScene, Sums
+from .queue import Lanes, SegmentEnds, Segments, Tables, run_queue
+
+# Lanes side by side. Microseconds of a step of the loop: 0.72 at 4, 0.92 at 8, 1.43 at 16,
+# 2.49 at 32, 4.23 at 64, 8.65 at 128. A few jobs, or a few long ones, go through the narrow
+# loop, whose steps take less time. (Between 0.15 and 0.33 sweeps take the same.)
+WIDTH, NARROW = 64, 8
+NARROW_STEP = 0.22  # seconds of a narrow loop's step, of a wide one's
+# Wells that few jobs go through in a wide loop that is there before the narrow one is
+# compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load, 2 s
+# to compile. For more at once they wait for it.
+_PATIENCE, _AT_ONCE = 500, 20_000
+LOADER = "frictionjax-loader"  # threads that compile loops in the background
+
+
+class Room(NamedTuple):
+    """Rows of the tables of a compiled loop."""
+
+    cells: int
+    jobs: int
+    legs: int
+
+    def holds(self, needed: "Room") -> bool:
+        """Whether that many rows fit, and not into a sixteenth of the legs."""
+        fits = all(a >= b for a, b in zip(self, needed, strict=True))
+        return fits and self.legs <= _SPARE * max(needed.legs, _ROOM.legs)
+
+
+# Each size of the tables costs 0.4 s to trace and load, 2 s to compile, an empty row
+# nothing: so few sizes, and a loop that is there already is taken where it is larger.
+_ROOM, _SPARE = Room(64, 2048, 4096), 16
+
+
+def room_for(needed: Room) -> Room:
+    """Room for that many rows: all sizes grow together, by fours."""
+    size = _ROOM
+    while not all(a >= b for a, b in zip(size, needed, strict=True)):
+        size = Room(*(4 * rows for rows in size))
+    return size
+
+
+def _padded(rows: np.ndarray, size: int) -> np.ndarray:
+    padded = np.ones((size, rows.shape[1]))
+    padded[: rows.shape[0]] = rows
+    return padded
+
+
+def loop_times(longest: Any, together: Any) -> tuple[Any, Any]:
+    """How long the narrow and the wide loop take for a queue, in steps of the wide one.
+
+    `longest`, `together`: work of its longest job, and of all, in steps.
+    """
+    narrow = NARROW_STEP * np.maximum(longest, together / NARROW)
+    return narrow, np.maximum(longest, together / WIDTH)
+
+
+class _Loops:
+    """Loops compiled so far, by what they simulate; two threads compile one once."""
+
+    def __init__(self) -> None:
+        self._known: dict[Any, dict[Room, threading.Lock]] = {}
+        self._lock = threading.Lock()
+        self._done: set = set()
+        self._waited: dict[Any, float] = {}
+
+    def run(self, program: tuple, needed: Room, fill: Callable[[Room], Tables]) -> Array:
+        """Run the loop on tables of a room that `fill` makes."""
+        kind = _kind(program)
+        with self._lock:
+            rooms = self._known.setdefault(kind, {})
+            fitting = [room for room in rooms if room.holds(needed)]
+            room = min(fitting, key=lambda r: r.legs) if fitting else room_for(needed)
+            compiling = rooms.setdefault(room, threading.Lock())
+        if (kind, room) in self._done:
+            return run_queue(*program, fill(room))
+        with compiling:
+            found = run_queue(*program, fill(room))
+            with self._lock:  # others may be looking through it
+                self._done.add((kind, room))
+            return found
+
+    def width_for(self, program: tuple, needed: Room, wells: float) -> int:
+        """Which of the two loops takes few jobs; `program` without its width."""
+        narrow, wide = _kind((*program, NARROW)), _kind((*program, WIDTH))
+        with self._lock:
+            there = any(k == narrow and room.holds(needed) for k, room in self._done)
+            ready = any(k == wide and room.holds(needed) for k, room in self._done)
+            if there or not ready or wells > _AT_ONCE:
+                return NARROW
+            waiting = narrow, room_for(needed)
+            before = self._waited.get(waiting, 0.0)
+            self._waited[waiting] = before + wells
+        if before <= _PATIENCE < before + wells:
+            self.load((*program, NARROW), needed)
+        return WIDTH
+
+    def load(self, program: tuple, needed: Room) -> None:
+        """Compile the loop in the background, where none is there that does."""
+        kind = _kind(program)
+        with self._lock:
+            if any(k == kind and room.holds(needed) for k, room in self._done):
+                return
+
+        def quietly() -> None:
+            # What cannot be compiled fails again in `run`, where somebody hears of it.
+            with contextlib.suppress(Exception):
+                self.run(program, needed, _nothing)
+
+        threading.Thread(target=quietly, name=LOADER).start()
+
+
+def _nothing(room: Room) -> Tables:
+    widths = (len(LaneCells._fields), len(Lanes._fields), len(Segments._fields))
+    tables = (np.ones((n, w)) for n, w in zip(room, widths, strict=True))
+    return Tables(*tables, waiting=np.asarray(0))
+
+
+def _kind(program: tuple) -> tuple:
+    """What a compiled loop depends on, numbers left out."""
+    leaves, structure = flattened(program)
+    shapes = (x.shape if eqx.is_array(x) else x for x in leaves)
+    return structure, *shapes
+
+
+_LOOPS = _Loops()
+
+
+def prepare(scene: LaneScene, tableau: Tableau, needed: Room, wanted: Sums) -> None:
+    """Compile the loop that `march` will want, in the background; a guess may be wrong."""
+    _LOOPS.load((scene, tableau, wanted, WIDTH), needed)
+
+
+def march(
+    scene: LaneScene,
+    cells: LaneCells,
+    jobs: Lanes,
+    legs: Segments,
+    tableau: Tableau,
+    wanted: Sums,
+    work: np.ndarray | None = None,
+) -> SegmentEnds:
+    """Run all jobs side by side; each lane takes the next job when it is through.
+
+    NumPy arrays in and out. What a lane finds does not depend on the others. `work`
+    (jobs,): about in proportion to the steps of each; None: to its wells.
+    """
+    tables = [np.stack([np.asarray(c, float) for c in t], -1) for t in (cells, jobs, legs)]
+    needed = Room(*(len(t) for t in tables))
+
+    def fill(room: Room) -> Tables:
+        rows = (_padded(t, size) for t, size in zip(tables, room, strict=True))
+        return Tables(*rows, waiting=np.asarray(needed.jobs))
+
+    program = scene, tableau, wanted
+    width, wells = WIDTH, _wells(cells, jobs, legs)
+    of_jobs = wells if work is None else work
+    narrow, wide = loop_times(of_jobs.max(), of_jobs.sum())
+    if narrow < wide:
+        width = _LOOPS.width_for(program, needed, max(wells.max(), wells.sum() / NARROW))
+    found = _LOOPS.run((*program, width), needed, fill)
+    return SegmentEnds(*np.asarray(found)[: needed.legs].T)
+
+
+def _wells(cells: LaneCells, jobs: Lanes, legs: Segments) -> np.ndarray:
+    """Wells that each job goes through, (jobs,)."""
+    eps = np.asarray(cells.eps)[np.asarray(jobs.cell, dtype=int)]
+    way = np.concatenate([[0.0], np.cumsum(np.abs(legs.guide1 - legs.guide0))])
+    return (way[np.asarray(jobs.past_leg)] - way[np.asarray(jobs.first_leg)]) / eps

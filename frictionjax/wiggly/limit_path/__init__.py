@@ -1,0 +1,5 @@
+"""The path of the limit, which lanes follow: where it turns, touches, rests and is fast."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,69 @@
+"""The path of a scene: where it turns and touches, and where it is fast."""
+
+import numpy as np
+from jaxtyping import Array
+
+from ..._compile import Program
+from ...model import Scene, coefficients_jit, strips_at
+from .fast_stretches import nodes_inside, probes_of, unseen_of
+from .path import Path, Probes, slopes_at, states_at, stiffness_at, times_at
+from .sampled_slide import NODES
+
+_BRIEF = 1e-9  # of the duration: pieces of which floats leave little to look into
+
+
+@Program
+def _turns(scene: Scene) -> Array:
+    return scene.turning_points()
+
+
+def _looked_at(scene: Scene, path: Path) -> Path:
+    """With the largest speed on slides, probed, and the smallest stiffness there."""
+    ends = path.touch, path.edges[1:]
+    times = np.concatenate([probes_of(scene, path, *ends), nodes_inside(*ends)], axis=1)
+    flat = times.ravel()
+    states = states_at(scene, path, flat)
+    speeds = slopes_at(scene, path, flat, states).reshape(times.shape)
+    count = times.shape[1] - NODES
+    times, seen, known = times[:, :count], speeds[:, :count], speeds[:, count:]
+    unseen = unseen_of(*ends, known, times, seen)
+    long = (path.direction != 0) & (ends[1] - ends[0] > _BRIEF * path.edges[-1])
+    return path._replace(
+        speed=float(np.max(np.abs(speeds))),
+        stiffness=float(np.min(stiffness_at(scene, states))),
+        probes=Probes(times, seen, np.where(long, unseen, 0.0)),
+    )
+
+
+def path_of(scene: Scene) -> Path | None:
+    """The path of a scene; None where the load turns more often than there is room for."""
+    turns = np.asarray(_turns(scene))
+    duration = float(scene.duration)
+    if np.any(np.isnan(turns)):
+        return None
+    edges = np.unique(np.concatenate([[0.0], turns[turns < duration], [duration]]))
+    found = coefficients_jit(scene.potential)
+    rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
+    loads, lower, upper = strips_at(scene, rho_plus, rho_minus, edges)
+    states = np.empty(edges.size)
+    states[0] = np.clip(float(scene.z0), lower[0], upper[0])
+    for i in range(1, edges.size):
+        states[i] = np.clip(states[i - 1], lower[i], upper[i])
+    moves = np.diff(states)
+    direction = np.sign(moves)
+    rho = np.where(direction > 0, rho_plus, rho_minus)
+    path = Path(
+        edges=edges,
+        states=states,
+        direction=direction,
+        touch=np.where(direction == 0, edges[1:], edges[:-1]),
+        travel=np.concatenate([[0.0], np.cumsum(np.abs(moves))]),
+        rho=rho,
+        rho_plus=rho_plus,
+        rho_minus=rho_minus,
+        pulled=float(np.abs(np.diff(loads)).sum()),
+    )
+    sliding = np.flatnonzero(direction)
+    touch = path.touch.copy()
+    touch[sliding] = times_at(scene, path, sliding, states[sliding])
+    return _looked_at(scene, path._replace(touch=touch))

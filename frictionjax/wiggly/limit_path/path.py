@@ -1,0 +1,143 @@
+"""The path that the strip's edges prescribe: where, when and how fast the tip must slide.
+
+Lanes measure from it and start by it; what they find does not depend on it, since brackets
+and known starts decide which values are accepted.
+"""
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..._compile import Program, in_chunks
+from ...model import CHUNK, Scene, strips_at
+from ...numerics import find_root
+
+
+class Probes(NamedTuple):
+    """Where the speed of the path has been looked at on each piece, P pieces.
+
+    `times` (P, n): s, those of the steepest places of the path among them; `speeds` (P, n):
+    m/s. `unseen` (P,): by how much a polynomial through a few nodes misses them, relative.
+    """
+
+    times: np.ndarray
+    speeds: np.ndarray
+    unseen: np.ndarray
+
+
+NO_PROBES = Probes(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0))
+
+
+class Path(NamedTuple):
+    """Pieces between turning points of the load, P of them, as NumPy arrays.
+
+    `edges` (P+1,): times in s. `states` (P+1,): of the path, in m. `direction` (P,): 1, -1
+    or 0 where the path rests. `touch` (P,): time at which a slide begins, the piece's end
+    where none does. `travel` (P+1,): way so far, in m. `rho` (P,): force of friction in N
+    on the slide. `rho_plus`, `rho_minus`: in N. `speed`, `stiffness`: largest speed of
+    slides in m/s, smallest Phi''. `pulled`: what the load goes up and down in all, N.
+    `probes`: speeds on the way.
+    """
+
+    edges: np.ndarray
+    states: np.ndarray
+    direction: np.ndarray
+    touch: np.ndarray
+    travel: np.ndarray
+    rho: np.ndarray
+    rho_plus: float
+    rho_minus: float
+    speed: float = 0.0
+    stiffness: float = 1.0
+    pulled: float = 0.0
+    probes: Probes = NO_PROBES
+
+    @property
+    def width(self) -> float:
+        """`rho_plus - rho_minus` in N: times eps, the energy of one slip."""
+        return self.rho_plus - self.rho_minus
+
+    def piece_of(self, times: np.ndarray) -> np.ndarray:
+        """Index of the piece that holds each time; a turning point opens its piece."""
+        found = np.searchsorted(self.edges, times, side="right") - 1
+        return np.clip(found, 0, self.direction.size - 1)
+
+
+@Program
+def _rates(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"]):
+    """l' in N/s at the times and Phi'' in N/m at the states."""
+    slopes = jax.vmap(scene.load.slope)(times)
+    return slopes, jax.vmap(scene.support.stiffness_at)(states)
+
+
+@Program
+def _times_at(scene: Scene, states, rho, early, late):
+    """Time in [early, late] at which the edge that belongs to `rho` is at each state."""
+    load = jax.vmap(scene.load)
+    wanted = jax.vmap(scene.support.force)(states) + rho
+    rising = jnp.where(load(late) >= load(early), 1.0, -1.0)
+    return (find_root(lambda t: rising * (load(t) - wanted), early, late),)
+
+
+@Program
+def _state_under(scene: Scene, times: Float[Array, " n"], pull: Float[Array, " n"]):
+    loads = jax.vmap(scene.load)(times)
+    return (jax.vmap(scene.support.state_of)(loads - pull),)
+
+
+def times_at(scene: Scene, path: Path, piece: np.ndarray, states: np.ndarray) -> np.ndarray:
+    """When the path is at each state, on the slide of each piece."""
+    if states.size == 0:
+        return states
+    columns = states, path.rho[piece], path.touch[piece], path.edges[piece + 1]
+    (found,) = in_chunks(_times_at, CHUNK, (scene,), columns)
+    return np.clip(found, columns[2], columns[3])
+
+
+def arrivals_at(
+    scene: Scene, states: np.ndarray, pull: np.ndarray, early: np.ndarray, late: np.ndarray
+) -> np.ndarray:
+    """Time in [early, late] at which `l - Phi'` is `pull` (N) at each state."""
+    columns = states, pull, early, late
+    return in_chunks(_times_at, CHUNK, (scene,), columns)[0]
+
+
+def state_under(scene: Scene, times: np.ndarray, pull: np.ndarray) -> np.ndarray:
+    """State in m at which `l - Phi'` is `pull` (N) at each time."""
+    return in_chunks(_state_under, CHUNK, (scene,), (times, pull))[0]
+
+
+def states_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
+    """The path's state in m at each time."""
+    piece = path.piece_of(times)
+    _, lower, upper = strips_at(scene, path.rho_plus, path.rho_minus, times)
+    edge = np.where(path.direction[piece] > 0, lower, upper)
+    slides = (path.direction[piece] != 0) & (times > path.touch[piece])
+    ends = np.sort(np.stack([path.states[piece], path.states[piece + 1]]), axis=0)
+    return np.where(slides, np.clip(edge, *ends), path.states[piece])
+
+
+def slopes_at(
+    scene: Scene, path: Path, times: np.ndarray, states: np.ndarray
+) -> np.ndarray:
+    """The path's speed in m/s at each time, from the right at kinks."""
+    if times.size == 0:
+        return times
+    piece = path.piece_of(times)
+    slides = (path.direction[piece] != 0) & (times > path.touch[piece])
+    slope, stiffness = in_chunks(_rates, CHUNK, (scene,), (times, states))
+    return np.where(slides, slope / stiffness, 0.0)
+
+
+def speeds_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
+    """The path's speed in m/s at times of any shape."""
+    flat = times.ravel()
+    return slopes_at(scene, path, flat, states_at(scene, path, flat)).reshape(times.shape)
+
+
+def stiffness_at(scene: Scene, states: np.ndarray) -> np.ndarray:
+    """Phi'' in N/m at states (n,) in m."""
+    return in_chunks(_rates, CHUNK, (scene,), (np.zeros_like(states), states))[1]

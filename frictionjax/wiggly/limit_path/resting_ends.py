@@ -1,0 +1,32 @@
+"""Which slides end slow: tips rest there where the path does, and starts are forgotten."""
+
+import numpy as np
+
+from ...model import Scene
+from .path import Path, slopes_at, times_at
+
+# Share that a well leaves of a shift, below which tips come to rest where the path does:
+# slides lag by half the wells that they remember, 1.4 here.
+RESTS = 0.7
+_END = 8.0  # wells before a slide's end where it should be slow
+
+
+def slow_ends(scene: Scene, path: Path, eps: np.ndarray, lag: np.ndarray) -> np.ndarray:
+    """Whether each piece should end slow, (cells, pieces); rests of the path do not.
+
+    `eps` in m and `lag`, wells that the fastest slide stays behind, shape (cells,). Slides
+    lag, and remember twice as many wells, in proportion to the square of their speed,
+    about.
+    """
+    slides = np.flatnonzero(path.direction)
+    slow = np.zeros((eps.size, path.direction.size), dtype=bool)
+    if slides.size == 0:
+        return slow
+    ends = np.abs(path.states[slides + 1] - path.states[slides])
+    level = np.maximum(ends - _END * eps[:, None], 0.0)
+    state = path.states[slides] + path.direction[slides] * level
+    times = times_at(scene, path, np.tile(slides, eps.size), state.ravel())
+    speed = slopes_at(scene, path, times, state.ravel()).reshape(state.shape)
+    memory = 2 * lag[:, None] * (speed / (path.speed or 1.0)) ** 2  # nothing slides at 0
+    slow[:, slides] = memory * -np.log(RESTS) < 1
+    return slow

@@ -1,0 +1,284 @@
+"""What each cell's windows need, and which way is the cheapest, before anything runs."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import numpy as np
+from jaxtyping import Array
+
+from .._checks import Real, viscosity_of
+from .._compile import Program, in_chunks
+from ..model import (
+    AbstractPotential,
+    BristlePotential,
+    Coefficients,
+    Scene,
+    coefficients_jit,
+)
+from ..profiles import AbstractProfile
+from .enclosure import (
+    AFFORDABLE,
+    LONG_MEMORY,
+    MARGIN,
+    CellBounds,
+    Requirements,
+    cost_of,
+    wells_of,
+)
+from .equation import StepPlan as StepPlan
+from .equation import WiggleFolds, plan_steps, power_series_of, pull_of
+from .lanes import LaneScene
+from .limit_path import NODES, Path, slow_ends
+from .rosenbrock import RODAS5P
+from .slip_map import lag_forces
+
+# Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as fast
+# for one cell, as lanes wait for the longest tile; three times: 0.7.) Of the whole sweep
+# (256) tiles were longer, a few percent of the steps fewer, and values depended on the
+# other cells, by up to a tenth of the accuracy.
+TILES = 128
+_NEAR_STRIP = 1e-3  # wells
+# Looser brackets and surveys save a fifth of the time, and at gamma = 0.75 were off by up
+# to 6 times an accuracy of 1e-1, and twice one of 1e-2.
+LOOSEST = 1e-3
+_CELLS = 16  # in a compiled call: 64 take 4 ms, 16 one
+# Wells after a slip at which lanes may set off, and the shortest rest that is worth it.
+_AFTER_SLIP, _SHORT_REST = 0.05, 0.2
+# Lanes set off in the middle of a slip or two, and forget less in their first wells. (1:
+# brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the first.)
+_SLIPS_FORGET = 1.5
+# Wells of a slide that are worth a slip map, where windows set off far back.
+_LONG_SLIDE = 60.0
+# Wells that one lane from z0 goes through in about the time of the slip maps of three
+# slides, for a sine. (16 eps to 1e-4, gamma = 1/2, seconds with maps from 1100, 1800, 2500
+# and 4000 on: 0.35, 0.26, 0.25, 0.39. Whatever the number of slides: 14 s for 200 of 190
+# wells each, which one lane goes through in 3.)
+_MAP = 2200.0 / 3
+# Of the speed: what panels of a slip map might step over.
+_BURST = 0.1
+WIDEST = 0.125  # reach of a sine, periods
+# Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2, 16
+# eps to 1e-4, seconds at 1, 1.5, 2, 3 and 5: vertical 0.74, 0.57, 0.62, 0.52, 0.45, angular
+# 2.1, 2.0, 1.9, 1.4, 1.6.)
+_TILE = 3.0
+# Rodas4P2 takes as many steps, each a quarter cheaper, and errs by more than 1e-3 of a slip
+# period at times near slips in 26 of 208 cells (gamma 0.65 to 2, eps 1e-3 to 1e-6), by up
+# to a well; this one in 7, and in 1 with the tolerances of now.
+TABLEAU = RODAS5P
+
+
+@Program
+def _plans(scene, rho_plus, rho_minus, accuracy, eps, gamma) -> StepPlan:
+    pull = pull_of(scene, Coefficients(rho_plus, rho_minus))
+    return jax.vmap(lambda e, g: plan_steps(scene, e, g, accuracy, pull))(eps, gamma)
+
+
+def _controls(scene, eps, gamma, accuracy, rho: tuple | None = None) -> StepPlan:
+    """Step control of all cells. `rho`: plus and minus, N, where they are known."""
+    if rho is None:
+        found = coefficients_jit(scene.potential)
+        rho = found.rho_plus, found.rho_minus
+    fixed = scene, *map(np.asarray, rho), np.asarray(accuracy)
+    return in_chunks(_plans, _CELLS, fixed, (eps, gamma))
+
+
+@Program
+def _tips(potential: AbstractPotential, z0: Real, eps: Array):
+    return jax.vmap(lambda e: potential.tip(z0, e))(eps)
+
+
+def ground_of(
+    scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray, folds: WiggleFolds
+) -> CellBounds:
+    """What windows need to know of each cell."""
+    lags = lag_forces(scene.potential, eps, folds, path.speed * viscosity_of(eps, gamma))
+    forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
+    well, tip = in_chunks(_tips, _CELLS, (scene.potential, scene.z0), (eps,))
+    shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
+    return CellBounds(
+        eps,
+        folds,
+        lag_plus=lags[0] / path.stiffness,
+        lag_minus=lags[1] / path.stiffness,
+        shift_plus=shifts[0],
+        shift_minus=shifts[1],
+        start_well=well,
+        start_tip=tip,
+        relaxed=_relaxation(scene, path, eps, gamma),
+        rides=_no_rides(eps.size),
+    )
+
+
+def _relaxation(scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray):
+    """Time in s until z0 is within a thousandth of a well of the strip (Lemma 7)."""
+    far = abs(float(scene.z0) - path.states[0])
+    efolds = np.log(np.maximum(far / (_NEAR_STRIP * eps), 1.0))
+    return efolds * viscosity_of(eps, gamma) / path.stiffness
+
+
+def _no_rides(count: int) -> np.ndarray:
+    rides = np.empty(count, dtype=object)
+    rides[:] = [()] * count
+    return rides
+
+
+@Program
+def _heights(profile: AbstractProfile, places: Array) -> Array:
+    return jax.vmap(profile)(places)
+
+
+def lane_scene(scene: Scene, highest: float) -> LaneScene:
+    """The scene as lanes see it, with the bristle as a series where one converges."""
+    potential = scene.potential
+    if isinstance(potential, BristlePotential):
+        scan = np.arange(potential.points) / potential.points
+        height = float(np.max(np.abs(_heights(potential.profile, scan))))
+        bristle = power_series_of(potential.bristle, 1.01 * highest * height)
+        potential = BristlePotential(potential.profile, bristle)
+    law = coefficients_jit(scene.potential)
+    return LaneScene(potential, scene.support, scene.load, law.rho_plus, law.rho_minus)
+
+
+def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
+    """How far back windows start: until a bracket as wide as the lag has closed.
+
+    Slides remember twice the wells that they lag by. (The closed form of step control is
+    that for one fold far below the others: on the angular scene of the benchmarks, gamma =
+    1/2, it was a third of it at eps = 1e-3, and 119 of 354 brackets stayed open.)
+    """
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
+    forgets = 2 * lag * np.log((lag + 2) / (0.1 * accuracy))
+    slow = np.ceil(MARGIN + forgets)
+    warm = np.minimum(slow, _resting(ground, lag, forgets))
+    settle = np.ceil(lag + warm + 2)
+    offset, none = _offsets(ground, path), np.zeros(lag.size)
+    cut = np.zeros(offset.shape, dtype=bool)
+    return Requirements(warm, settle, _TILE * slow, none, offset, cut)
+
+
+def _resting(ground: CellBounds, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
+    """Wells back to a start between slips, from which a bracket closes at rest.
+
+    Windows begin half a period behind slips. Where tips lag by less than that, both lanes
+    of a bracket that sets off a little after a slip come to rest in one well; `forgets`
+    wells more pass where the rest of half a period is too short. Infinite where tips lag
+    further: their lanes have to catch up with each other.
+    """
+    shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
+    rest = 0.5 - _AFTER_SLIP - lag - shift
+    wells = rest + np.ceil(np.maximum(_SLIPS_FORGET * forgets - rest, 0.0))
+    return np.where(rest > _SHORT_REST, wells, np.inf)
+
+
+def _offsets(ground: CellBounds, path: Path) -> np.ndarray:
+    """From each slide's start to half a period behind a fold, in wells, (cells, pieces)."""
+    folds, up = ground.folds, path.direction > 0
+    fold = np.where(up, folds.state_plus[:, None], folds.state_minus[:, None])
+    past = path.direction * (path.states[:-1] - fold) / ground.eps[:, None]
+    return np.mod(0.5 - past, 1.0)
+
+
+def _choose(
+    path: Path, eps: np.ndarray, needs: Requirements, times: int, method: str
+) -> Requirements:
+    """Per cell, the way that passes through fewer wells."""
+    nodes = np.full(eps.size, NODES)
+    if method == "resolved":
+        nodes = np.zeros(eps.size, dtype=int)
+    if method == "auto":
+        sampled = cost_of(path, eps, needs._replace(nodes=nodes), times)
+        every = cost_of(path, eps, needs._replace(nodes=0 * nodes), times)
+        nodes = np.where(sampled < every, nodes, 0)
+    needs = needs._replace(nodes=nodes)
+    outer, _ = wells_of(path, eps, needs)
+    return needs._replace(tile=np.maximum(needs.tile, outer / TILES))
+
+
+def slides_of(path: Path, eps: np.ndarray) -> np.ndarray:
+    """Pieces of the path that are long enough for slip maps, (cells, pieces)."""
+    return np.abs(np.diff(path.states)) > _LONG_SLIDE * eps[:, None]
+
+
+def _long_memories(
+    scene: Scene,
+    control: StepPlan,
+    path: Path,
+    ground: CellBounds,
+    needs: Requirements,
+    follows: np.ndarray,
+    method: str,
+) -> tuple[np.ndarray, Requirements]:
+    """Which cells follow slip maps: where windows would remember too many slips.
+
+    With few slips altogether one lane goes through all from z0, needing no bracket; others
+    set off where a slide ends slow. So it does where slides are over before tips follow: no
+    bracket closes across them, and no slip map ends. (Jumps within 3e-4 s, gamma = 0.3,
+    eps = 1e-3: 3.7 s, after 18 s for maps and brackets in vain.) `follows`: the time in s
+    that tips take to, e-fold.
+    """
+    eps = ground.eps
+    if method == "resolved":
+        return np.zeros(eps.size, dtype=bool), needs
+    long = needs.warm > LONG_MEMORY
+    slides = slides_of(path, eps)
+    long_slides = np.count_nonzero(slides, axis=1)
+    bursts = np.any(slides & (path.probes.unseen > _BURST), axis=1)
+    ridden = long & np.any(slides, axis=1) & ~bursts
+    if not long.any():
+        return ridden, needs
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
+    slow = slow_ends(scene, path, eps, lag)
+    if method == "auto":
+        # Steps are the shorter, the narrower the branches.
+        narrow = (WIDEST / np.asarray(control.reach)) ** 0.6
+        wells = path.travel[-1] / eps
+        way = wells * narrow
+        brief = slides & (follows[:, None] > path.edges[1:] - path.touch)
+        never = np.any(brief, axis=1) & (wells <= AFFORDABLE)
+        few = way <= np.minimum(_MAP * np.maximum(long_slides, 3), AFFORDABLE)
+        alone = long & (few | never)
+        ridden &= ~alone
+        slow &= ~never[:, None]
+        needs = needs._replace(
+            nodes=np.where(alone, 0, needs.nodes),
+            tile=np.where(alone, np.inf, needs.tile),
+            cut=alone[:, None] & slow,
+        )
+    return ridden, needs._replace(cut=needs.cut | (ridden[:, None] & slow))
+
+
+class Planned(NamedTuple):
+    """Cells before anything has run: step control, what windows know and need.
+
+    `ridden`: cells of which slip maps are made.
+    """
+
+    control: StepPlan
+    ground: CellBounds
+    needs: Requirements
+    ridden: np.ndarray
+
+
+def planned(
+    scene: Scene,
+    lanes: LaneScene,
+    path: Path,
+    eps: np.ndarray,
+    gamma: np.ndarray,
+    times: int,
+    accuracy: float,
+    method: str,
+) -> Planned:
+    """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
+    # The bristle as a series compiles faster too.
+    scene = eqx.tree_at(lambda s: s.potential, scene, lanes.potential)
+    rho = path.rho_plus, path.rho_minus
+    control = _controls(scene, eps, gamma, accuracy, rho)
+    ground = ground_of(scene, path, eps, gamma, control.folds)
+    needs = _needs(ground, path, accuracy)
+    needs = _choose(path, eps, needs, times, method)
+    follows = viscosity_of(eps, gamma) / path.stiffness
+    known = scene, control, path, ground, needs, follows
+    ridden, needs = _long_memories(*known, method)
+    return Planned(control, ground, needs, ridden)

@@ -1,0 +1,141 @@
+"""How much work the lanes will have, from the plan alone: nothing is integrated."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._checks import quiet_where_extreme, viscosity_of
+from ..model import BristlePotential, Scene
+from ..profiles import Fourier
+from .enclosure import Requirements, cost_of, longest_lane, wells_a_leg, wells_of
+from .equation import SeriesBristle
+from .equation import StepPlan as StepPlan
+from .lanes import LaneScene
+from .limit_path import Path, path_of
+from .plan import LOOSEST, WIDEST, lane_scene, planned, slides_of
+
+# Steps a well: exp of a polynomial in the orders of magnitude of tolerance, drag and reach,
+# and in the lag, with knees at drags of 0.1 and 1. 280 cells of two scenes (vertical and
+# angular, gamma 0.5 to 2, eps 1e-1 to 1e-4, accuracy 1e-3 to 1e-6) lie within a factor of
+# 1.32 of it (rms), 85% within 1.5, all within 1.9. The angular scene at gamma = 0.5 is
+# apart: brackets there stay open at first, and steps are up to 5 times as many.
+_CONSTANT, _TOLERANCE, _LAG, _NARROW = 1.278, 0.417, -0.092, 0.41
+_SMOOTH, _BELOW_TENTH, _BELOW_ONE = -0.131, 0.505, 1.466
+# Rides, in the same cells: steps of a slide over those of one run-up, of a few thousand
+# wells at most; and wells that lanes, one after the other, wait for each other. Both for a
+# thousand wells, and how they grow with wells. Steps are twice as many as measured on the
+# vertical scene, half on the angular one. (1 to 100 periods, 3 to 201 slides.)
+_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH, _RUN_UP = 4.0 / 3, 4e2, 0.05, 2500.0
+# Drag of tips that are still on their way when a slide is over, and a rest begins.
+_BEHIND = 0.1
+# What a step costs more: for each harmonic after the first (1.2 at 4, 2.3 at 16, 5.7 at 64
+# were measured), for each degree of the bristle's series after the first (1.35 at 4), and
+# for a bristle without one.
+_HARMONIC, _DEGREE, _NO_SERIES = 0.075, 0.1, 3.0
+
+
+class Workload(NamedTuple):
+    """Work of lanes in each cell, shape (cells,).
+
+    `steps`: of all lanes. `chain`: those that one lane takes after the other. `jobs`:
+    lanes that set off; `legs`: of their ways. `maps`: slides of which slip maps are made;
+    `rounds`: those of them that wait for each other. `weight`: of a step, relative to a
+    linear spring on a sine.
+    """
+
+    steps: np.ndarray
+    chain: np.ndarray
+    jobs: np.ndarray
+    legs: np.ndarray
+    maps: np.ndarray
+    rounds: np.ndarray
+    weight: float
+
+
+@quiet_where_extreme
+def workload(
+    scene: Scene,
+    eps: np.ndarray,
+    gamma: np.ndarray,
+    times: int,
+    accuracy: float,
+    method: str,
+) -> Workload | None:
+    """Work of the cells (eps, gamma), shape (cells,); None where lanes do not serve."""
+    path = path_of(scene)
+    if path is None:
+        return None
+    accuracy = min(accuracy, LOOSEST)
+    lanes = lane_scene(scene, float(eps.max()))
+    plan = planned(scene, lanes, path, eps, gamma, times, accuracy, method)
+    control, ground, needs, ridden = plan
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
+    steps = _steps_a_well(control, lag, _drag_of(path, eps, gamma))
+    total = steps * cost_of(path, eps, needs, times)
+    chain = steps * longest_lane(path, eps, needs)
+    growth = (path.travel[-1] / eps / 1e3) ** _RIDE_GROWTH
+    slides = slides_of(path, eps) & ridden[:, None]
+    maps, rounds = np.count_nonzero(slides, axis=1), _longest_chains(slides, needs.cut)
+    run_ups = maps * np.minimum(needs.warm, _RUN_UP)
+    total = np.where(ridden, _RIDE_STEPS * run_ups * steps * growth, total)
+    chain = np.where(ridden, _RIDE_CHAIN * rounds * steps * growth, chain)
+    jobs, legs = _rows(path, eps, needs, times)
+    return Workload(total, chain, jobs, legs, maps, rounds, _weight_of(lanes))
+
+
+def _longest_chains(slides: np.ndarray, cut: np.ndarray) -> np.ndarray:
+    """Slides, (cells, pieces), that follow one another without a cut: the most, (cells,).
+
+    `cut`: at the end of which pieces.
+    """
+    chain = np.cumsum(np.pad(cut, ((0, 0), (1, 0)))[:, :-1], axis=1)
+    counts = [np.bincount(c, s).max() for c, s in zip(chain, slides, strict=True)]
+    return np.array(counts)
+
+
+def _drag_of(path: Path, eps: np.ndarray, gamma: np.ndarray) -> np.ndarray:
+    """Of the fastest slide, over friction; less where tips follow only after it."""
+    viscosity = np.asarray(viscosity_of(eps, gamma))
+    drag = viscosity * path.speed / (path.rho_plus - path.rho_minus)
+    follows, longs = viscosity[:, None] / path.stiffness, np.diff(path.edges)
+    sudden = (path.direction != 0) & (follows > longs)
+    waits = np.pad((path.direction == 0) & (follows < longs), ((0, 0), (0, 1)))[:, 1:]
+    late = np.any(sudden & waits, axis=1)
+    return np.where(late, np.minimum(drag, _BEHIND), drag)
+
+
+def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
+    smooth = -np.log10(drag)
+    return np.exp(
+        _CONSTANT
+        - _TOLERANCE * np.log10(control.tolerance)
+        + _LAG * np.log1p(lag)
+        + _NARROW * np.log(WIDEST / np.asarray(control.reach))
+        + _SMOOTH * smooth
+        + _BELOW_TENTH * np.minimum(smooth, 1.0)
+        + _BELOW_ONE * np.minimum(smooth, 0.0)
+    )
+
+
+def _rows(
+    path: Path, eps: np.ndarray, needs: Requirements, times: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Jobs and legs: two lanes for each window, legs of the first one between its stops."""
+    outer, inner = wells_of(path, eps, needs)
+    shown = times * inner / np.maximum(inner + outer, 1e-9)
+    slides = np.count_nonzero(path.direction)
+    tiles, sampled = 1 + outer / needs.tile, needs.nodes * slides * (inner > 0) + shown
+    stops = outer / wells_a_leg(path, eps) + times - shown + 2 * path.edges.size
+    return 2 * (tiles + sampled), stops + 2 * tiles + 4 * sampled
+
+
+def _weight_of(lanes: LaneScene) -> float:
+    potential = lanes.potential
+    if not isinstance(potential, BristlePotential):
+        return 1.0
+    profile, bristle = potential.profile, potential.bristle
+    harmonics = profile.cos.shape[0] if isinstance(profile, Fourier) else 1
+    shape = _NO_SERIES
+    if isinstance(bristle, SeriesBristle):
+        shape = 1 + _DEGREE * (bristle.ahead.shape[0] - 2)
+    return (1 + _HARMONIC * (harmonics - 1)) * shape

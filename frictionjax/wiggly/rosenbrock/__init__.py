@@ -1,0 +1,5 @@
+"""Rosenbrock methods for a scalar stiff equation: the step and its tableaus."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

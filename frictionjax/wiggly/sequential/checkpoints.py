@@ -1,0 +1,239 @@
+"""Fronts of an integration: stretches between stops, each a `diffeqsolve` of its own."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
+
+import diffrax
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float, Int, PyTree
+
+from ..._checks import Real
+from ..equation import Status, StepPlan, TipField
+from .augmented_solver import augmented_field
+from .replay_steps import ReplaySteps
+from .rounded_steps import RoundedSteps
+from .segment_adjoint import segment_adjoint
+from .well_guard import WellGuard
+
+# Steps of a piece, all of which are kept for derivatives in reverse mode, and how many more
+# there is room for when it is made again, with other roundings. Memory of all is cleared
+# for each piece: 2^14 took 1.3 to 2.3 times as long.
+_STEPS, _MORE = 3840, 256
+
+
+class Checkpoint(NamedTuple):
+    """How far an integration has come: the last step's length opens the next interval.
+
+    `tally`: what the controller has added up over all attempts, where it does.
+    """
+
+    t: Real
+    y: tuple
+    step: Real
+    code: Int[Array, ""]
+    steps: Int[Array, ""]
+    rejected: Int[Array, ""]
+    tally: PyTree = ()
+
+
+def checkpoint_at_start(y: tuple, plan: StepPlan, tally: PyTree = ()) -> Checkpoint:
+    """The front at t = 0 with the tip and what follows it, `y`.
+
+    Traced numbers are not looked at before: with an eps of -1 steps of NaN were made, and
+    no error of one ends a solve before its last step.
+    """
+    none, zero = jnp.asarray(0), jnp.zeros_like(y[0])
+    numbers = jnp.stack([y[0], plan.first_step, plan.tolerance, plan.reach])
+    known = jnp.all(jnp.isfinite(numbers))
+    code = jnp.where(known, int(Status.OK), int(Status.NOT_FINITE))
+    return Checkpoint(zero, y, plan.first_step, code, none, none, tally)
+
+
+def times_of_stops(
+    ts, turns, until, rounding: Real
+) -> tuple[Float[Array, " m"], Int[Array, " n"]]:
+    """Times at which steps end, sorted, and where in them the wanted ones are.
+
+    Turning points after `until` and padding become empty intervals at the end. A time
+    within `rounding` of a turning point, written differently or not, comes after it and
+    takes its place: of two such stops the first is stepped to, and derivatives of the work
+    need it to be the turning point.
+    """
+    turns = jnp.sort(jnp.where(jnp.isnan(turns), until, jnp.minimum(turns, until)))
+    ends = jnp.append(turns, until)
+    times = jnp.concatenate([ends, _beside(ts, ends, rounding)])
+    order = jnp.argsort(times)
+    return times[order], jnp.argsort(order)[ends.shape[0] :]
+
+
+def _beside(ts, ends, rounding):
+    """The times, or the end that is a rounding away."""
+    after = jnp.clip(jnp.searchsorted(ends, ts), 1, ends.shape[0] - 1)
+    for near in (ends[after - 1], ends[after]) if ends.shape[0] > 1 else (ends[0],):
+        ts = jnp.where(jnp.abs(ts - near) <= rounding, near, ts)
+    return ts
+
+
+def controller_of(plan: StepPlan) -> RoundedSteps:
+    """What chooses steps."""
+    controller = diffrax.PIDController(
+        rtol=0.0,
+        atol=plan.tolerance,
+        pcoeff=0.4,
+        icoeff=0.3,  # pure I control loses 35% of the steps at folds, this 20%
+        dtmin=plan.shortest_step,
+        force_dtmin=False,
+        factormin=0.1,
+        factormax=5.0,
+        norm=_tip_norm,
+    )
+    return RoundedSteps(WellGuard(controller, plan.reach))
+
+
+def checkpoints_at(
+    stops: Float[Array, " m"],
+    start: Checkpoint,
+    field: TipField,
+    plan: StepPlan,
+    solver: diffrax.AbstractSolver,
+    controller: diffrax.AbstractAdaptiveStepSizeController,
+    max_steps: int,
+    adjoint: diffrax.AbstractAdjoint | None = None,
+    tally: Callable[[PyTree], PyTree] | None = None,
+) -> Checkpoint:
+    """Fronts at the stops, stacked; `solver` is of (y, ..., step).
+
+    `tally`: what the controller's state has added up. One `diffeqsolve` for each piece, not
+    one for all with `SaveAt(ts)`: XLA compiles the loop as a single function only while its
+    state is small, 11 us a step against 2.6. With an `adjoint` of the caller's, all between
+    two stops is one piece.
+    """
+    parts = field, plan, solver, controller
+    if adjoint:
+        piece = partial(_piece, *parts, tally, max_steps, max_steps, adjoint)
+        return jax.lax.scan(lambda f, stop: (piece(f, stop),) * 2, start, stops)[1]
+    steps = max_steps, min(max_steps, _STEPS)
+    forth = partial(_piece, *parts, tally, *steps, diffrax.RecursiveCheckpointAdjoint(1))
+    pieces = (
+        eqx.filter_closure_convert(piece, start, stops[0])
+        for piece in (forth, partial(_again, field, solver, controller))
+    )
+    goes_on = jax.tree_util.Partial(_goes_on, plan.shortest_step)
+    return segment_adjoint((*pieces, start, stops), goes_on)
+
+
+def _goes_on(rounding: Real, front: Checkpoint, stop: Real) -> Array:
+    """Not where it failed, or is a rounding away from the stop (written differently)."""
+    return (front.code == Status.OK) & (stop - front.t > rounding)
+
+
+def _piece(
+    field: TipField,
+    plan: StepPlan,
+    solver: diffrax.AbstractSolver,
+    controller: diffrax.AbstractAdaptiveStepSizeController,
+    tally: Callable[[PyTree], PyTree] | None,
+    max_steps: int,
+    steps: int,
+    adjoint: diffrax.AbstractAdjoint,
+    front: Checkpoint,
+    stop: Real,
+) -> Checkpoint:
+    """At most so many steps towards the stop; none where the front does not go on."""
+    stop = jnp.where(_goes_on(plan.shortest_step, front, stop), stop, front.t)
+    saveat = diffrax.SaveAt(t1=True, controller_state=tally is not None)
+    found = _solved(steps, adjoint, saveat, field, solver, controller, front, stop)
+    ended = jax.tree_util.tree_map(lambda leaf: leaf[0], (found.ts, *found.ys))
+    reached, *y, step = ended
+    taken = front.steps + found.stats["num_steps"]
+    unfinished = found.result == diffrax.RESULTS.max_steps_reached
+    goes_on = unfinished & (taken < max_steps)
+    code = jnp.where(goes_on, int(Status.OK), _code(found.result))
+    more = () if tally is None else tally(found.controller_state)
+    return Checkpoint(
+        t=jnp.where(unfinished, reached, stop),
+        y=tuple(y),
+        step=jax.lax.stop_gradient(step),
+        code=jnp.where(front.code == Status.OK, code, front.code),
+        steps=taken,
+        rejected=front.rejected + found.stats["num_rejected_steps"],
+        tally=jax.tree_util.tree_map(jnp.add, front.tally, more),
+    )
+
+
+def _again(
+    field: TipField,
+    solver: diffrax.AbstractSolver,
+    controller: diffrax.AbstractAdaptiveStepSizeController,
+    front: Checkpoint,
+    end: Real,
+) -> Checkpoint:
+    """All the way to where a piece has ended, for derivatives: steps are chosen, then made.
+
+    Where there is no room for them all, `t` is NaN.
+    """
+    room = _STEPS + _MORE
+    every = diffrax.RecursiveCheckpointAdjoint(checkpoints=room)
+    still = jax.tree_util.tree_map(
+        lambda leaf: jax.lax.stop_gradient(leaf) if eqx.is_inexact_array(leaf) else leaf,
+        (field, solver, controller, front, end),
+    )
+    times_alone = diffrax.SaveAt(steps=True, fn=lambda t, y, args: t)
+    chosen = _solved(room, every, times_alone, *still)
+    assert chosen.ts is not None
+    known = ReplaySteps(controller, chosen.ts)
+    last = diffrax.SaveAt(t1=True)
+    found = _solved(room, every, last, field, solver, known, front, end)
+    *y, _ = jax.tree_util.tree_map(lambda leaf: leaf[0], found.ys)
+    fits = chosen.result == diffrax.RESULTS.successful
+    return front._replace(t=jnp.where(fits, end, jnp.nan), y=tuple(y))
+
+
+def _solved(
+    steps: int,
+    adjoint: diffrax.AbstractAdjoint,
+    saveat: diffrax.SaveAt,
+    field: TipField,
+    solver: diffrax.AbstractSolver,
+    controller: diffrax.AbstractAdaptiveStepSizeController,
+    front: Checkpoint,
+    stop: Real,
+) -> diffrax.Solution:
+    return diffrax.diffeqsolve(
+        diffrax.ODETerm(augmented_field(field)),
+        solver,
+        front.t,
+        stop,
+        front.step,
+        (*front.y, front.step),
+        stepsize_controller=controller,
+        saveat=saveat,
+        max_steps=steps,
+        adjoint=adjoint,
+        throw=False,
+    )
+
+
+def _tip_norm(scaled: PyTree) -> Real:
+    """Step control looks at the tip alone; the running integrals follow it."""
+    return jnp.abs(jax.tree_util.tree_leaves(scaled)[0])
+
+
+def _code(result: diffrax.RESULTS) -> Array:
+    known = [
+        (result == diffrax.RESULTS.successful, Status.OK),
+        (result == diffrax.RESULTS.max_steps_reached, Status.MAX_STEPS),
+        (result == diffrax.RESULTS.dt_min_reached, Status.STEP_TOO_SMALL),
+    ]
+    return first_of(known, jnp.asarray(int(Status.SOLVER_FAILED)))
+
+
+def first_of(codes: list[tuple[Any, Status]], otherwise: Any) -> Array:
+    """The first status whose condition holds."""
+    status = otherwise
+    for bad, code in reversed(codes):
+        status = jnp.where(bad, int(code), status)
+    return status

@@ -1,0 +1,138 @@
+"""Integration of the wiggly system from stop to stop; traceable, one lane."""
+
+from typing import NamedTuple
+
+import diffrax
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float, Int, PyTree
+
+from ..._checks import Real
+from ...model import Scene, coefficients
+from ..equation import Balance, Status, StepPlan, TipField, dissipated, errors_of_sums
+from .augmented_solver import AbstractObserver, AugmentedSolver, Recorder
+from .checkpoints import (
+    checkpoint_at_start,
+    checkpoints_at,
+    controller_of,
+    first_of,
+    times_of_stops,
+)
+from .solvers_by_name import with_tolerance
+
+MAX_STEPS = 2**30  # a bound, not a buffer: nothing is allocated for it
+_RESIDUAL_SHARE = 0.05  # of the energy dissipated; solutions leave about 1e-6 of it
+
+
+class Trajectory(NamedTuple):
+    """Raw result of one integration; energies are None where none were asked for."""
+
+    z: Float[Array, " n"]
+    dissipation: Float[Array, " n"] | None
+    residual: Float[Array, " n"] | None
+    final: Balance | None
+    dissipation_gap: Real | None
+    watched: PyTree
+    status: Int[Array, ""]
+    steps: Int[Array, ""]
+    rejected: Int[Array, ""]
+
+
+def field_of(scene: Scene, eps: Real, gamma: Real) -> TipField:
+    """The vector field of a scene at one eps and gamma."""
+    return TipField(scene.potential, scene.support, scene.load, eps, eps**gamma)
+
+
+def integrate(
+    scene: Scene,
+    eps: Real,
+    gamma: Real,
+    ts: Float[Array, " n"],
+    plan: StepPlan,
+    solver: diffrax.AbstractSolver,
+    *,
+    until: Real,
+    balanced: bool = True,
+    watch: AbstractObserver | None = None,
+    max_steps: int = MAX_STEPS,
+    adjoint: diffrax.AbstractAdjoint | None = None,
+) -> Trajectory:
+    """Integrate from 0 to `until` >= ts[-1]; traceable, one lane.
+
+    Steps end at all `ts` (dense output of a rest phase is worse than its steps: off by
+    half a period at gamma = 2) and at the turning points and kinks of the load.
+    """
+    field = field_of(scene, eps, gamma)
+    tip = field.start(scene.z0)
+    start_energy = field.energy(jnp.zeros_like(until), tip)
+    recorder = Recorder(field, start_energy, balanced, watch)
+    turns = scene.turning_points()
+    stops, wanted = times_of_stops(ts, turns, until, plan.shortest_step)
+    observed = AugmentedSolver(with_tolerance(solver, plan.tolerance), recorder)
+    start = checkpoint_at_start((tip, *recorder.start(scene.z0)), plan)
+    parts = stops, start, field, plan, observed, controller_of(plan)
+    fronts = checkpoints_at(*parts, max_steps, adjoint)
+    last = jax.tree_util.tree_map(lambda leaf: leaf[-1], fronts)
+    fronts = jax.tree_util.tree_map(lambda leaf: leaf[wanted], fronts)
+    tips, *memories = fronts.y
+    # Where a turning point is the time asked for, it has been stepped to: derivatives by
+    # the turning point are those at a time that moves with it.
+    tips = tips + (ts - fronts.t) * jax.vmap(field.velocity)(fronts.t, tips)
+    blank = jnp.where(fronts.code == Status.OK, 0.0, jnp.nan)
+    z = jax.vmap(field.state)(tips) + blank
+    dissipation, residual, final, gap = None, None, None, None
+    if balanced:
+        final = last.y[1]
+        spent = dissipated(field, final, last.t, last.y[0], start_energy)
+        gap = jnp.abs(final.viscous - spent)
+        lost = jax.vmap(
+            lambda t, y, balance: dissipated(field, balance, t, y, start_energy)
+        )(ts, tips, memories[0])
+        pulled = _pulled(scene, turns, until)
+        size = jnp.abs(start_energy) + jnp.abs(field.energy(last.t, last.y[0]))
+        errors = errors_of_sums(final.viscous, final.residual, size, plan.unit, pulled)
+        lost = jnp.where(errors.sum_is_closer, memories[0].viscous, lost)
+        dissipation = lost + blank
+        residual = memories[0].residual + blank
+    status = _status(last.code, z, turns)
+    if final is not None:
+        status = _with_balance(status, scene, eps, final)
+    return Trajectory(
+        z=z,
+        dissipation=dissipation,
+        residual=residual,
+        final=final,
+        dissipation_gap=gap,
+        watched=None if watch is None else last.y[-1],
+        status=status,
+        steps=last.steps,
+        rejected=last.rejected,
+    )
+
+
+def _status(code: Array, z: Float[Array, " n"], turns: Array) -> Array:
+    known = [
+        (jnp.any(jnp.isnan(turns)), Status.TOO_MANY_TURNS),
+        (~jnp.all(jnp.isfinite(z)), Status.NOT_FINITE),
+    ]
+    found = first_of(known, jnp.asarray(int(Status.OK)))
+    return jnp.where((code != Status.OK) & (found != Status.TOO_MANY_TURNS), code, found)
+
+
+def _pulled(scene: Scene, turns: Float[Array, " m"], until: Real) -> Real:
+    """What the load goes up and down in all, N."""
+    ends = jnp.stack([jnp.zeros_like(until), until])
+    edges = jnp.sort(jnp.concatenate([ends, jnp.minimum(turns, until)]))
+    return jnp.sum(jnp.abs(jnp.diff(jax.vmap(scene.load)(edges))))
+
+
+def _slip_energy(scene: Scene, eps: Real) -> Real:
+    law = coefficients(scene.potential)
+    return eps * (law.rho_plus - law.rho_minus)
+
+
+def _with_balance(status: Array, scene: Scene, eps: Real, final: Balance) -> Array:
+    """A residual of more than a share of the energy of every slip made is a failure."""
+    allowed = _RESIDUAL_SHARE * (_slip_energy(scene, eps) + final.viscous)
+    closes = final.residual <= allowed
+    return jnp.where((status == Status.OK) & ~closes, int(Status.UNBALANCED), status)

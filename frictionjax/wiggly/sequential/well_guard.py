@@ -1,0 +1,60 @@
+"""Step size control that cannot step over a well."""
+
+import diffrax
+import jax.numpy as jnp
+
+from ..._checks import Real
+from .wrapped import AbstractWrappedController
+
+# Estimates below this share of the tolerance are rounding noise and must not steer;
+# (1e5)^(0.7/5) is the largest growth of a step.
+_NOISE = 1e-5
+
+
+class WellGuard(AbstractWrappedController):
+    """Reject every step that moves the tip further than `reach`, then ask `controller`.
+
+    A general solver on a rest phase takes steps longer than a slip. The implicit equation
+    of such a step has a root in every well that holds an equilibrium; a root in the wrong
+    one comes with a small error estimate (LSODA: 185 wells off, success reported). To
+    change wells the tip must cross a whole falling branch of `W'`; with `reach` a quarter
+    of the narrowest, no step can, and the slip itself is resolved.
+
+    The estimate handed on is raised to what makes the controller shrink the step by the
+    factor that is needed.
+    """
+
+    controller: diffrax.PIDController
+    reach: Real
+
+    def __init__(self, controller: diffrax.PIDController, reach: Real):
+        self.controller, self.reach = controller, reach
+
+    def wrap(self, direction):
+        return WellGuard(self.controller.wrap(direction), self.reach)
+
+    def init(self, terms, t0, t1, y0, dt0, args, func, error_order):
+        return self.controller.init(terms, t0, t1, y0, dt0, args, func, error_order)
+
+    def adapt_step_size(
+        self, t0, t1, y0, y1_candidate, args, y_error, error_order, controller_state
+    ):
+        tip0, tip1, error = y0[0], y1_candidate[0], y_error[0]
+        excess = jnp.abs(tip1 - tip0) / self.reach
+        finite = jnp.isfinite(excess) & jnp.isfinite(error)
+        excess = jnp.where(finite, jnp.minimum(excess, 20.0), 20.0)
+        error = jnp.maximum(jnp.abs(error), _NOISE * self.atol)
+        too_far = self.atol * (excess * 1.1) ** error_order
+        error = jnp.where(finite, error, too_far)
+        error = jnp.where(excess > 1, jnp.maximum(error, too_far), error)
+        tip1 = jnp.where(finite, tip1, tip0)
+        return self.controller.adapt_step_size(
+            t0,
+            t1,
+            (tip0,),
+            (tip1,),
+            args,
+            (error,),
+            error_order,
+            controller_state,
+        )

@@ -1,0 +1,9 @@
+from .contraction import lag_forces as lag_forces
+from .fast_slides import FastSlide as FastSlide
+from .fast_slides import FastSlideFinder as FastSlideFinder
+from .fast_slides import FoundTips as FoundTips
+from .fast_slides import last_begun as last_begun
+from .map import BARE_TAIL as BARE_TAIL
+from .map import TAIL as TAIL
+from .onsets import fast_slide_through as fast_slide_through
+from .transit_times import ManyTransitTimes as ManyTransitTimes

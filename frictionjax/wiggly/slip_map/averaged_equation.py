@@ -1,0 +1,110 @@
+"""About when a slide passes its wells: the slow equation, averaged over a well.
+
+`dT/dn = P(X)`, with X the force beyond the fold at the time T and the lattice point n, and
+P the time of a passage under that force. It says how a slide is cut into panels, and is a
+guess for the recursion that is solved on them.
+"""
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array
+
+from ..._compile import Program, in_chunks
+from ...model import Scene
+from .transit import WellPull, steady_transit_times
+
+_STEPS = 96  # of a slide, from its start to its end
+_SHORT = 4.0  # wells of the first step and the last
+# Forces of the table, over the one at the start, and how many.
+_RANGE, _ROWS = np.log([1e-3, 1e4]), 48
+_SWEEPS = 8  # of Newton's method in a step
+_FARTHEST, _CONVERGED = 2.0, 0.01  # change of log X in a sweep, and in the last one
+_SLIDES = 4  # in a compiled call
+
+
+class Lags(NamedTuple):
+    """A slide on a grid of numbers of wells since its start, shape (_STEPS + 1,).
+
+    `force`: N beyond the fold, NaN from where slides end. `time`: s. `kept`: share of a
+    shift that a well leaves.
+    """
+
+    number: np.ndarray
+    force: np.ndarray
+    time: np.ndarray
+    kept: np.ndarray
+
+
+def _grid(wells: np.ndarray) -> np.ndarray:
+    """Numbers from 0 to `wells`, graded towards both ends; (C, _STEPS + 1)."""
+    many = np.log(np.maximum(wells / (2 * _SHORT), 1.1))[:, None]
+    half = 0.5 * np.expm1(many * np.linspace(0, 1, _STEPS // 2 + 1)) / np.expm1(many)
+    return wells[:, None] * np.concatenate([half, 1 - half[:, -2::-1]], axis=1)
+
+
+@Program
+def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, number):
+    pitch = (_RANGE[1] - _RANGE[0]) / (_ROWS - 1)
+
+    def one(table, low, fold, sign, eps, origin, first, time, number):
+        def law(force: Array) -> tuple[Array, Array]:
+            """P in s, and its derivative."""
+            place = (jnp.log(force) - low) / pitch
+            row = jnp.clip(jnp.floor(place).astype(int), 0, _ROWS - 2)
+            rise = table[row + 1] - table[row]
+            length = jnp.exp(table[row] + rise * (place - row))
+            return length, length * rise / (pitch * force)
+
+        def force_at(time: Array, at: Array) -> Array:
+            held = scene.support.force(origin + sign * eps * (first + at))
+            return sign * (scene.load(time) - held) - fold
+
+        def step(before, at):
+            # Newton's method for log X: in T it diverged where X is 1e-7 of the load.
+            time, force, last = before
+            wells = at - last
+
+            def sweep(_, state):
+                log, _ = state
+                force = jnp.exp(log)
+                length, slope = law(force)
+                later = time + wells * length
+                rate = sign * scene.load.slope(later)
+                left = force - force_at(later, at)
+                change = left / (force * (1 - wells * slope * rate))
+                return log - jnp.clip(change, -_FARTHEST, _FARTHEST), change
+
+            begin = jnp.log(force), jnp.zeros_like(force)
+            log, change = jax.lax.fori_loop(0, _SWEEPS, sweep, begin)
+            here = jnp.where(jnp.abs(change) < _CONVERGED, jnp.exp(log), jnp.nan)
+            length, slope = law(here)
+            later = time + wells * length
+            kept = jnp.exp(slope * sign * scene.load.slope(later))
+            return (later, here, at), (here, later, kept)
+
+        begin = force_at(time, number[0])
+        gain = law(begin)[1] * sign * scene.load.slope(time)
+        _, rows = jax.lax.scan(step, (time, begin, number[0]), number[1:])
+        start = begin, time, jnp.exp(gain)
+        return [jnp.concatenate([a[None], b]) for a, b in zip(start, rows, strict=True)]
+
+    return jax.vmap(one)(table, low, fold, sign, eps, origin, first, time, number)
+
+
+def lags_of(
+    scene: Scene, track: WellPull, eps, viscosity, origin, first, time, force, wells
+) -> Lags:
+    """Slides of `wells` from the lattice points `first`, passed at `time` (s); all (C,).
+
+    `force`: beyond the fold there.
+    """
+    low = np.log(force) + _RANGE[0]
+    logs = low[:, None] + np.linspace(0.0, _RANGE[1] - _RANGE[0], _ROWS)
+    table = np.log(steady_transit_times(track, viscosity, np.exp(logs)))
+    number = _grid(wells)
+    columns = table, low, track.fold, track.sign, eps, origin, first, time, number
+    found = in_chunks(_march, _SLIDES, (scene,), columns)
+    return Lags(number, *found)

@@ -1,0 +1,128 @@
+"""How far the tip can lag behind the strip's edge on a slide."""
+
+from typing import NamedTuple
+
+import jax
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..._compile import Program, in_chunks
+from ...model import AbstractPotential
+from ..equation import WiggleFolds
+
+# Half of the grid over a well, graded towards the fold by e-folds that resolve folds down
+# to 1e-13 of a period.
+_GRADED = np.expm1(30.0 * np.linspace(0.0, 1.0, 1024)) / np.expm1(30.0)
+_GRID = 0.5 * np.concatenate([-_GRADED[:0:-1], _GRADED])
+_STEPS = np.diff(_GRID)
+_THIN = 11  # 1023 is a multiple, so that the fold stays on the grid
+_THIN_STEPS = np.diff(_GRID[::_THIN])
+LAG_FORCES = np.logspace(-24, 4, 85)
+_ROWS = 8  # wells in a compiled call
+
+
+@Program
+def _forces(potential: AbstractPotential, eps: Array, places: Float[Array, "wells n"]):
+    one = jax.vmap(potential.tip_force, in_axes=(0, None))
+    return jax.vmap(one)(places, eps)
+
+
+class Wells(NamedTuple):
+    """The way through a well, from fold to fold, shape (wells, grid).
+
+    `gaps`: force in N below the fold's. `stretch`: `G`. `folds` (wells,): how many are
+    nearly as high.
+    """
+
+    gaps: np.ndarray
+    stretch: np.ndarray
+    folds: np.ndarray
+
+    def thinned(self) -> "Wells":
+        """Every eleventh point: integrals to about a percent."""
+        every = slice(None, None, _THIN)
+        return Wells(self.gaps[:, every], self.stretch[:, every], self.folds)
+
+    def passages(self, forces: np.ndarray) -> np.ndarray:
+        """`int_0^1 dY/(f + rho - V')` for forces f beyond the fold, an upper bound.
+
+        `forces`: shape (wells, n), and so the result. The grid is graded towards the
+        extreme fold; others that are nearly as high may each hide as much again, so the
+        integral is multiplied by their number.
+        """
+        rate = self.stretch[:, None] / (forces[..., None] + self.gaps[:, None])
+        steps = _STEPS if rate.shape[-1] == _GRID.size else _THIN_STEPS
+        whole = 0.5 * (rate[..., 1:] + rate[..., :-1]) @ steps
+        return self.folds[:, None] * whole
+
+
+def from_fold_to_fold(
+    potential: AbstractPotential, eps: np.ndarray, place: np.ndarray, side: np.ndarray
+) -> Wells:
+    """Wells at each eps from the extreme fold `place`, right (`side` 1) or left (-1)."""
+    count = eps.size
+    scan = np.arange(potential.points) / potential.points
+    around = np.concatenate([place[:, None] + _GRID, np.tile(scan, (count, 1))], axis=1)
+    force, stretch = in_chunks(_forces, _ROWS, (potential,), (eps, around))
+    force = side[:, None] * force
+    heights, top = force[:, _GRID.size :], force[:, _GRID.size // 2, None]
+    bump = (heights >= np.roll(heights, 1, 1)) & (heights > np.roll(heights, -1, 1))
+    high = heights.max(axis=1, keepdims=True)
+    near = bump & (heights > high - 0.05 * np.ptp(heights, axis=1, keepdims=True))
+    gaps = np.maximum(top - force[:, : _GRID.size], 0.0)
+    folds = np.maximum(near.sum(axis=1), 1)
+    return Wells(gaps, stretch[:, : _GRID.size], folds)
+
+
+def lag_forces(
+    potential: AbstractPotential, eps: np.ndarray, folds: WiggleFolds, drag: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Force in N beyond the fold that a steady slide needs, at most: right and left.
+
+    All of shape (cells,). `drag`: eps^gamma times the speed of the slide, in N. From the
+    slow equation averaged over a well, `v = eps^-gamma / int_0^1 dY/(f + rho - W')`.
+    """
+    # Once for each eps; of the largest for all, cells would depend on their neighbours.
+    own, first, which = np.unique(eps, return_index=True, return_inverse=True)
+    places = [np.asarray(v)[first] for v in (folds.place_plus, folds.place_minus)]
+    sides = np.repeat([1.0, -1.0], own.size)
+    wells = from_fold_to_fold(potential, np.tile(own, 2), np.concatenate(places), sides)
+    both = np.concatenate([which, which + own.size])
+    cells = Wells(*(part[both] for part in wells))
+    needed = _needed(cells, np.log(np.maximum(np.tile(drag, 2), 1e-300)))
+    return needed[: eps.size], needed[eps.size :]
+
+
+def _needed(wells: Wells, wanted: np.ndarray) -> np.ndarray:
+    """The force at which each speed, a logarithm, is reached: between two of `LAG_FORCES`.
+
+    By halving on a thinned grid, then by steps on the whole one: 2 to 4 integrals where
+    halving alone took 9, and the whole table has 85.
+    """
+    low = _below(wells.thinned(), wanted)
+    while True:
+        slow, fast = _speeds(wells, low), _speeds(wells, low + 1)
+        shift = ((fast <= wanted) & (low < LAG_FORCES.size - 2)).astype(int)
+        shift -= (slow > wanted) & (low > 0)
+        if not shift.any():
+            break
+        low = low + shift
+    share = np.clip((wanted - slow) / np.maximum(fast - slow, 1e-300), 0.0, 1.0)
+    logs = np.log(LAG_FORCES)
+    return np.exp(logs[low] + share * (logs[low + 1] - logs[low]))
+
+
+def _speeds(wells: Wells, index: np.ndarray) -> np.ndarray:
+    """Logarithms of speeds under some of `LAG_FORCES`, one for each well."""
+    return -np.log(wells.passages(LAG_FORCES[index][:, None])[:, 0])
+
+
+def _below(wells: Wells, wanted: np.ndarray) -> np.ndarray:
+    """Index of the last force under which slides are not faster, by halving."""
+    low = np.zeros(wanted.size, dtype=int)
+    high = np.full(wanted.size, LAG_FORCES.size - 1)
+    while np.any(high - low > 1):
+        middle = (low + high) // 2
+        below = _speeds(wells, middle) <= wanted
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.minimum(low, LAG_FORCES.size - 2)

@@ -1,0 +1,5 @@
+"""From what lanes found to the values of each cell: states, energies, deviations."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

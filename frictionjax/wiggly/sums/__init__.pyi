@@ -1,0 +1,2 @@
+from .results import CellResults as CellResults
+from .results import evaluate as evaluate

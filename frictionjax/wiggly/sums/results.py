@@ -1,0 +1,134 @@
+"""From what lanes found to the values of each cell."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...model import Scene
+from ..enclosure import BracketValues, Layout
+from ..equation import Status
+from ..lanes import Sums
+from ..limit_path import Path, states_at
+from .cell_sums import (
+    NOT_ASKED,
+    CellWay,
+    deviations,
+    energetics,
+    no_energetics,
+    way_of,
+)
+from .stop_values import sampled_slides_at, states_at_stops, stop_values_of
+
+_RESIDUAL_SHARE = 0.05  # of the energy dissipated; solutions leave about 1e-6 of it
+
+
+class CellResults(NamedTuple):
+    """Values of all cells; (cells, n) at the requested times, else (cells,).
+
+    `tolerance`: of steps, in periods. `how`: 0 where one lane has integrated every slip
+    since z0, 1 where a bracket has closed, 2 where one has that set off from a slip map.
+    `gap`: how closely, in eps. `sampled`: share of the path's way in slides of which only
+    some periods were measured, NaN where only the times were. `survey_error`,
+    `survey_work_error`: estimates of the errors that this makes in `sup_error` (m), in the
+    dissipation or in its distance from the path's (of the dissipation over [0, T]).
+    """
+
+    z: np.ndarray
+    dissipation: np.ndarray
+    running_residual: np.ndarray
+    residual: np.ndarray
+    dissipation_gap: np.ndarray
+    dissipation_error: np.ndarray
+    sup_error: np.ndarray
+    strip_excess: np.ndarray
+    how: np.ndarray
+    gap: np.ndarray
+    sampled: np.ndarray
+    survey_error: np.ndarray
+    survey_work_error: np.ndarray
+    status: np.ndarray
+    steps: np.ndarray
+    rejected: np.ndarray
+    tolerance: np.ndarray
+
+
+def _dissipation_of_path(path: Path, times: np.ndarray, states: np.ndarray) -> np.ndarray:
+    """What the path dissipates in J up to each time."""
+    spent = np.concatenate([[0.0], np.cumsum(path.rho * np.diff(path.states))])
+    piece = path.piece_of(times)
+    return spent[piece] + path.rho[piece] * (states - path.states[piece])
+
+
+def evaluate(
+    scene: Scene,
+    path: Path,
+    eps: np.ndarray,
+    ts: np.ndarray,
+    layout: Layout,
+    found: BracketValues,
+    wanted: Sums,
+    start: tuple[np.ndarray, np.ndarray],
+    accuracy: float,
+) -> CellResults:
+    """Values of all cells from what was found at the stops of the layout.
+
+    Suprema are NaN where no extremes were `wanted`.
+    """
+    stops = stop_values_of(scene, layout, found, eps)
+    count = eps.size
+    guide = np.full(count, path.states[0])
+    z_start, energy0, _ = states_at_stops(scene, eps, *start, np.zeros(count), guide)
+    guides = states_at(scene, path, ts)
+    of_path = _dissipation_of_path(path, ts, guides)
+    whole = float(path.travel[-1])
+    surveys = sampled_slides_at(layout.slides, stops)
+    rows = []
+    for c in range(count):
+        mine = [i for i, slide in enumerate(layout.slides) if slide.cell == c]
+        mine.sort(key=lambda i: layout.slides[i].low)
+        own = [layout.slides[i] for i in mine], [surveys[i] for i in mine]
+        cell = way_of(layout.chain[c], *own, stops)
+        *energies, lost = no_energetics(ts.size)
+        if wanted.energies:
+            of = layout, layout.output[c], energy0[c], of_path, path
+            *energies, lost = energetics(cell, stops, *of, accuracy * eps[c], eps[c])
+        output = layout.output[c]
+        z = np.where(output >= 0, stops.z[output], z_start[c])
+        off = deviations(cell, stops) if wanted.extremes else NOT_ASKED
+        rows.append(
+            (
+                z,
+                *energies,
+                off.far,
+                off.outside,
+                np.where(output >= 0, found.how[output], 0),
+                np.where(output >= 0, found.gap[output], 0.0),
+                _share(cell, path, whole) if layout.whole else np.nan,
+                off.error,
+                lost,
+                _status(cell, stops, layout, found, output, path, eps[c], wanted.energies),
+            )
+        )
+    columns = [np.array(column) for column in zip(*rows, strict=True)]
+    return CellResults._make([*columns, found.steps, found.rejected, np.zeros(count)])
+
+
+def _share(cell: CellWay, path: Path, whole: float) -> float:
+    covered = sum(abs(s.way) for s in cell.slides)
+    return float(covered / whole) if whole > 0 else 0.0
+
+
+def _status(cell, stops, layout, found, output, path, eps, balanced) -> int:
+    used = np.concatenate(
+        [cell.chain, output[output >= 0], *(s.stops for s in cell.slides)]
+    )
+    codes = found.arrivals.code[used]
+    bad = codes[codes != 0]
+    if bad.size:
+        return int(bad[0]) if np.isfinite(bad[0]) else int(Status.NOT_FINITE)
+    if balanced:
+        slip = eps * path.width
+        _, viscous, residual = cell.totals[:, -1]
+        if not residual <= _RESIDUAL_SHARE * (slip + viscous):
+            return int(Status.UNBALANCED)
+    return int(Status.OK)

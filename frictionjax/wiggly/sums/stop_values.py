@@ -1,0 +1,93 @@
+"""What lanes found at all stops of a layout: states, energies, integrals on the way."""
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..._checks import Real
+from ..._compile import Program, in_chunks
+from ...model import Scene
+from ..enclosure import BracketValues, Layout, SampledPeriods
+from ..limit_path import SURPLUS, WORK, SampledSlide, sampled_slides_of
+
+_CHUNK = 2048  # stops of one compiled call
+
+
+@Program
+def _energies(scene: Scene, eps, well, tip, t, guide):
+    """z in m at stops, E_eps of z less E of the guide, and the size of its parts, in J."""
+
+    def one(eps: Real, well: Real, tip: Real, t: Real, guide: Real):
+        z = eps * (well + tip) + scene.potential.offset(tip, eps)
+        wiggle = scene.potential.tip_energy_change(tip, eps)
+        held, at_guide = scene.support.energy(z), scene.support.energy(guide)
+        pull = scene.load(t) * (z - guide)
+        size = jnp.abs(held) + jnp.abs(at_guide) + jnp.abs(pull) + jnp.abs(wiggle)
+        return z, held - at_guide - pull + wiggle, size
+
+    return jax.vmap(one)(eps, well, tip, t, guide)
+
+
+def states_at_stops(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, ...]:
+    """z in m at stops, E_eps of z less E of the guide, and the size of its parts, in J."""
+    return tuple(in_chunks(_energies, _CHUNK, (scene,), (eps, well, tip, t, guide)))
+
+
+class StopValues(NamedTuple):
+    """What the sums need of every stop, shape (S,); `sums` (3, S), `extremes` (5, S).
+
+    `size`: of the energies whose differences `energy` is, J.
+    """
+
+    time: np.ndarray
+    z: np.ndarray
+    energy: np.ndarray
+    size: np.ndarray
+    sums: np.ndarray
+    beyond: np.ndarray
+    extremes: np.ndarray
+
+
+def stop_values_of(
+    scene: Scene, layout: Layout, found: BracketValues, eps: np.ndarray
+) -> StopValues:
+    """What was found at every stop of a layout."""
+    windows, a, legs = layout.windows, found.arrivals, found.legs
+    own = eps[windows.cell[windows.owner]]
+    z, energy, size = states_at_stops(scene, own, a.well, a.tip, windows.stop, legs.guide1)
+    rise = legs.guide1 - legs.guide0
+    moved = legs.end > legs.start
+    ways, surpluses = (a.ahead, a.behind, a.outside), (a.surplus, a.deficit)
+    return StopValues(
+        time=windows.stop,
+        z=z,
+        energy=energy,
+        size=size,
+        sums=np.stack([a.work, a.viscous, a.residual]),
+        beyond=a.viscous - legs.friction * rise,
+        extremes=np.stack([*(np.where(moved, v, 0.0) for v in ways), *surpluses]),
+    )
+
+
+def sampled_slides_at(
+    slides: list[SampledPeriods], stops: StopValues
+) -> dict[int, SampledSlide]:
+    """Curves through the periods measured in each slide, by the number of the slide."""
+    found: dict[int, SampledSlide] = {}
+    counts = np.array([slide.stops.size for slide in slides])
+    for count in np.unique(counts):
+        mine = np.flatnonzero(counts == count)
+        some = [slides[i] for i in mine]
+        at = np.stack([slide.stops for slide in some])
+        sums = stops.sums[:, at].swapaxes(0, 1)
+        extremes = stops.extremes[:, at].swapaxes(0, 1)
+        start = stops.energy[at] + sums[:, WORK] + stops.beyond[at]
+        extremes[:, SURPLUS:] -= start[:, None]
+        low, high = np.array([(slide.low, slide.high) for slide in some]).T
+        starts = np.stack([slide.starts for slide in some])
+        ends = np.stack([slide.ends for slide in some])
+        fits = sampled_slides_of(low, high, starts, ends, sums, extremes)
+        found |= zip(mine.tolist(), fits, strict=True)
+    return found

@@ -1,0 +1,165 @@
+"""What every entry point refuses, by the argument's name, value and what is allowed."""
+
+import re
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax._checks.arguments import no_less, no_more
+from frictionjax.model.scene import require_times, require_told_apart
+from frictionjax.wiggly import batch as engine
+
+SURFACE, BRISTLE = fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0)
+
+
+def scene_of(support=None, load=None, z0=0.0, potential=None):
+    parts = support or fx.supports.Spring(1.0), load or fx.loads.Sine(1.0, 3.0), 3.0, z0
+    if potential is not None:
+        return fx.Scene(None, None, *parts, potential=potential)
+    return fx.Scene(SURFACE, BRISTLE, *parts)
+
+
+SCENE = scene_of()
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: fx.solve(SCENE, 1e-2, ts="abc"), r"ts = 'abc': needs times"),
+        (lambda: fx.solve(SCENE, 1e-2, ts=[0j, 1]), r"ts = .*: needs times"),
+        (lambda: fx.solve(SCENE, 1e-2, ts=[[0.0], [1.0, 2.0]]), r"ts = .*: needs times"),
+        (lambda: fx.solve(SCENE, 1e-2, max_steps=0), r"max_steps = 0: needs a whole"),
+        (lambda: fx.solve(SCENE, 1e-2, max_steps=10.5), r"max_steps = 10\.5: needs a who"),
+        (lambda: fx.solve(SCENE, 1e-2, max_steps="a"), r"max_steps = 'a': needs a whole"),
+        (lambda: fx.solve(SCENE, 1e-2, adjoint=3), r"adjoint = 'int': needs None or an"),
+        (lambda: fx.solve(SCENE, None), r"eps = None: needs one number eps > 0"),
+        (lambda: fx.study(None), r"dataset = 'NoneType': needs a data set"),
+        (lambda: fx.study({}), r"dataset = 'dict': needs a data set"),
+        (
+            lambda: fx.study(fx.sweep(SCENE, [1e-2], 1.0, suprema=False)),
+            r"dataset = 'one without strip_excess, sup_error': needs .* suprema=True",
+        ),
+        (
+            lambda: fx.profiles.Custom(lambda y: 0.01 * np.sin(2 * np.pi * y)),
+            r"profile\.fn = .*: needs .*, written with jax\.numpy",
+        ),
+        (
+            lambda: fx.GivenPotential(lambda Y: jnp.sin(2 * jnp.pi * Y), lambda Y: Y),
+            r"potential\.Q = .*: needs a function of \(eps, Y\)",
+        ),
+        (
+            lambda: scene_of(fx.supports.Convex(lambda z: -(z**2))),
+            r"support = .*: needs Phi uniformly convex and Phi' to reach",
+        ),
+        (
+            lambda: fx.friction(fx.profiles.Sine(jnp.float32(0.1)), BRISTLE),
+            r"dtype = float32: needs float64 leaves; build the parts from Python numbers",
+        ),
+        (
+            lambda: fx.profiles.Fourier.from_heights(np.arange(100.0), np.full(100, 1.1)),
+            r"heights = 'a straight line': needs heights that vary",
+        ),
+    ],
+)
+def test_wrong_arguments_are_named(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+@pytest.mark.parametrize("scene", [None, "scene.toml"])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda scene: fx.solve(scene, 1e-2),
+        lambda scene: fx.solve_limit(scene),
+        lambda scene: fx.sweep(scene, 1e-2, 1.0),
+        lambda scene: fx.work_precision(scene),
+        lambda scene: fx.predict_cost(scene, 1e-2),
+        lambda scene: fx.fit_budget(scene, 1e-2, 1.0, 10.0),
+        lambda scene: fx.order_cost(scene, [1e-2, 1e-3]),
+        lambda scene: fx.certify(scene, 1e-2, 1.0, [0.0, 1.0], [0.0, 0.0]),
+        lambda scene: fx.fit_trace(None, scene, 1e-2),
+    ],
+)
+def test_what_is_no_scene_is_named(call, scene):
+    kind = type(scene).__name__
+    with pytest.raises(ValueError, match=rf"scene = '{kind}': needs a Scene"):
+        call(scene)
+
+
+@pytest.mark.parametrize("value", [True, [True, 0.1], [[0.1]], "0.1", {0.1: 1}, {0.1}])
+def test_eps_that_is_no_number_nor_list_is_named(value):
+    for call in (
+        lambda: fx.sweep(SCENE, value, 1.0),
+        lambda: fx.solve(SCENE, value),
+        lambda: fx.predict_cost(SCENE, value, measure=False),
+    ):
+        with pytest.raises(ValueError, match=r"eps = .*: needs "):
+            call()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda scene, eps: fx.solve(scene, eps, 1.0, [0.0, 3.0]),
+        lambda scene, eps: fx.sweep(scene, [1e-2, eps], 1.0, [0.0, 3.0]),
+        lambda scene, eps: fx.predict_cost(scene, eps, 1.0, measure=False),
+    ],
+)
+def test_wells_that_floats_cannot_tell_apart_are_refused(call):
+    """At eps = 1e-20 a run did not end; at 1e-15 all was NaN, after 20 s."""
+    with pytest.raises(
+        ValueError, match=r"eps = 1e-20: needs eps >= 9.095e-13: wells at 1 m"
+    ):
+        call(SCENE, 1e-20)
+    with pytest.raises(ValueError, match=r"eps = 1e-07: needs eps >= 9.095e-06"):
+        call(scene_of(fx.supports.Spring(1e-7)), 1e-7)
+
+
+def test_eps_of_1e_minus_12():
+    found = fx.solve(SCENE, 1e-12, 1.0, [0.0, 1.0, 3.0])
+    assert found.ok
+    assert np.all(np.isfinite(found.z))
+
+
+@pytest.mark.parametrize("gamma", [1.0, 2.0])
+def test_wrong_solutions_do_not_balance_at_the_smallest_eps(monkeypatch, gamma):
+    """Steps that err by a hundredth of a well, by a third in slips."""
+    plans = engine.planned
+
+    def carelessly(*parts):
+        plan = plans(*parts)
+        loose = {"tolerance": 1e-2, "loosest": 0.3, "reach": 0.25}
+        size = plan.control.tolerance.shape
+        control = {name: np.full(size, value) for name, value in loose.items()}
+        return plan._replace(control=plan.control._replace(**control))
+
+    monkeypatch.setattr(engine, "planned", carelessly)
+    found = fx.solve(SCENE, 1e-12, gamma, [0.0, 1.0, 3.0])
+    assert found.status is fx.Status.UNBALANCED
+
+
+@pytest.mark.parametrize("value", [5.00049e-13, 9.0949470177e-13, 1 / 3, -0.1234567, 12, 0])
+@pytest.mark.parametrize("digits", [2, 4, 6])
+def test_a_limit_that_is_named_is_allowed(value, digits):
+    low, high = float(no_less(value, digits)), float(no_more(value, digits))
+    assert high <= value <= low
+    assert low - high <= 10.0 ** (1 - digits) * abs(value)
+
+
+def test_the_smallest_eps_named_in_an_error_is_accepted():
+    for load in (1.0, 5.4987, 0.31):
+        scene = scene_of(load=fx.loads.Ramp(0.1, load))
+        with pytest.raises(ValueError, match="needs eps >= ") as caught:
+            require_told_apart(scene, 1e-20)
+        named = re.search(r"eps >= (\S+):", str(caught.value)).group(1)
+        require_told_apart(scene, float(named))
+
+
+def test_the_end_named_in_an_error_is_a_time_that_is_accepted():
+    scene = fx.Scene(SURFACE, BRISTLE, SCENE.support, SCENE.load, 1.23456789)
+    with pytest.raises(ValueError, match=r"\[0, 1\.23456\]"):
+        require_times(scene, [0.0, 1.3])
+    require_times(scene, [0.0, 1.23456])

@@ -1,0 +1,123 @@
+"""A question compiles what it needs and nothing else."""
+
+import subprocess
+import sys
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import pytest
+
+import frictionjax as fx
+from frictionjax.wiggly.equation import step_plan as tolerance
+from frictionjax.wiggly.equation.field import TipField
+from frictionjax.wiggly.sequential import augmented_solver as observed
+from frictionjax.wiggly.sequential import integration
+from frictionjax.wiggly.sequential.rosenbrock_solvers import Rodas5P
+
+SCENE = fx.Scene(
+    fx.profiles.Sine(0.1),
+    fx.bristles.SlantedSpring(1.0, 2.2, 1.0, 0.4),
+    fx.supports.Spring(1.0),
+    fx.loads.Sine(1.0488, 3.0),
+    3.0,
+)
+
+
+def equations(jaxpr) -> list[str]:
+    """Names of all primitives in a jaxpr, loops and calls included."""
+    names = []
+    for equation in jaxpr.eqns:
+        names.append(equation.primitive.name)
+        for value in jax.tree_util.tree_leaves(
+            equation.params, is_leaf=lambda v: hasattr(v, "eqns") or hasattr(v, "jaxpr")
+        ):
+            inner = getattr(value, "jaxpr", value)
+            if hasattr(inner, "eqns"):
+                names += equations(inner)
+    return names
+
+
+def traced(fn, scene) -> list[str]:
+    numbers, static = eqx.partition(scene, eqx.is_array)
+    return equations(jax.make_jaxpr(lambda n: fn(eqx.combine(n, static)))(numbers).jaxpr)
+
+
+def trajectory_of(scene, balanced):
+    one = jnp.asarray(1.0)
+    ts = jnp.linspace(0, 3, 5)
+    plan = tolerance.plan_steps(scene, 0.05 * one, one, 1e-3 * one)
+    return integration.integrate(
+        scene, 0.05 * one, one, ts, plan, Rodas5P(), until=ts[-1], balanced=balanced
+    ).z
+
+
+def test_coefficients_and_limit_hold_no_wiggly_system(monkeypatch):
+    """The field's code is never run while they are traced, and their loops are few."""
+
+    def forbidden(*args):
+        raise AssertionError("the wiggly vector field was traced")
+
+    monkeypatch.setattr(TipField, "driving_force", forbidden)
+    monkeypatch.setattr(TipField, "velocity", forbidden)
+    law = traced(lambda scene: fx.friction(scene).rho_plus, SCENE)
+    limit = traced(lambda scene: fx.solve_limit(scene, jnp.linspace(0, 3, 7)).z, SCENE)
+    assert law.count("scan") == limit.count("scan") == 0  # a trajectory is a scan of loops
+    with pytest.raises(AssertionError, match="vector field"):
+        traced(lambda scene: trajectory_of(scene, balanced=False), SCENE)
+
+
+@pytest.mark.slow
+def test_no_dissipation_no_balance(monkeypatch):
+    bare = traced(lambda scene: trajectory_of(scene, balanced=False), SCENE)
+    full = traced(lambda scene: trajectory_of(scene, balanced=True), SCENE)
+    assert len(bare) < 0.8 * len(full)
+
+    def forbidden(*args):
+        raise AssertionError("the balance was traced")
+
+    monkeypatch.setattr(observed, "advance", forbidden)
+    monkeypatch.setattr(TipField, "tip_energy", forbidden, raising=False)
+    traced(lambda scene: trajectory_of(scene, balanced=False), SCENE)
+    with pytest.raises(AssertionError, match="balance"):
+        traced(lambda scene: trajectory_of(scene, balanced=True), SCENE)
+
+
+def test_a_scene_without_effects_is_the_same_program():
+    named = fx.Scene(
+        SCENE.profile, SCENE.bristle, SCENE.support, SCENE.load, 3.0, effects=()
+    )
+
+    def program(scene):
+        return trajectory_of(scene, balanced=True)
+
+    assert traced(program, named) == traced(program, SCENE)
+
+
+def test_unknown_effects_are_refused():
+    with pytest.raises(ValueError, match=r"scene\.effects = .*needs \(\)"):
+        fx.Scene(
+            SCENE.profile, SCENE.bristle, SCENE.support, SCENE.load, 3.0, effects=("wind",)
+        )
+
+
+def test_coefficients_import_no_solver():
+    code = (
+        "import jax; jax.config.update('jax_enable_x64', True)\n"
+        "import frictionjax as fx, sys\n"
+        "fx.friction(fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0))\n"
+        "loaded = [m for m in sys.modules if m.startswith('frictionjax.wiggly')]\n"
+        "assert not loaded, loaded\n"
+        "assert 'diffrax' not in sys.modules\n"
+        "assert 'matplotlib' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_planning_a_sweep_imports_no_general_solvers():
+    code = (
+        "import frictionjax.cost.prediction, frictionjax.sweeps.sweep_cells, sys\n"
+        "heavy = {'diffrax', 'matplotlib', 'scipy', 'xarray'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)

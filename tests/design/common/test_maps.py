@@ -1,0 +1,123 @@
+"""Design maps: every cell is what a scalar call gives, and pictures show it."""
+
+import io
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax.design.common.maps import asymmetric_profile
+
+SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
+ANGULAR = fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, 0.3)
+WAVES = fx.profiles.Fourier(cos=[0.01, 0.004], sin=[0.02, 0.0])
+
+
+def check(cell, profile, make):
+    """One cell against constructors and `friction`."""
+    try:
+        law = fx.friction(profile, make())
+    except ValueError:
+        assert not bool(cell["admissible"])
+        assert np.isnan(cell["ratio"])
+        return False
+    assert bool(cell["admissible"])
+    plus, minus = float(law.rho_plus), float(law.rho_minus)
+    found = [float(cell[name]) for name in ("rho_plus", "rho_minus", "ratio", "alpha")]
+    np.testing.assert_allclose(found, (plus, minus, -plus / minus, law.alpha), rtol=1e-10)
+    assert float(cell["difference"]) == pytest.approx(plus + minus, abs=1e-12)
+    contrast = (plus + minus) / (plus - minus)
+    assert float(cell["contrast"]) == pytest.approx(contrast, abs=1e-10)
+    return True
+
+
+def test_cells_are_scalar_calls():
+    rows, columns = [0.4, 1.0, 2.5], np.linspace(-1.5, 1.5, 9)
+    axes = ("angle", columns), ("asymmetry", rows)
+    data = fx.design_map(SLANTED, *axes, steepness=0.3, pulling=True)
+    known = []
+    for row in rows:
+        for angle in columns:
+            cell = data.sel(asymmetry=row, angle=angle)
+            surface = asymmetric_profile(0.3, row)
+            known.append(
+                check(
+                    cell,
+                    surface,
+                    lambda angle=angle: fx.bristles.SlantedSpring(1.0, 2.4, 1.0, angle),
+                )
+            )
+    assert any(known)
+    assert not all(known)
+    assert data["ratio"].dims == ("asymmetry", "angle")
+
+
+def test_two_numbers_of_a_bristle_on_a_surface():
+    lengths, rests = [0.9, 1.05, 1.3, 40.0], [-1.0, 0.2, 0.9]
+    data = fx.design_map(ANGULAR, ("length", lengths), ("rest_angle", rests), WAVES)
+    known = [
+        check(
+            data.sel(length=length, rest_angle=rest),
+            WAVES,
+            lambda length=length, rest=rest: fx.bristles.AngularSpring(1, length, 1, rest),
+        )
+        for length in lengths
+        for rest in rests
+    ]
+    assert any(known)
+    assert not all(known)
+
+
+def test_numbers_that_constructors_refuse_are_not_admissible():
+    heights, rests = [-0.5, 0.0, 1.0], [-2.0, 2.4]  # formulas hold for all of these
+    data = fx.design_map(SLANTED, ("height", heights), ("rest_length", rests), WAVES)
+    expected = [[False, False, False], [False, False, True]]
+    np.testing.assert_array_equal(data["admissible"], expected)
+    np.testing.assert_array_equal(np.isfinite(data["rho_plus"]), expected)
+
+
+@pytest.mark.parametrize("asymmetry", [0.2, 1.0, 4.0])
+def test_the_family_of_surfaces_has_the_slopes_it_says(asymmetry):
+    law = fx.friction(asymmetric_profile(0.3, asymmetry), fx.bristles.Homothetic(1.0))
+    assert float(-law.omega_plus / law.omega_minus) == pytest.approx(asymmetry, rel=1e-11)
+    assert float(law.omega_plus - law.omega_minus) == pytest.approx(0.6, rel=1e-11)
+
+
+def test_pictures_show_the_numbers_and_what_is_not_admissible():
+    data = fx.design_map(SLANTED, ("angle", np.linspace(-1.5, 1.5, 31)), pulling=True)
+    figure = fx.plot.draw_design_map(data, ("ratio", "rho_plus"))
+    figure.savefig(io.BytesIO(), format="png", dpi=40)
+    ratio, rho = figure.axes[:2]
+    shown = np.ma.filled(ratio.collections[0].get_array(), np.nan).reshape(121, 31)
+    np.testing.assert_allclose(shown, np.log(data["ratio"]))
+    plain = np.ma.filled(rho.collections[0].get_array(), np.nan).reshape(121, 31)
+    np.testing.assert_allclose(plain, data["rho_plus"])
+    texts = [text.get_text() for text in ratio.get_legend().get_texts()]
+    assert texts[0] == "not admissible"
+    assert texts[1].startswith("$\\alpha$ = 0")
+    assert "angle of the bristle" in ratio.get_xlabel()
+    assert ratio.get_yscale() == "log"
+    with pytest.raises(ValueError, match="quantities = 'colour': needs one of ratio"):
+        fx.plot.draw_design_map(data, "colour")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"x": "colour"}, "free = 'colour': needs one of"),
+        ({"x": "height"}, "x = 'height': needs values of height"),
+        ({"x": 3.0}, "x = '3.0': needs a name"),
+        ({"y": "angle"}, "y = 'angle': needs another name than x"),
+        ({"x": ("angle", [0.1, np.nan])}, "x values = .*needs finite angle"),
+        ({"y": ("asymmetry", [-1.0])}, "y values = .*> 0 for surfaces"),
+        ({"x": ("angle", [])}, "x values = .*needs numbers, shape"),
+        ({"profile": WAVES}, "profile = 'Fourier': needs none beside asymmetry"),
+        ({"y": ("height", [1.0])}, "profile = None: needs a surface, or asymmetry"),
+        ({"steepness": -1.0}, "steepness = -1: needs steepness > 0"),
+    ],
+)
+def test_wrong_arguments_are_named(change, words):
+    with pytest.raises(ValueError, match=words):
+        fx.design_map(**({"bristle": SLANTED} | change))
+    with pytest.raises(ValueError, match="at most 512 harmonics"):
+        asymmetric_profile(0.1, 1e9)

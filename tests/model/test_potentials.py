@@ -1,0 +1,209 @@
+"""`V_eps`, its slope, and its expansion `eps W + eps^2 Q`."""
+
+from functools import partial
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from samples import FEW_BRISTLES, central, pair
+
+import frictionjax as fx
+from frictionjax.model.admissibility import largest_eps
+from frictionjax.numerics.roots import bracketed_root
+
+SIZES = 10.0 ** -np.arange(1, 9)
+GRID = jnp.linspace(0, 1, 65)[:-1] + 0.003
+
+
+def potentials(kind, profile_kind="fourier"):
+    signs = ((1, 3),) if kind == "angular" else ((1, 3), (-1, 4))
+    return [fx.potential(*pair(profile_kind, kind, sign, seed)) for sign, seed in signs]
+
+
+@eqx.filter_jit
+def by_tip(potential, z, eps):
+    """Force and G in the tip coordinate, at states `z`."""
+    return jax.vmap(lambda s: potential.tip_force(potential.tip(s, eps)[1], eps))(z)
+
+
+@pytest.mark.parametrize("kind", FEW_BRISTLES)
+def test_force_by_the_inverse_equals_the_tip_force(kind):
+    for potential in potentials(kind):
+        largest = 0.99 * largest_eps(potential, 0.1)
+        for eps in [largest, *(size for size in SIZES if size < largest)]:
+            z = eps * jnp.linspace(-10, 10, 401)
+            along, stretch = by_tip(potential, z, jnp.asarray(eps))
+            found = potential.force(z, eps)
+            size = jnp.max(jnp.abs(along))
+            assert jnp.all(stretch > 0)
+            assert jnp.max(jnp.abs(found - along)) < 1e-10 * size
+
+
+@pytest.mark.parametrize("kind", FEW_BRISTLES)
+def test_force_is_the_slope_of_the_energy(kind):
+    for potential in potentials(kind):
+        for eps in (3e-2, 1e-3):
+            z = eps * (GRID - 0.3)
+            slope = central(partial(potential.energy, eps=eps), z, 1e-3 * eps)
+            found = potential.force(z, eps)
+            size = jnp.max(jnp.abs(found))
+            assert jnp.max(jnp.abs(found - slope)) < 1e-10 * size
+
+
+@pytest.mark.parametrize("kind", FEW_BRISTLES)
+def test_expansion_is_an_identity(kind):
+    for potential in potentials(kind):
+        for eps in (0.99 * largest_eps(potential, 0.1), 1e-2, 1e-3):
+            energy = potential.energy(eps * GRID, eps)
+            parts = eps * potential.W(GRID) + eps**2 * potential.Q(eps, GRID)
+            assert jnp.max(jnp.abs(energy - parts)) < 1e-14 * jnp.max(jnp.abs(energy))
+
+
+def rest_slope(potential, eps):
+    return jax.vmap(jax.grad(lambda Y: potential.Q(eps, Y)))(GRID)
+
+
+@pytest.mark.parametrize("kind", FEW_BRISTLES)
+def test_rest_and_its_slope_stay_bounded(kind):
+    slopes = eqx.filter_jit(rest_slope)
+    for potential in potentials(kind):
+        limit = potential.Q(0.0, GRID)
+        limit_slope = slopes(potential, jnp.zeros(()))
+        size = jnp.max(jnp.abs(limit)) + 1e-3 * (kind == "homothetic")
+        slope_size = jnp.max(jnp.abs(limit_slope)) + 1e-3 * (kind == "homothetic")
+        for eps in (0.99 * largest_eps(potential, 0.1), *SIZES[1:]):
+            found = potential.Q(eps, GRID)
+            found_slope = slopes(potential, jnp.asarray(eps))
+            assert jnp.max(jnp.abs(found)) < 10 * size
+            assert jnp.max(jnp.abs(found_slope)) < 100 * slope_size
+        assert jnp.max(jnp.abs(found - limit)) < 1e-6 * size  # eps = 1e-8 here
+        assert jnp.max(jnp.abs(found_slope - limit_slope)) < 1e-6 * slope_size
+
+
+@pytest.mark.parametrize("kind", FEW_BRISTLES)
+def test_rest_at_zero_by_extrapolation(kind):
+    # (V - eps W)/eps^2 at 8 sizes, a polynomial in eps through them, its value at 0.
+    for potential in potentials(kind):
+        nodes = 0.01 * (1 + np.cos(np.pi * (np.arange(8) + 0.5) / 8))
+        rows = [
+            (potential.energy(eps * GRID, eps) - eps * potential.W(GRID)) / eps**2
+            for eps in nodes
+        ]
+        weights = [
+            np.prod(np.delete(nodes, i) / (np.delete(nodes, i) - x))
+            for i, x in enumerate(nodes)
+        ]
+        expected = np.asarray(weights) @ np.stack(rows)
+        found = potential.Q(0.0, GRID)
+        np.testing.assert_allclose(
+            found, expected, atol=1e-8 + 1e-6 * np.max(np.abs(found))
+        )
+
+
+def test_rest_of_a_vertical_spring_in_closed_form():
+    surface = fx.profiles.Sine(0.2)
+    potential = fx.potential(surface, fx.bristles.VerticalSpring(3.0, 1.2, 1.0))
+    for eps in (0.0, 1e-8, 1e-1):
+        np.testing.assert_allclose(
+            potential.Q(eps, GRID), 1.5 * surface(GRID) ** 2, rtol=1e-13
+        )
+
+
+@pytest.mark.parametrize("sharp", [1e-1, 1e-2, 1e-3])
+def test_the_inverse_near_its_singular_end(sharp):
+    # 1 + a omega_minus = sharp: Kepler's equation with eccentricity 1 - sharp.
+    lean = np.arctan(1 / 0.5) - 1e-12
+    surface = fx.profiles.Sine((1 - sharp) / np.tan(lean))
+    potential = fx.potential(surface, fx.bristles.SlantedSpring(1.0, 3.0, 1.0, lean))
+    y = jnp.linspace(-0.5, 0.5, 1001)[1:-1]
+    Y = y - np.tan(lean) * surface(y)
+    back = eqx.filter_jit(lambda Y: jax.vmap(potential.flat_tip)(Y))(Y)
+    assert jnp.max(jnp.abs(back + potential.a() * surface(back) - Y)) < 4e-16
+    assert jnp.max(jnp.abs(back - y)) < 4e-16 / sharp
+    eps = jnp.asarray(1e-3)
+    number, inside = jax.vmap(lambda z: potential.tip(z, eps))(eps * (Y + 3))
+    assert jnp.all(number == 3)
+    assert jnp.max(jnp.abs(inside - y)) < 4e-15 / sharp
+
+
+@eqx.filter_jit
+def there(potential, z, eps):
+    number, inside = jax.vmap(lambda s: potential.tip(s, eps))(z)
+    return number, inside, jax.vmap(lambda y: potential.offset(y, eps))(inside)
+
+
+@pytest.mark.parametrize("kind", FEW_BRISTLES)
+def test_state_to_tip_and_back(kind):
+    for potential in potentials(kind, "spline"):
+        for eps in (1e-2, 1e-5, 1e-8):
+            z = eps * jnp.linspace(-10, 10, 201)
+            number, inside, ahead = there(potential, z, jnp.asarray(eps))
+            np.testing.assert_allclose(eps * (number + inside) + ahead, z, atol=1e-14 * eps)
+
+
+@pytest.mark.slow
+def test_a_rod_nearly_upright_keeps_its_digits():
+    # L - h = 1e-9 L: the rod reaches over 1e-9 L of height only, so eps is tiny.
+    rod = fx.bristles.AngularSpring(1.0, 1.0, 1.0 - 1e-9, -0.3)
+    potential = fx.potential(fx.profiles.Sine(1e-5), rod)
+    assert float(rod.limit_angle) == pytest.approx(np.sqrt(2e-9), rel=1e-6)
+    for eps in (1e-6, 1e-8, 1e-12):
+        along, _ = by_tip(potential, eps * (GRID - 0.5), jnp.asarray(eps))
+        found = potential.force(eps * (GRID - 0.5), eps)
+        np.testing.assert_allclose(found, along, atol=1e-10 * np.max(np.abs(along)))
+        limit, far = potential.Q(0.0, GRID), 5e3 * eps  # (eps w/1e-9) of its size
+        size = np.max(np.abs(limit))
+        np.testing.assert_allclose(potential.Q(eps, GRID), limit, atol=far * size)
+        climb = eqx.filter_jit(rest_slope)(potential, jnp.asarray(eps))
+        limit = rest_slope(potential, jnp.zeros(()))
+        np.testing.assert_allclose(climb, limit, atol=2 * far * np.max(np.abs(limit)))
+
+
+def test_beyond_reach_is_nan_and_never_a_number():
+    assert np.isnan(bracketed_root(lambda x: jnp.sqrt(x - 2), 0.0, 1.0))
+    rod = fx.bristles.AngularSpring(1.0, 1.0, 0.999, 0.0)
+    potential = fx.potential(fx.profiles.Sine(0.02), rod)
+    assert not np.all(np.isfinite(potential.energy(2 * GRID, 2.0)))
+
+
+def test_a_given_potential_is_what_was_given():
+    def W(Y):
+        return jnp.sin(2 * jnp.pi * Y) + 0.2 * jnp.cos(4 * jnp.pi * Y)
+
+    def Q(eps, Y):
+        return jnp.cos(2 * jnp.pi * Y) / (1 + eps)
+
+    potential = fx.GivenPotential(W, Q)
+    for eps in (1e-1, 1e-6):
+        expected = eps * W(GRID) + eps**2 * Q(eps, GRID)
+        np.testing.assert_allclose(
+            potential.energy(eps * (GRID + 7), eps), expected, atol=1e-12 * eps
+        )
+        slope = central(lambda Y, e=eps: W(Y) + e * Q(e, Y), GRID, 1e-2)
+        np.testing.assert_allclose(potential.force(eps * GRID, eps), slope, atol=1e-9)
+    np.testing.assert_allclose(potential.W(GRID - 3), W(GRID), atol=1e-13)
+    np.testing.assert_allclose(potential.Q(0.1, GRID), Q(0.1, GRID), atol=1e-15)
+    np.testing.assert_allclose(fx.GivenPotential(W).Q(0.1, GRID), 0 * GRID)
+    fine = np.linspace(0, 1, 1_000_001)
+    slopes = 2 * np.pi * np.cos(2 * np.pi * fine) - 0.8 * np.pi * np.sin(4 * np.pi * fine)
+    scene = fx.Scene(
+        potential=potential,
+        support=fx.supports.Spring(1.0),
+        load=fx.loads.Ramp(1.0),
+        duration=1.0,
+    )
+    found = fx.friction(scene)
+    assert found.rho_plus == pytest.approx(slopes.max(), rel=1e-10)
+    assert found.rho_minus == pytest.approx(slopes.min(), rel=1e-10)
+    assert found.alpha is None
+
+
+def test_shapes_broadcast():
+    potential = fx.potential(fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0))
+    eps = jnp.asarray([[1e-2], [1e-3]])
+    assert potential.energy(GRID, eps).shape == (2, 64)
+    assert potential.force(0.1, 1e-2).shape == ()
+    lanes = [potential.force(GRID, e) for e in (1e-2, 1e-3)]
+    np.testing.assert_allclose(potential.force(GRID, eps), np.stack(lanes), rtol=1e-14)

@@ -1,0 +1,211 @@
+"""Pictures hold the data they claim to, and touch no global setting."""
+
+import io
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from sweep_like import EPS, sweep_like
+
+import frictionjax as fx
+from frictionjax.convergence.order import Verdict
+
+LAW = fx.friction(fx.profiles.Sine(0.1), fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0))
+SPRING = fx.supports.Spring(2.0)
+
+
+def drawn(figure):
+    """The axes of a figure after rendering it (warnings are errors)."""
+    figure.savefig(io.BytesIO(), format="png", dpi=40)
+    for axes in figure.axes:
+        assert axes.get_xlabel()
+        assert axes.get_ylabel()
+        texts = axes.get_xlabel() + axes.get_ylabel()
+        assert texts.count("(") >= 2, "units are missing"
+    return figure.axes
+
+
+def data(line):
+    return [np.asarray(values, dtype=float) for values in line.get_data()]
+
+
+def labels(axes):
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+def labelled(axes, start):
+    return next(line for line in axes.lines if line.get_label().startswith(start))
+
+
+def convergence(**kwargs):
+    found = sweep_like(**kwargs)
+    return found, fx.study(found).orders, fx.study(found).plot()
+
+
+@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.equation.status.FailedCells")
+def test_convergence_shows_points_fits_and_failures():
+    found, orders, figure = convergence()
+    state, energy, strip = drawn(figure)
+    assert strip.get_ylabel().startswith("sup$_t$ dist")
+    assert state.get_xscale() == state.get_yscale() == "log"
+    assert energy.get_ylabel().endswith("(J)")
+    points = [line for line in state.lines if line.get_linestyle() == "None"]
+    shown = np.sort(np.concatenate([data(p)[1] for p in points if p.get_marker() != "x"]))
+    known = found.sup_error.values[np.isfinite(found.sup_error.values)]
+    assert shown == pytest.approx(np.sort(known))
+    cross = next(p for p in points if p.get_marker() == "x")
+    assert data(cross)[0] == pytest.approx(EPS[-1:])
+    fit = labelled(state, "$\\gamma$ = 0.5: order 0.50")
+    line = orders.sel(gamma=0.5)
+    assert data(fit)[0] == pytest.approx([float(line.eps_min), float(line.eps_max)])
+    assert data(fit)[1] == pytest.approx(data(fit)[0] ** 0.5)
+    assert "failed, $\\gamma$ = 1" in labels(state)
+    guides = [line for line in state.lines if line.get_linestyle() == ":"]
+    slopes = [np.diff(np.log(data(g)[1])) / np.diff(np.log(data(g)[0])) for g in guides]
+    assert np.ravel(slopes) == pytest.approx([0.5, 1.0])
+
+
+def test_points_outside_the_window_are_hollow():
+    found = sweep_like(failed=False)
+    orders = fx.study(found).orders
+    orders["eps_max"] = ("gamma", [0.05, 0.2])
+    axes = drawn(fx.plot.draw_convergence(found, orders))[0]
+    hollow = [p for p in axes.lines if p.get_markerfacecolor() == "white"]
+    assert data(hollow[0])[0] == pytest.approx(EPS[EPS > 0.05])
+    assert data(hollow[1])[0].size == 0
+
+
+def test_legends_say_what_the_points_show_where_it_is_another_order():
+    found = sweep_like(failed=False)
+    orders = fx.study(found).orders
+    orders["order_seen"] = ("gamma", [0.52, 1.45])
+    orders["verdict"] = ("gamma", np.array([0, Verdict.NOT_YET_SEEN], dtype=np.int8))
+    same, other = labels(drawn(fx.plot.draw_convergence(found, orders))[0])
+    assert "at these" not in same
+    assert "order 1.45 at these $\\epsilon$" in other
+    assert "for $\\epsilon \\to 0$: 1.00, 95% [1.00, 1.00], not yet seen" in other
+
+
+def test_minor_ticks_where_decades_are_few():
+    found = sweep_like(failed=False)
+    few = drawn(fx.plot.draw_convergence(found, fx.study(found).orders))[0]
+    assert few.xaxis.get_minorticklocs().size > 0
+    wide = found.assign_coords(eps=np.geomspace(0.1, 1e-6, 6))
+    many = drawn(fx.plot.draw_convergence(wide, fx.study(wide).orders))[0]
+    assert many.xaxis.get_minorticklocs().size == 0
+    assert many.xaxis.get_majorticklocs().size > 4
+
+
+def test_convergence_without_dissipation_or_orders():
+    found = sweep_like(dissipation=False).isel(eps=[0, 1])
+    axes = drawn(fx.plot.draw_convergence(found, fx.study(found).orders))
+    assert len(axes) == 2  # distances from the limit and from the strip
+    assert "$\\gamma$ = 1: too few points for an order" in labels(axes[0])
+
+
+@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.equation.status.FailedCells")
+def test_convergence_where_everything_failed():
+    found = sweep_like()
+    found["status"] = found.status.copy(data=np.full((2, 6), 1, dtype=np.int8))
+    found["sup_error"] = found.sup_error * np.nan
+    crosses = [
+        line
+        for line in drawn(fx.plot.draw_convergence(found, fx.study(found).orders))[0].lines
+        if line.get_marker() == "x"
+    ]
+    assert [data(c)[0].size for c in crosses] == [6, 6]
+
+
+def test_trajectories():
+    found = sweep_like()
+    axes = drawn(fx.plot.draw_trajectories(found, gamma=0.5, eps=[EPS[3], EPS[0]]))
+    main = axes[0]
+    assert len(main.lines) == 3
+    assert data(main.lines[0])[1] == pytest.approx(
+        found.z.sel(gamma=0.5, eps=EPS[0]).values
+    )
+    assert data(labelled(main, "limit"))[1] == pytest.approx(found.z_limit.values)
+    strip = main.collections[0].get_paths()[0].vertices[:, 1]
+    assert strip.min() == pytest.approx(float(found.z_minus.min()))
+    assert strip.max() == pytest.approx(float(found.z_plus.max()))
+
+
+def test_failed_cells_are_not_chosen():
+    axes = drawn(fx.plot.draw_trajectories(sweep_like(), gamma=1.0))[0]
+    assert "$\\epsilon$ = 0.0158 m" in labels(axes)
+    assert "$\\epsilon$ = 0.01 m" not in labels(axes)
+
+
+def test_slips_are_shown_where_the_times_resolve_them():
+    coarse = fx.plot.draw_trajectories(sweep_like(), gamma=0.5)
+    assert len(drawn(coarse)) == 1
+    fine = sweep_like().interp(time=np.linspace(0, 3, 2001))
+    fine["status"] = fine.status.astype(np.int8)
+    main, zoom = drawn(fx.plot.draw_trajectories(fine, gamma=0.5))
+    low, high = zoom.get_xlim()
+    assert 0 < high - low < 1.5
+    frame = main.patches[0]
+    assert frame.get_x() == pytest.approx(low)
+    assert frame.get_height() == pytest.approx(np.ptp(zoom.get_ylim()))
+
+
+def test_unknown_gamma_or_eps_is_an_error():
+    with pytest.raises(ValueError, match=r"gamma = 3: needs one of 0\.5, 1"):
+        fx.plot.draw_trajectories(sweep_like(), gamma=3.0)
+    with pytest.raises(ValueError, match=r"eps = 3: needs one of 0\.1, "):
+        fx.plot.draw_dissipation(sweep_like(), eps=3.0)
+
+
+def test_loop_is_force_against_displacement():
+    found = sweep_like()
+    axes = drawn(fx.plot.draw_loop(found, SPRING, LAW, gamma=0.5, eps=EPS[0]))[0]
+    z, force = data(labelled(axes, "$\\epsilon$ = 0.1 m"))
+    assert z == pytest.approx(found.z.sel(gamma=0.5, eps=EPS[0]).values)
+    assert force == pytest.approx(found["load"].values - 2.0 * z)
+    levels = [data(line)[1][0] for line in axes.lines[-2:]]
+    assert levels == pytest.approx([float(LAW.rho_plus), float(LAW.rho_minus)])
+
+
+def test_dissipation():
+    found = sweep_like()
+    axes = drawn(fx.plot.draw_dissipation(found, gamma=0.5))[0]
+    assert len(axes.lines) == 4
+    assert data(labelled(axes, "limit"))[1] == pytest.approx(found.dissipation_limit.values)
+    with pytest.raises(ValueError, match="dataset = 'no dissipation'"):
+        fx.plot.draw_dissipation(sweep_like(dissipation=False))
+
+
+def test_mu_of_the_paper():
+    """Lemma 3: mu = omega/(1 + a omega), a = -tan(theta) and cot(theta_lim)."""
+    cases = [
+        (fx.plot.draw_mu_slanted, lambda t: -np.tan(t), 0.0),
+        (fx.plot.draw_mu_angular, lambda t: 1 / np.tan(t), np.arctan(0.1)),
+    ]
+    for draw, lean, start in cases:
+        axes = drawn(draw())[0]
+        for name, omega in (("+", 0.1), ("-", -0.1)):
+            angle, mu = data(labelled(axes, f"$\\mu_{name}$"))
+            assert mu == pytest.approx(omega / (1 + lean(angle) * omega))
+            assert start < angle[0] < start + 1e-3
+            assert np.arctan(10) - 1e-3 < angle[-1] < np.arctan(10)
+
+
+def test_nap_of_the_paper():
+    axes = drawn(fx.plot.draw_nap())[0]
+    for name, rest in (("with", 0.3), ("against", -0.3)):
+        angle, rho = data(labelled(axes, name))
+        mu = 0.1 / (1 + 0.1 / np.tan(angle))
+        assert rho == pytest.approx((angle - rest) / np.tan(angle) * mu)
+
+
+def test_global_settings_and_pyplot_stay_untouched():
+    """Whatever the user has set neither leaks in nor is lost."""
+    with mpl.rc_context({"font.size": 23.0, "axes.grid": False}):
+        before = dict(mpl.rcParams)
+        figure = fx.plot.draw_dissipation(sweep_like())
+        axes = drawn(figure)[0]
+        assert dict(mpl.rcParams) == before
+    assert axes.xaxis.label.get_fontsize() < 12
+    assert {text.get_fontsize() for text in axes.get_xticklabels()} == {10.0}
+    assert axes.xaxis.get_gridlines()[0].get_visible()
+    assert figure._repr_png_().startswith(b"\x89PNG")

@@ -1,0 +1,127 @@
+"""`frictionjax design`: what it prints, what it writes, how it fails."""
+
+import numpy as np
+import pytest
+from command_line import error_line, run
+
+import frictionjax as fx
+from frictionjax.design.bristle.result import AngleFit
+from frictionjax.design.common.heights import surface_heights
+from frictionjax.design.surface.result import ProfileFit
+from frictionjax.io.scene_files import default_study
+
+WAVES = fx.profiles.Fourier(cos=[0.01, 0.004], sin=[0.02, 0.0])
+
+
+def ratio_of(scene):
+    law = fx.friction(scene)
+    return float(-law.rho_plus / law.rho_minus)
+
+
+def test_a_bristle_for_a_ratio(tmp_path):
+    folder = tmp_path / "made" / "here"
+    result = run(
+        "design", "--ratio", 1.5, "--period", 2e-4, "--samples", 128, "--out", folder
+    )
+    assert result.exit_code == 0, result.output
+    names = {path.name for path in folder.iterdir()}
+    assert names == {
+        "design.toml",
+        "design.png",
+        "map.png",
+        "fit.json",
+        "heights.csv",
+        "tables.txt",
+    }
+    fit = AngleFit.from_json(folder / "fit.json")
+    assert float(fit.achieved) == pytest.approx(1.5, rel=1e-12)
+    scene = fx.load_scene(folder / "design.toml")
+    assert ratio_of(scene) == pytest.approx(1.5, rel=1e-12)
+    before = default_study().scene
+    assert scene.bristle.height == before.bristle.height
+    assert float(scene.duration) == float(before.duration)
+    lines = {line.split("  ")[0]: line for line in result.stdout.splitlines()}
+    assert "1.5" in lines["achieved"]
+    assert f"{float(scene.bristle.angle):.8g}"[:8] in lines["angle"]
+    assert "(0.641801, 1.55811)" in lines["reachable"]
+    assert "Steady slide, gamma = 1" in result.stdout
+    assert result.stdout.startswith((folder / "tables.txt").read_text().rstrip("\n"))
+    rows = np.loadtxt(folder / "heights.csv", delimiter=",", skiprows=1)
+    assert (folder / "heights.csv").read_text().startswith("x_m,height_m\n")
+    assert rows.shape == (129, 2)
+    x, height = rows.T
+    np.testing.assert_allclose(x, np.linspace(0, 2e-4, 129), rtol=1e-12)
+    # The default surface: slope 0.1, so a sine of amplitude 0.1 period/(2 pi).
+    size = 0.1 * 2e-4 / (2 * np.pi)
+    np.testing.assert_allclose(
+        height, size * (1 + np.sin(2 * np.pi * x / 2e-4)), atol=1e-15
+    )
+
+
+@pytest.mark.slow
+def test_a_surface_for_both_directions(tmp_path):
+    folder = tmp_path / "surface"
+    asked = ("--rho-plus", 0.12, "--rho-minus", -0.05, "--harmonics", 8)
+    result = run("design", *asked, "--out", folder)
+    assert result.exit_code == 0, result.output
+    names = {path.name for path in folder.iterdir()}
+    assert names == {"design.toml", "design.png", "fit.json", "heights.csv", "tables.txt"}
+    scene = fx.load_scene(folder / "design.toml")
+    law = fx.friction(scene)
+    assert float(law.rho_plus) == pytest.approx(0.12, rel=1e-6)
+    assert float(law.rho_minus) == pytest.approx(-0.05, rel=1e-6)
+    assert scene.profile.cos.shape == (8,)
+    x, height = np.loadtxt(folder / "heights.csv", delimiter=",", skiprows=1).T
+    slopes = np.gradient(height, x)
+    found = (slopes.max(), slopes.min())
+    np.testing.assert_allclose(found, (law.omega_plus, law.omega_minus), rtol=2e-3)
+
+
+@pytest.mark.slow
+def test_a_surface_within_bounds_and_its_rod(tmp_path):
+    folder = tmp_path / "bounded"
+    asked = ("--rho-plus", 0.12, "--rho-minus", -0.05, "--harmonics", 8)
+    bounds = ("--free", "angle", "--bounds", 0.9, 1.3, "--smallest-radius", 0.4)
+    result = run("design", *asked, *bounds, "--out", folder)
+    assert result.exit_code == 0, result.output
+    scene = fx.load_scene(folder / "design.toml")
+    law = fx.friction(scene)
+    assert float(law.rho_plus) == pytest.approx(0.12, rel=1e-6)
+    assert 0.9 < float(scene.bristle.angle) < 1.3
+    assert float(scene.bristle.angle) != float(default_study().scene.bristle.angle)
+    fit = ProfileFit.from_json(folder / "fit.json")
+    assert fit.bounds["smallest_radius"] == 0.4
+    assert fit.free["angle"] == pytest.approx(float(scene.bristle.angle), rel=1e-12)
+
+
+def test_what_cannot_be_designed_is_said_in_one_line(tmp_path):
+    out = ("--out", tmp_path / "none")
+    line = error_line(run("design", "--bristle", "angular", "--ratio", 7, *out))
+    assert "ratio = 7 cannot be reached by angle: ratio is in (0.51" in line
+    line = error_line(run("design", "--ratio", 3, *out))
+    assert "reached only by a bristle that pulls, angle = -1.3" in line
+    assert "(--pulling in the shell) allows that" in line
+    line = error_line(run("design", *out))
+    assert "targets = 'none': needs one of --ratio" in line
+    line = error_line(run("design", "--ratio", 1.2, "--rho-plus", 0.1, *out))
+    assert "targets = 'ratio, rho_plus': needs one of --ratio" in line
+    line = error_line(run("design", "--ratio", 1.2, "--free", "colour", *out))
+    assert "free = 'colour': needs one of stiffness" in line
+    line = error_line(run("design", "--ratio", 1.3, "--period", -1, *out))
+    assert "period = -1: needs period > 0" in line
+    line = error_line(run("design", "--ratio", 1.3, "--bounds", 0.2, 0.1, *out))
+    assert "bounds = [0.2 0.1]: needs a pair" in line
+    line = error_line(run("design", "--ratio", 1.3, "--smallest-radius", 0.1, *out))
+    assert "smallest_radius = 0.1: needs --rho-plus and --rho-minus together" in line
+    both = ("--rho-plus", 0.1, "--rho-minus", -0.1)
+    line = error_line(run("design", *both, "--bounds", 0.5, 1.1, *out))
+    assert "bounds = [0.5 1.1]: needs --free as well" in line
+    assert not (tmp_path / "none").exists()
+
+
+def test_heights_that_do_not_resolve_the_surface_are_refused():
+    with pytest.raises(ValueError, match=r"samples = 40: needs a whole number >= 64"):
+        surface_heights(WAVES, 1e-3, 40)
+    rows = surface_heights(WAVES, 1e-3, 64)
+    assert rows[-1, 1] == rows[0, 1]
+    assert rows[:, 1].min() == 0

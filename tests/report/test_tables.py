@@ -1,0 +1,219 @@
+"""Tables: every number in its column, nothing dropped."""
+
+import numpy as np
+import pytest
+from sweep_like import EPS, sweep_like
+
+import frictionjax as fx
+from frictionjax.measured import RowCoefficients
+from frictionjax.model.friction_coefficients import with_errors
+from frictionjax.report.job import number_list, read_job
+from frictionjax.report.place import filled, require_folder
+from frictionjax.report.tables import (
+    coefficient_table,
+    coefficients_by_name,
+    errors_by_name,
+    failed_table,
+    lemma_table,
+    order_table,
+    row_table,
+    sweep_table,
+    table,
+)
+
+LAW = fx.friction(fx.profiles.Sine(0.1), fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0))
+
+
+def test_columns_line_up():
+    text = table(("name", "x"), [("a", "1.5"), ("long", "-20")], left=1)
+    assert text.splitlines() == ["name    x", "a     1.5", "long  -20"]
+
+
+def test_coefficients():
+    lines = {
+        line.split()[0]: line.split()[1:] for line in coefficient_table(LAW).splitlines()
+    }
+    assert float(lines["rho_plus"][0]) == pytest.approx(float(LAW.rho_plus), rel=1e-5)
+    assert lines["rho_plus"][1] == "N"
+    assert float(lines["ratio"][0]) == pytest.approx(
+        float(-LAW.rho_plus / LAW.rho_minus), rel=1e-5
+    )
+    assert float(lines["normal_minus"][0]) == pytest.approx(float(LAW.normal_minus), 1e-5)
+    assert " ".join(lines["alpha"][2:]) == "normal force without friction"
+    assert len(lines) == 12
+
+
+def test_coefficients_with_errors():
+    text = coefficient_table(LAW, dict.fromkeys(coefficients_by_name(LAW), 0.0123))
+    lines = {line.split()[0]: line.split()[1:] for line in text.splitlines()}
+    assert lines["rho_plus"][1:3] == ["0.012", "N"]
+    assert lines["alpha"][1] == "N"  # the bristle's own
+
+
+def test_the_abstract_setting_has_two_coefficients():
+    bare = coefficients_by_name(type(LAW)(rho_plus=LAW.rho_plus, rho_minus=LAW.rho_minus))
+    assert list(bare) == ["rho_plus", "rho_minus", "ratio"]
+
+
+def test_sweep_table_has_every_cell():
+    lines = [line.split() for line in sweep_table(sweep_like()).splitlines()[1:]]
+    assert len(lines) == 12
+    first, failed = lines[0], lines[-1]
+    assert [float(v) for v in first[:3]] == pytest.approx(
+        [0.5, EPS[0], EPS[0] ** 0.5], 1e-2
+    )
+    assert float(first[3]) == pytest.approx(EPS[0] ** -0.5, rel=1e-2)
+    assert first[-2:] == ["1234", "ok"]
+    assert failed[2] == "-"
+    assert failed[-1] == "max_steps"
+
+
+def test_without_dissipation_its_columns_are_empty():
+    text = sweep_table(sweep_like(dissipation=False))
+    assert text.splitlines()[1].split()[4:6] == ["-", "-"]
+
+
+@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.equation.status.FailedCells")
+def test_order_table():
+    orders = fx.study(sweep_like()).orders
+    lines = order_table(orders).splitlines()
+    assert [line.split()[0] for line in lines[1:]] == [
+        *("state", "state", "dissipation", "dissipation", "from", "from")
+    ]
+    assert lines[1].split()[1:3] == ["0.5", "0.500"]
+    assert lines[1].split()[5:7] == ["-", "free"]  # nothing is known of its wells
+    assert lines[1].split()[7:11] == ["0.500", "1", "[1,", "1]"]  # seen, constant
+    assert lines[1].endswith("converges")
+    assert "0.01 to 0.1" in lines[1]
+
+
+def test_lemma_table():
+    lines = lemma_table(fx.study(sweep_like(failed=False)).orders).splitlines()
+    assert [line.split()[:2] for line in lines[1:]] == [["0.5", "0.5"], ["1", "1"]]
+
+
+def test_an_order_from_too_few_points_is_a_dash():
+    orders = fx.study(sweep_like().isel(eps=[0, 1])).orders
+    line = order_table(orders).splitlines()[1]
+    assert line.split()[2] == "-"
+    assert line.endswith("too few points")
+
+
+@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.equation.status.FailedCells")
+def test_failed_cells_are_listed():
+    text = failed_table(fx.study(sweep_like()).failed)
+    assert text.splitlines()[1].split()[:3] == ["1", "0.01", "max_steps"]
+    assert "raise max_steps" in text
+    assert failed_table([]) == "no cell failed"
+
+
+def test_rows_of_a_map():
+    names = [name for name in coefficients_by_name(LAW) if name not in ("alpha", "a")]
+    values = {name: np.array([1.0, 3.0]) for name in (*names, "explained")}
+    text = row_table(RowCoefficients(values, 9e-6, [0, 2], {1: "too steep"}, {}))
+    assert text.startswith("2 rows, period 9e-06 m")
+    assert text.splitlines()[2].split()[:4] == ["rho_plus", "2", "1.4", "N"]
+    assert text.splitlines()[-2:] == [
+        "1 rows left out, not admissible for the bristle:",
+        "  row 1: too steep",
+    ]
+
+
+def test_number_lists():
+    assert number_list("eps", "0.1,0.05") == [0.1, 0.05]
+    assert number_list("eps", "0.1:0.001:3") == pytest.approx([0.1, 0.01, 0.001])
+    assert number_list("eps", "0.1") == [0.1]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "a", "0.1,", "0.1:0.2", "0.1:0.2:0", "0:1:3", "-1", "inf", "1:2:2.5", "0.1 0.2"],
+)
+def test_bad_number_lists(text):
+    with pytest.raises(ValueError, match=r"eps = .*: needs numbers > 0, as 0\.1,0\.05"):
+        number_list("eps", text)
+
+
+def test_a_folder_is_checked_but_not_made(tmp_path):
+    assert require_folder(tmp_path / "a" / "b") == tmp_path / "a" / "b"
+    assert not (tmp_path / "a").exists()
+    (tmp_path / "file").touch()
+    for path in (tmp_path / "file", tmp_path / "file" / "b"):
+        with pytest.raises(ValueError, match=r"needs a folder, but .*file is a file"):
+            require_folder(path)
+
+
+def test_a_folder_is_filled_whole(tmp_path):
+    folder = tmp_path / "deep" / "out"
+    with filled(folder) as place:
+        (place / "one").write_text("old")
+        assert not folder.exists()
+    with filled(folder) as place:
+        (place / "one").write_text("new")
+    assert [path.name for path in tmp_path.iterdir()] == ["deep"]
+    assert [path.name for path in folder.iterdir()] == ["one"]
+    assert (folder / "one").read_text() == "new"
+
+
+def test_an_interrupted_folder_is_left_alone(tmp_path):
+    folder = tmp_path / "out"
+
+    def work():
+        with filled(folder) as place:
+            (place / "one").write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_sawtooth_in_a_file_is_told_what_its_samples_leave_open(tmp_path):
+    x = np.arange(320) * 1e-5 / 64
+    heights = 1e-5 * np.interp(x * 1e5 % 1, [0.0, 0.8, 1.0], [0.0, 0.05, 0.0])
+    np.savetxt(tmp_path / "saw.txt", np.stack([x, heights], axis=1))
+    fit = {"heights": tmp_path / "saw.txt", "period": 1e-5, "harmonics": 3, "row": None}
+    job = read_job(None, **fit)
+    (note,) = [line for line in job.notes if "steepest slopes open" in line]
+    assert note.startswith("Note: the samples leave")
+    errors = errors_by_name(fx.friction(job.scene))
+    assert errors["omega_plus"] > 0.02
+    assert set(errors) == set(coefficients_by_name(LAW)) - {"alpha", "a"}
+    longer = read_job(None, **fit, smoothing=5e-6)
+    assert any("cut-off 5e-06 m" in line for line in longer.notes)
+    assert any("a shorter smoothing takes off less" in line for line in longer.notes)
+    smooth = read_job(None, **fit | {"harmonics": 16}, smoothing=1e-6)
+    assert not any("steepest slopes open" in line for line in smooth.notes)
+    with pytest.raises(ValueError, match="smoothing = 1e-06: needs --heights FILE"):
+        read_job(None, period=None, harmonics=None, row=None, smoothing=1e-6)
+
+
+def test_of_two_errors_the_larger_is_shown():
+    found = with_errors(LAW, np.float64(0.01), np.float64(0.02))
+    standard = dict.fromkeys(coefficients_by_name(LAW), 0.015)
+    errors = errors_by_name(found, standard)
+    assert errors["omega_plus"] == 0.015
+    assert errors["omega_minus"] == 0.02
+    assert errors_by_name(LAW, standard) == standard
+
+
+def test_a_named_bristle_takes_the_place_of_the_scenes():
+    fit = {"period": None, "harmonics": None, "row": None}
+    job = read_job(None, bristle="angular", **fit)
+    assert isinstance(job.scene.bristle, fx.bristles.AngularSpring)
+    assert isinstance(job.scene.profile, fx.profiles.Sine)
+    with pytest.raises(ValueError, match="row = 2: needs --heights FILE"):
+        read_job(None, **(fit | {"row": 2}))
+
+
+def test_where_a_bristle_pulls_the_sides_of_normal_forces_are_named():
+    surface = fx.profiles.Fourier([0.0, 0.004], [0.02, 0.0])
+    for alpha, right, left in ((2.0, "plus", "minus"), (-2.0, "minus", "plus")):
+        law = fx.friction(surface, fx.bristles.Homothetic(alpha))
+        assert law.rho_plus / law.normal_plus == pytest.approx(
+            float(getattr(law, f"omega_{right}"))
+        )
+        lines = {line.split()[0]: line for line in coefficient_table(law).splitlines()}
+        named = alpha < 0
+        assert lines[f"omega_{right}"].endswith("of a slide to the right") == named
+        assert lines[f"omega_{left}"].endswith("of a slide to the left") == named

@@ -1,0 +1,74 @@
+"""Loads that jump: slides that are over before the tip follows."""
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax.wiggly.enclosure.brackets import BracketPlan
+from frictionjax.wiggly.enclosure.close import PATIENCE, BracketContext
+from frictionjax.wiggly.enclosure.starts import CellBounds
+from frictionjax.wiggly.lanes.queue import Lanes, SegmentEnds, Segments
+from frictionjax.wiggly.limit_path.find_path import path_of
+from frictionjax.wiggly.plan import lane_scene, planned
+
+
+def scene_under(times, values):
+    parts = fx.bristles.VerticalSpring(1.0, 2.0, 1.0), fx.supports.Spring(1.0)
+    load = fx.loads.PiecewiseLinear(times, values)
+    return fx.Scene(fx.profiles.Sine(0.1), *parts, load, times[-1])
+
+
+@pytest.mark.slow
+def test_tips_may_catch_up_with_thousands_of_wells_on_a_leg():
+    """The path rests there: the budget for its own wells ended with max_steps."""
+    scene = scene_under([0.0, 0.01, 0.0101, 0.02], [0.0, 0.05, 0.9, 0.9])
+    ts = np.linspace(0.0, 0.02, 41)
+    found = fx.solve(scene, 1e-4, 0.75, ts)
+    known = fx.solve(scene, 1e-4, 0.75, ts, 1e-5, "Dopri8", max_steps=10**6)
+    assert found.ok
+    assert known.ok
+    behind = np.abs(np.asarray(fx.solve_limit(scene, ts).z) - np.asarray(found.z))
+    assert behind.max() > 3000 * 1e-4
+    assert np.abs(np.asarray(found.z - known.z)).max() < 1e-3 * 1e-4
+    spent, whole = float(found.dissipation[-1]), float(known.dissipation[-1])
+    assert spent == pytest.approx(whole, rel=1e-3)
+
+
+@pytest.mark.parametrize(("rise", "alone"), [(1e-4, True), (0.5, False)])
+def test_one_lane_goes_through_where_slides_are_brief(rise, alone):
+    """Brackets across them do not close: maps and brackets took 18 s in vain."""
+    scene = scene_under([0.0, 1.0, 1.0 + rise, 2.0], [0.0, 1.0, 2.0, -1.0])
+    cells = np.array([1e-4]), np.array([0.5])
+    lanes = lane_scene(scene, 1e-4)
+    plan = planned(scene, lanes, path_of(scene), *cells, 2, 1e-3, "auto")
+    assert plan.ridden.tolist() == [not alone]
+    assert np.isinf(plan.needs.tile).tolist() == [alone]
+
+
+def test_cells_wait_for_lanes_that_go_astray_so_long_only():
+    """There was no answer in 10 minutes; one lane alone has its own budget."""
+    scene = scene_under([0.0, 1.0], [0.0, 1.1])  # one way of 1 m
+    eps, none = np.array([1e-4, 1e-5, 1e-6]), np.zeros(6)
+    every = dict.fromkeys(CellBounds._fields, None) | {"eps": eps}
+    blank = BracketContext(*[None] * 12)._replace(waited=np.zeros(3), path=path_of(scene))
+    rounds = blank._replace(ground=CellBounds(**every))
+    legs = Segments(*np.zeros((len(Segments._fields), 6)))._replace(budget=np.full(6, 1e9))
+    legs = legs._replace(guide1=np.array([0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]))
+    cell, known = np.array([0, 1, 2, 0, 1, 2]), np.array([True, False, True])
+    jobs = Lanes(cell, none, none, none, np.arange(6), np.arange(1, 7))
+    plan = BracketPlan(jobs, legs, none, none, none, none, known, known, none, none)
+    able, some = rounds._within_patience(plan)
+    assert able.all()
+    beyond = some.legs.budget - PATIENCE
+    assert beyond == pytest.approx([1e9 - PATIENCE, 0, 0, 200 * 10, 0, 0], abs=1e-6)
+    steps = PATIENCE * np.array([5.0, 0.6, 0.2, 0.3, 0.4, np.nan])
+    found = SegmentEnds(*np.tile(steps, (len(SegmentEnds._fields), 1)))._replace(code=none)
+    rounds._wait(plan, found)
+    assert rounds.waited == pytest.approx(PATIENCE * np.array([0.3, 0.6, 0.2]), abs=2000.1)
+    rounds._wait(plan, found)
+    gave_up = found._replace(code=np.array([0, 0, 0, 1.0, 0, 0]))
+    whole = BracketContext(*rounds)._replace(waited=np.zeros(3))
+    whole._wait(plan, gave_up)
+    assert whole.waited[0] == 0.3 * PATIENCE
+    able = rounds._within_patience(plan)[0]
+    assert able.tolist() == [True, False, True, True, False, True]

@@ -1,0 +1,113 @@
+"""Which loop jobs go through: the narrow one where few have a long way, or nothing else."""
+
+import jax
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax.wiggly.enclosure.close import _batches, _seats
+from frictionjax.wiggly.lanes.lane import LaneCells, Sums
+from frictionjax.wiggly.lanes.loops import (
+    NARROW,
+    WIDTH,
+    Room,
+    _kind,
+    _Loops,
+    _wells,
+    loop_times,
+)
+from frictionjax.wiggly.lanes.queue import Lanes, Segments, Tables, run_queue
+from frictionjax.wiggly.plan import TABLEAU, lane_scene
+
+PROGRAM = np.ones(3), "scheme", True
+FEW, LARGE = Room(1, 7, 14), Room(64, 2048, 4096)
+
+
+def loops(width, room=LARGE):
+    """Loops of which one is compiled."""
+    known, kind = _Loops(), _kind((*PROGRAM, width))
+    known._known[kind] = {room: None}
+    known._done.add((kind, room))
+    return known
+
+
+def test_few_jobs_take_the_narrow_loop_where_none_is_there():
+    assert _Loops().width_for(PROGRAM, FEW, 1.0) == NARROW
+    assert loops(NARROW).width_for(PROGRAM, FEW, 1.0) == NARROW
+    assert loops(WIDTH, Room(1, 2, 4)).width_for(PROGRAM, FEW, 1.0) == NARROW
+
+
+def test_few_jobs_take_a_wide_loop_that_is_there_until_it_costs_more(monkeypatch):
+    known, loaded = loops(WIDTH), []
+    monkeypatch.setattr(known, "load", lambda program, room: loaded.append((program, room)))
+    for asked in range(1, 6):
+        assert known.width_for(PROGRAM, FEW, 400.0) == WIDTH  # nobody waits for it
+        assert len(loaded) == (asked > 1)
+    assert loaded == [((*PROGRAM, NARROW), FEW)]
+    known._done.add((_kind((*PROGRAM, NARROW)), LARGE))
+    assert known.width_for(PROGRAM, FEW, 100.0) == NARROW
+    assert loops(WIDTH).width_for(PROGRAM, FEW, 2e5) == NARROW
+
+
+def test_wells_one_after_the_other_are_counted_in_each_cells_own_periods():
+    cells = LaneCells(np.array([0.1, 1e-3]), *[None] * (len(LaneCells._fields) - 1))
+    nothing = np.zeros(2)
+    jobs = Lanes(np.array([0.0, 1.0]), *[nothing] * 3, np.array([0, 2]), np.array([2, 3]))
+    legs = {name: np.zeros(3) for name in Segments._fields}
+    legs |= {"guide0": np.array([0.0, 1.0, 0.5]), "guide1": np.array([1.0, 0.5, 1.5])}
+    assert _wells(cells, jobs, Segments(**legs)) == pytest.approx([15, 1000])
+    legs["guide1"][0] = 200.0  # 2005 wells of the first job
+    assert _wells(cells, jobs, Segments(**legs)) == pytest.approx([2005, 1000])
+
+
+def test_work_and_not_the_number_of_jobs_decides_on_the_loop():
+    """Few jobs, or many of which few take long."""
+    narrow, wide = loop_times(10.0, 20 * 10.0)
+    assert narrow < wide
+    narrow, wide = loop_times(10.0, 600 * 10.0)
+    assert narrow > 1.5 * wide
+    narrow, wide = loop_times(2000.0, 2000.0 + 600 * 10.0)
+    assert narrow < 0.5 * wide
+
+
+@pytest.mark.parametrize("width", [NARROW, WIDTH])
+def test_loops_are_compiled_as_one_function(width):
+    """XLA makes a list of kernels of a loop with a scatter, for two threads at once."""
+    scene = fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        fx.supports.Spring(1.0),
+        fx.loads.Ramp(1.0, 0.0),
+        duration=1.0,
+    )
+    fixed = lane_scene(scene, 0.1), TABLEAU, Sums(), width
+    columns = len(LaneCells._fields), len(Lanes._fields), len(Segments._fields)
+    tables = [np.ones((n, w)) for n, w in zip(FEW, columns, strict=True)]
+    program = jax.make_jaxpr(
+        lambda *rows: run_queue._fn(*fixed, Tables(*rows, waiting=np.asarray(1)))
+    )
+    text = str(program(*tables))
+    assert "while" in text
+    assert "scatter" not in text
+
+
+def idle(work, batches, workers=2):
+    """Share of the time that lanes idle, at best: as the longest job of a batch goes on."""
+    seat = _seats(work.size, batches)
+    rows = [np.sort(work)[::-1][seat == batch] for batch in range(batches)]
+    wall = sum(max(row.sum() / (workers * WIDTH), row.max()) for row in rows)
+    return 1 - work.sum() / (workers * WIDTH * wall)
+
+
+@pytest.mark.parametrize("longest", [1e3, 3e3, 1e5])
+def test_lanes_do_not_wait_for_the_longest_job_of_every_batch(longest):
+    """One batch for all has the same work in it, and fewer reports."""
+    work = np.concatenate([np.full(160, longest), np.full(2400, 1e3)])
+    batches = _batches(work, 2)
+    assert idle(work, batches) <= 0.01 + idle(work, 1)
+    assert batches == {1e3: 10, 3e3: 5, 1e5: 1}[longest]
+
+
+def test_a_few_jobs_and_none_are_one_batch():
+    assert _batches(np.zeros(0), 2) == 1
+    assert _batches(np.full(3, 1e6), 2) == 1

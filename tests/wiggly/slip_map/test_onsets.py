@@ -1,0 +1,78 @@
+"""Slides are followed all at once where those before need not be known."""
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax.wiggly import batch as engine
+from frictionjax.wiggly.limit_path import resting_ends as slow_ends
+from frictionjax.wiggly.slip_map import fast_slides as rides
+from frictionjax.wiggly.slip_map import onsets as ride_starts
+
+SCENE = fx.Scene(
+    fx.profiles.Sine(0.1),
+    fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+    fx.supports.Spring(1.0),
+    fx.loads.Sine(1.0488, 3.0),
+    3.0,
+)
+TIMES = np.linspace(0.0, 3.0, 41)
+
+
+def solved(eps, method="windowed"):
+    """Answers at gamma = 1/2, values only, and how often slides were followed."""
+    followed = []
+    follow = rides.follow
+
+    def spy(scene, slides, tail):
+        followed.append(slides.eps)
+        return follow(scene, slides, tail)
+
+    cell = np.array([eps]), np.array([0.5]), TIMES, 1e-3
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rides, "follow", spy)
+        found = engine.integrate_cells(SCENE, *cell, method, False, suprema=False)
+    return found, followed
+
+
+@pytest.mark.parametrize(("eps", "calls"), [(2e-4, [3]), (6e-3, [1, 1, 1])])
+def test_at_once_is_as_one_after_the_other(monkeypatch, eps, calls):
+    """At 6e-3 slides end while they lag, and the next one waits for what they leave."""
+    together, followed = solved(eps)
+    assert [slides.size for slides in followed] == calls
+    monkeypatch.setattr(ride_starts, "_at_once", lambda *args: {})
+    ordered, followed = solved(eps)
+    assert [slides.size for slides in followed] == [1, 1, 1]
+    assert together.status == ordered.status == fx.Status.OK
+    assert np.max(np.abs(together.z - ordered.z)) < 2e-5 * eps
+
+
+def test_what_was_foreseen_is_found_again_where_the_slide_before_lags(monkeypatch):
+    """A ride that ends fast: those found without it are not believed."""
+    expected, _ = solved(6e-3)
+    monkeypatch.setattr(slow_ends, "_END", 0.0)  # all slides are slow at their turn
+    found, followed = solved(6e-3)
+    assert [slides.size for slides in followed] == [3, 1, 1]
+    assert np.max(np.abs(found.z - expected.z)) < 2e-5 * 6e-3
+
+
+def test_few_slips_are_gone_through_by_one_lane():
+    """From z0 through all of them: no bracket, whatever is remembered."""
+    found, followed = solved(1e-2, "auto")
+    assert followed == []
+    assert np.all(found.how == 0)
+    assert np.all(found.gap == 0.0)
+
+
+def test_cells_without_rides_run_beside_those_with():
+    """Their values are as alone, in the order that was asked for."""
+    eps, gamma = np.array([2e-4, 1e-2, 5e-4, 2e-2]), np.full(4, 0.5)
+    both = engine.integrate_cells(SCENE, eps, gamma, TIMES, 1e-3, "auto", False)
+    assert both.how.max(axis=1).tolist() == [2, 0, 2, 0]
+    for i, one in enumerate(eps):
+        alone = engine.integrate_cells(
+            SCENE, eps[i : i + 1], gamma[:1], TIMES, 1e-3, "auto", False
+        )
+        assert np.max(np.abs(both.z[i] - alone.z[0])) < 1e-6 * one
+        assert both.steps[i] == pytest.approx(alone.steps[0], rel=1e-2)
+        assert both.tolerance[i] == pytest.approx(alone.tolerance[0])
