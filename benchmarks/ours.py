@@ -29,7 +29,7 @@ def solve(
 
 def _wait_for_loops() -> bool:
     """Whether loops compile that this run has asked for; not any more, then."""
-    loading = [thread for thread in threading.enumerate() if thread.name == LOADER]
+    loading = [thread for thread in threading.enumerate() if thread.name.endswith(LOADER)]
     for thread in loading:
         thread.join()
     return bool(loading)

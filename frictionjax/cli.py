@@ -4,7 +4,6 @@ import json
 import math
 import os
 import sys
-import threading
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -163,24 +162,13 @@ def _write(folder: Path, work: Callable[[Path], str]) -> None:
 
 
 def _interruptible(work: Callable[[], Any]) -> Any:
-    """Run `work` in a thread, so that Ctrl-C is heard while compiled code runs."""
-    result: dict[str, Any] = {}
+    """Run `work`; Ctrl-C leaves at once, without a traceback."""
+    from ._compile import interruptibly
 
-    def run() -> None:
-        try:
-            result["value"] = work()
-        except BaseException as error:  # raised again below, in the main thread
-            result["error"] = error
-
-    thread = threading.Thread(target=run, daemon=True)
-    thread.start()
     try:
-        thread.join()
+        return interruptibly(work)
     except KeyboardInterrupt:
         raise Left from None
-    if "error" in result:
-        raise result["error"]
-    return result["value"]
 
 
 @main.command()

@@ -221,6 +221,7 @@ def test_types_of_every_benchmark_are_checked():
     """Scripts that are not listed would be taken for code without a body."""
     home = Path(__file__).parent.parent
     with (home / "pyproject.toml").open("rb") as file:
-        (scripts,) = tomllib.load(file)["tool"]["mypy"]["overrides"]
-    assert scripts["check_untyped_defs"]
+        settings = tomllib.load(file)["tool"]["mypy"]
+    (scripts,) = settings["overrides"]
+    assert settings["check_untyped_defs"]
     assert scripts["module"] == sorted(p.stem for p in (home / "benchmarks").glob("*.py"))

@@ -6,3 +6,7 @@ from .programs import in_chunks as in_chunks
 from .programs import padded_size as padded_size
 from .progress import progress_bar as progress_bar
 from .progress import waiting as waiting
+from .workers import WORKERS as WORKERS
+from .workers import crew as crew
+from .workers import in_background as in_background
+from .workers import interruptibly as interruptibly

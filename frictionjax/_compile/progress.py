@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 
 from tqdm import tqdm
 
+from .workers import in_background
+
 _FORMAT = "{desc}: {percentage:3.0f}% |{bar}| {elapsed} so far, {remaining} to go"
 _WAITING = "{desc}, {elapsed} so far"
 _PATIENCE, _EVERY = 2.0, 1.0  # s
@@ -40,12 +42,10 @@ def waiting(name: str, shown: bool) -> Iterator[Callable[[str], None]]:
     def tell(text: str) -> None:
         told[0] = text
 
-    shower = threading.Thread(target=show, daemon=True)
-    if shown:
-        shower.start()
+    line = in_background(show, "progress", daemon=True) if shown else None
     try:
         yield tell
     finally:
         done.set()
-        if shown:
-            shower.join()
+        if line is not None:
+            line.join()

@@ -1,7 +1,7 @@
 """Bristle given by its two functions."""
 
 from collections.abc import Callable
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -34,7 +34,7 @@ class Custom(AbstractBristle):
         require_function("bristle.energy", self.energy_fn, "a function F of eta")
         if not is_concrete(self):
             return
-        zero = np.float64(0.0)
+        zero: Any = np.float64(0.0)
         start = float(self.offset(zero))
         require(start == 0, "bristle.offset", start, "A(0) = 0")
         alpha = float(jax.grad(self.energy)(zero))

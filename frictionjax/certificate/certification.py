@@ -42,7 +42,8 @@ class Certificate(NamedTuple):
     curve is at least so far, in units of eps, from every solution. `missing_force`: the
     most that was missing when a well was left, in units of `Phi'' eps`, the force of one
     well. `viscosity`: measured in slips, relative to `eps^gamma`; NaN without slips.
-    `skipped`: wells crossed without the force. `status`: a `CertificateStatus`, with `.message`.
+    `skipped`: wells crossed without the force. `status`: a `CertificateStatus`, which has a
+    `.message`.
     """
 
     residual: float

@@ -85,10 +85,11 @@ def _add_up(cos: Real, sin: Real, y: Real) -> Real:
         jnp.pad(c[1:], (0, (1 - c.size) % _BLOCK)).reshape(-1, _BLOCK) for c in (cos, sin)
     ]
 
-    def block(state, coefficients):
+    def block(state: tuple, coefficients: tuple) -> tuple:
+        pair, total = state
         for c, s in zip(*coefficients, strict=True):
-            state = _next_harmonic(first, *state, c, s)
-        return state, None
+            pair, total = _next_harmonic(first, pair, total, c, s)
+        return (pair, total), None
 
     (_, total), _ = jax.lax.scan(block, (pair, total), tuple(rows))
     return total

@@ -1,13 +1,12 @@
 """A whole study: what it will cost, and how it is run."""
 
-import contextlib
-import threading
 from pathlib import Path
 
 import jax.numpy as jnp
 import numpy as np
 
 from .._checks import cells_of, grid_of
+from .._compile import in_background
 from ..cost import PREDICTED_ACCURACIES, CostPrediction, fit_budget, predict_cost
 from ..model import require_reach
 from ..sweeps import sweep
@@ -88,7 +87,7 @@ def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
 
     Raises `ValueError` as `sweep` does.
     """
-    threading.Thread(target=_import_results, daemon=True).start()
+    in_background(_import_results, "imports", daemon=True)
     ts = study_times(job)
     data = sweep(job.scene, ts=ts, method=method, progress=progress, **job.study)
     from .study_results import write_results
@@ -99,8 +98,6 @@ def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
 def _import_results() -> None:
     """Import what is needed once cells have run: pictures and data sets, 1 s.
 
-    To draw a first picture here too saved 0.1 s: not done. What fails here fails again,
-    and is heard of, in `run_study`.
+    To draw a first picture here too saved 0.1 s: not done.
     """
-    with contextlib.suppress(Exception):
-        from . import study_results as study_results
+    from . import study_results as study_results

@@ -98,7 +98,7 @@ def _larger(known: dict[str, float], name: str, error: float) -> dict[str, float
 def coefficient_table(found: Coefficients, error: dict[str, float] | None = None) -> str:
     """Friction coefficients with their units and meanings, and errors if known.
 
-    `error`: standard errors over the rows of a map, beside those of `errors_of`.
+    `error`: standard errors over the rows of a map, beside those of `errors_by_name`.
     """
     numbers, error = coefficients_by_name(found), errors_by_name(found, error)
     pulls = numbers.get("alpha", 0.0) < 0

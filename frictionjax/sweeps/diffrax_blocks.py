@@ -1,6 +1,5 @@
 """Cells of a sweep by solvers of diffrax, in vmapped blocks on all cores."""
 
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import jax
@@ -8,14 +7,13 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import cells_of, with_nan
-from .._compile import progress_bar
+from .._compile import crew, progress_bar
 from ..model import Scene
 from .diffrax_cells import Cell, run_block
 
 # Lanes of one compiled block. 8 cost 1.0 us a lane and step, 32 cost 0.8, but wide blocks
 # mix cells of unequal length and each waits for its longest.
 _LANES = 8
-_WORKERS = 2  # blocks under way at once; XLA runs each on one core
 
 
 class Block(NamedTuple):
@@ -71,10 +69,12 @@ def _run(scene, blocks, ts, accuracy, solver, balanced, progress: bool) -> Cell:
 
     total = sum(block.cost for block in blocks) * (1 + 1e-9)  # never above 100% by rounding
     bar = progress_bar("cells", progress)
-    with bar, ThreadPoolExecutor(_WORKERS) as pool:
+    with bar:
         done = [one(blocks[-1])]  # the shortest compiles the program for all
         bar.update(blocks[-1].cost / total)
-        for found, block in zip(pool.map(one, blocks[:-1]), blocks[:-1], strict=True):
+        for found, block in zip(
+            crew("blocks").map(one, blocks[:-1]), blocks[:-1], strict=True
+        ):
             done.append(found)
             bar.update(block.cost / total)
         bar.update(bar.total - bar.n)

@@ -2,18 +2,17 @@
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import jax
 import numpy as np
 
 from .._checks import quiet_where_extreme, viscosity_of
+from .._compile import WORKERS, crew
 from ..model import Scene
 from .enclosure import (
     AFFORDABLE,
     CLOSED,
-    WORKERS,
     BracketContext,
     CellBounds,
     Report,
@@ -210,13 +209,13 @@ def _first_attempt(
         # With both cores lanes would hold up every small program of the other thread.
         return sweep._replace(workers=1).attempt(_some(every, others))
 
-    with ThreadPoolExecutor(1) as pool:
-        beside = pool.submit(aside)
-        try:
-            found, open_ = _with_rides(sweep, every, some, lanes_run.set)
-        finally:
-            lanes_run.set()
-        parts = ((others, *beside.result()), (some, found, open_))
+    beside = crew("cells", 1).submit(aside)
+    try:
+        found, open_ = _with_rides(sweep, every, some, lanes_run.set)
+    finally:
+        lanes_run.set()
+        rest = beside.result()
+    parts = ((others, *rest), (some, found, open_))
     never = np.zeros(ridden.size, dtype=bool)
     columns = []
     for pair in zip(*(answers for _, answers, _ in parts), strict=True):

@@ -154,8 +154,10 @@ def _alone(free, bristle, profile, asked, x):
         found, slide = _quantity(free, bristle, profile, asked, x)
         return (found, free.value(bristle, x)), slide
 
-    (found, value), slopes, slide = jax.jvp(one, (x,), (jnp.ones_like(x),), has_aux=True)
-    return _Slide(found, *slopes, value, slide)
+    found, slopes, slide = jax.jvp(one, (x,), (jnp.ones_like(x),), has_aux=True)
+    return _Slide(
+        shown=found[0], slope=slopes[0], speed=slopes[1], value=found[1], slide=slide
+    )
 
 
 @Program

@@ -45,7 +45,7 @@ class StartRuns(NamedTuple):
 
 
 def repeated(starts: int, row: StartRuns) -> StartRuns:
-    """`StartRuns` of one start, without the axis of starts, that stands for the others too."""
+    """`StartRuns` of one start, without their axis, that stands for the others too."""
 
     def spread(leaf: Any) -> np.ndarray:
         if np.size(leaf) < _SMALL:
@@ -65,7 +65,7 @@ def descended(
     kept: int,
     most: int,
 ) -> StartRuns:
-    """The optimum from every start; see `run`. One stands for all where it is proven.
+    """The optimum from every start; see `multistart`. One stands for all where it is proven.
 
     Without free parameters and bounds on the height the problem is convex, but for targets
     that cannot be met, and starts go one after the other: eight took 0.25 s where `vmap`

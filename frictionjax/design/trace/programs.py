@@ -2,10 +2,11 @@
 
 import contextlib
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import wait
 
 import numpy as np
 
+from ..._compile import crew
 from .problem import TraceProblem
 
 
@@ -18,10 +19,10 @@ def compiled_beside(problem: TraceProblem) -> Iterator[Callable[[], object]]:
     """
     still = problem._replace(ts=np.zeros_like(problem.ts))
     numbers = np.zeros(problem.penalty.size)
-    pool = ThreadPoolExecutor(1)
+    beside = crew("programs", 1)
+    first = beside.submit(still.run, numbers)
+    both = first, beside.submit(still.run_bumps, numbers)
     try:
-        first = pool.submit(still.run, numbers)
-        pool.submit(still.run_bumps, numbers)
         yield first.result
     finally:
-        pool.shutdown(cancel_futures=True)
+        wait([compiling for compiling in both if not compiling.cancel()])

@@ -3,7 +3,6 @@ from .brackets import Brackets as Brackets
 from .close import CLOSED as CLOSED
 from .close import LONG_MEMORY as LONG_MEMORY
 from .close import MARGIN as MARGIN
-from .close import WORKERS as WORKERS
 from .close import BracketContext as BracketContext
 from .close import Report as Report
 from .close import close_brackets as close_brackets

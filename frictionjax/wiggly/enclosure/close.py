@@ -1,11 +1,11 @@
 """Rounds of windows through the lanes, further back each time until brackets close."""
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
 
+from ..._compile import WORKERS, crew
 from ...model import Scene
 from ..equation import Status
 from ..lanes import WIDTH, LaneCells, Lanes, LaneScene, SegmentEnds, Segments, Sums, march
@@ -18,7 +18,6 @@ from .layout import Layout
 from .requirements import AFFORDABLE, Requirements
 from .starts import CellBounds, Starts, slow_share, starts_of
 
-WORKERS = 2  # XLA runs each queue of lanes on one core
 CLOSED = 0.5  # of the accuracy: gaps of brackets accepted
 ROUNDS = 3
 EARLIER = 4  # times as far back in each round
@@ -35,10 +34,6 @@ _BATCH = 1e5  # wells: a few seconds, between two reports
 PATIENCE, _STEPS_A_WELL = 2e6, 200.0
 
 Report = Callable[[float], None]
-
-
-# Started with the first sweep, and kept: a pool for each took 1 ms.
-_POOL = ThreadPoolExecutor(WORKERS)
 
 
 def _seats(count: int, seats: int) -> np.ndarray:
@@ -196,7 +191,7 @@ class BracketContext(NamedTuple):
         """
         parts = [(cells, jobs, legs, queue, work) for queue in queues if queue.size]
         self.lanes_run()
-        beside = [_POOL.submit(self._queue, *part) for part in parts[1:]]
+        beside = [crew("lanes").submit(self._queue, *part) for part in parts[1:]]
         found = [self._queue(*part) for part in parts[:1]]
         return found + [part.result() for part in beside]
 

@@ -2,10 +2,10 @@
 
 import functools
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from ..._compile import crew
 from ..lanes import SegmentEnds
 from ..slip_map import (
     BARE_TAIL,
@@ -38,10 +38,6 @@ _TIGHT_LOOK = 0.2  # of the tolerance: lanes that lead to the start of a slip ma
 # third of the steps, where the rounding of times is taken off, eight times larger ones
 # where it is not; two wells everywhere find 3.5 times larger ones.)
 _NOISE, _MOST_CHECKED, _OF_LOADS = 0.03, 400.0, 0.05
-
-
-# Lanes measure rides while windows are laid out. Kept as the pool of `rounds` is.
-_ASIDE = ThreadPoolExecutor(1)
 
 
 def find_fast_slides(rounds: BracketContext, needs: Requirements) -> Callable[[], None]:
@@ -149,7 +145,8 @@ def _errors(
     windows = Brackets(whose, begin, known, np.arange(tip.size), stop)
     # Planned here: two threads that plan wait for each other.
     plan = exact.planned(windows, starts)
-    lanes = _ASIDE.submit(exact.through, plan)
+    # While windows are laid out.
+    lanes = crew("measuring", 1).submit(exact.through, plan)
 
     @functools.cache
     def summed() -> list[np.ndarray]:

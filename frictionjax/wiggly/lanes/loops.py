@@ -1,6 +1,5 @@
 """Lanes: many short integrations of the wiggly system, side by side in compiled loops."""
 
-import contextlib
 import threading
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -9,7 +8,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array
 
-from ..._compile import flattened
+from ..._compile import flattened, in_background
 from ..rosenbrock import Tableau
 from .lane import LaneCells, LaneScene, Sums
 from .queue import Lanes, SegmentEnds, Segments, Tables, run_queue
@@ -23,7 +22,7 @@ NARROW_STEP = 0.22  # seconds of a narrow loop's step, of a wide one's
 # compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load, 2 s
 # to compile. For more at once they wait for it.
 _PATIENCE, _AT_ONCE = 500, 20_000
-LOADER = "frictionjax-loader"  # threads that compile loops in the background
+LOADER = "loader"  # threads that compile loops in the background
 
 
 class Room(NamedTuple):
@@ -114,12 +113,7 @@ class _Loops:
             if any(k == kind and room.holds(needed) for k, room in self._done):
                 return
 
-        def quietly() -> None:
-            # What cannot be compiled fails again in `run`, where somebody hears of it.
-            with contextlib.suppress(Exception):
-                self.run(program, needed, _nothing)
-
-        threading.Thread(target=quietly, name=LOADER).start()
+        in_background(lambda: self.run(program, needed, _nothing), LOADER)
 
 
 def _nothing(room: Room) -> Tables:

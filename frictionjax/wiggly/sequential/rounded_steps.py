@@ -1,5 +1,7 @@
 """Step sizes on a coarse grid, so that rounding errors cannot steer them."""
 
+from typing import Any, cast
+
 import diffrax
 import jax.numpy as jnp
 
@@ -21,8 +23,8 @@ class RoundedSteps(AbstractWrappedController):
     def __init__(self, controller: diffrax.AbstractAdaptiveStepSizeController):
         self.controller = controller
 
-    def wrap(self, direction):
-        return RoundedSteps(self.controller.wrap(direction))
+    def wrap(self, direction: Any) -> "RoundedSteps":
+        return RoundedSteps(cast(Any, self.controller.wrap(direction)))
 
     def init(self, terms, t0, t1, y0, dt0, args, func, error_order):
         first, state = self.controller.init(terms, t0, t1, y0, dt0, args, func, error_order)

@@ -1,6 +1,6 @@
 """Bases of step size controllers and solvers that wrap another one."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import diffrax
 from equinox import AbstractVar
@@ -12,15 +12,15 @@ class AbstractWrappedController(diffrax.AbstractAdaptiveStepSizeController):
     controller: AbstractVar[diffrax.AbstractAdaptiveStepSizeController]
 
     @property
-    def rtol(self):
+    def rtol(self) -> Any:  # type: ignore[override]
         return self.controller.rtol
 
     @property
-    def atol(self):
+    def atol(self) -> Any:  # type: ignore[override]
         return self.controller.atol
 
     @property
-    def norm(self):
+    def norm(self) -> Any:  # type: ignore[override]
         return self.controller.norm
 
 

@@ -34,7 +34,7 @@ def first_wells(
 
 
 def _waits(eps, speeds, rate, stiffness, wells: float) -> np.ndarray:
-    """The same of slides whose logarithms of speeds, (n, forces), belong to `LAG_FORCES`."""
+    """The same of slides whose logarithms of speeds, (n, forces), are at `LAG_FORCES`."""
     logs, wanted = np.log(LAG_FORCES), np.log(rate / stiffness)
     rows = zip(wanted, speeds, strict=True)
     steady = np.array([np.interp(speed, row, logs) for speed, row in rows])
@@ -48,7 +48,7 @@ def _waits(eps, speeds, rate, stiffness, wells: float) -> np.ndarray:
 
 
 def _between(rows: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Linear between the values of each row at the logarithms of `LAG_FORCES`: even steps."""
+    """Linear between a row's values at the logarithms of `LAG_FORCES`: even steps."""
     first, pitch = np.log(LAG_FORCES[0]), np.log(LAG_FORCES[1] / LAG_FORCES[0])
     place = np.clip((at - first) / pitch, 0.0, LAG_FORCES.size - 1.0)
     left = np.minimum(place.astype(int), LAG_FORCES.size - 2)

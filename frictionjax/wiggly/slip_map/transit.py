@@ -319,7 +319,7 @@ def one_transit_time(
     track: WellPull, pull: SupportPull, viscosity: np.ndarray
 ) -> np.ndarray:
     """Seconds of one passage of each track, shape (C,); `pull` has that shape too."""
-    # As many as `passages` is asked for elsewhere: no further program is compiled.
+    # As many as `transit_times` is asked for elsewhere: no further program is compiled.
     many = SupportPull(*(np.repeat(series[:, None], TOGETHER, axis=1) for series in pull))
     return transit_times(track, many, viscosity, sweeps=_ALONE).length[:, 0]
 

@@ -123,7 +123,7 @@ def heights_of_waves(waves: Array) -> tuple[Array, Array]:
 
 
 def waves_of_heights(cos: Array, sin: Array) -> Array:
-    """The waves of a profile: `heights_of` turned round."""
+    """The waves of a profile: `heights_of_waves` turned round."""
     turns = 2 * np.pi * np.arange(1, cos.shape[-1] + 1)
     size = turns**2 / math.sqrt(2.0)
     return jnp.concatenate([size * jnp.asarray(sin), -size * jnp.asarray(cos)], axis=-1)
