@@ -6,7 +6,6 @@ Writes frictionjax/glossary.png, of the vertical bristle on a sine at eps = 0.05
 from pathlib import Path
 
 import jax
-
 import jax.numpy as jnp
 import numpy as np
 from matplotlib.axes import Axes

@@ -65,7 +65,7 @@ def descended(
     kept: int,
     most: int,
 ) -> StartRuns:
-    """The optimum from every start; see `multistart`. One stands for all where it is proven.
+    """The optimum from every start (`multistart`); one stands for all where it is proven.
 
     Without free parameters and bounds on the height the problem is convex, but for targets
     that cannot be met, and starts go one after the other: eight took 0.25 s where `vmap`
