@@ -22,8 +22,8 @@ from ..wiggly import ENDED, Status, accuracies_of, is_ours, solver_of
 from .error_measures import MEASURES, errors_of
 from .instants import Instants, instants
 from .references import LEAST_JUDGED, Reference, reference
-from .scipy_solvers import SCIPY, Run
-from .timed_runs import accounted, clocked, runner, timed
+from .scipy_solvers import SCIPY, Run, told
+from .timed_runs import clocked, runner, timed
 
 METHODS = ("auto", "windowed", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau")
 MEASURED_ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -45,8 +45,6 @@ _RUN = {
     "mescd": ("1", "-log10(|z - z_ref|/(eps + |z_ref|)) at the last time asked for"),
     "steps": ("1", "steps tried"),
     "rejected": ("1", "steps rejected"),
-    "evaluations": ("1", "evaluations of the field"),
-    "jacobians": ("1", "evaluations of its Jacobian"),
     "calls_share": ("1", "share of the seconds in calls of the field from Python"),
     "status": (None, "how the run ended"),
     "wrong": ("1", "1 where success is reported half an eps off, and more than asked"),
@@ -114,13 +112,11 @@ def _values(
     if run.status in ENDED:  # part of a trajectory is no trajectory
         true = truth.z, truth.dissipation, truth.in_slip
         errors = errors_of(run.z, run.dissipation, *true, column.when, column.eps)
-    counts = ("steps", "rejected", "evaluations", "jacobians")
     wrong = run.status == Status.OK and _is_wrong(errors, truth.errors, accuracy)
     return (
         times
         | errors
-        | {name: getattr(run, name) for name in counts}
-        | {"calls_share": run.calls}
+        | {"steps": run.steps, "rejected": run.rejected, "calls_share": run.calls}
         | {"residual": run.residual / column.slip_energy}
         | {"status": int(run.status), "wrong": float(wrong)}
     )
@@ -159,7 +155,8 @@ def _measured(
             what = scene, eps, gamma, when.ts, accuracy, method, effort.seconds
             found, times = timed(runner(*what), effort.repeats, effort.seconds, first)
             first = None
-            found = accounted(found, *what)
+            if method in SCIPY:
+                found = told(found, scene, eps, gamma, method)
             cells.append(_values(found, times, column, accuracy))
             slow = times["seconds"] > effort.seconds
             given_up = found.status == Status.TOO_SLOW or slow
@@ -224,15 +221,13 @@ def work_precision(
     `slip_error` (NaN without a whole slip period), `end_error` and `mescd` at the last of
     `ts` (as the Test Set for IVP Solvers, with atol/rtol = eps), `dissipation_error`;
     `residual` of the energy-dissipation balance, for all along cubics through the ends of
-    steps; `steps`, `rejected`, `evaluations` and `jacobians`: of all attempts, by the
-    method itself, without what energies take. What a solver does not tell of these is found
-    after the timed runs: for diffrax's by a run that counts (NaN where the timed one
-    failed, or for other methods than Runge-Kutta's), for SciPy's from the times of its
-    calls. `calls_share`: of the seconds of SciPy's solvers, which call the compiled field
-    from Python. `status`, and `wrong`: success reported half an eps or more off (1.5 eps at
-    the end where all times lie in slips), and further than asked for. Over (gamma, eps)
-    what is known of the reference: `reference_error` and so on is its distance from a
-    second one, made otherwise as `reference_ways` says; no error below it means anything.
+    steps; `steps` and `rejected`: of all attempts, for SciPy's, which do not tell them,
+    found after the timed runs from the times of their calls. `calls_share`: of the seconds
+    of SciPy's solvers, which call the compiled field from Python. `status`, and `wrong`:
+    success reported half an eps or more off (1.5 eps at the end where all times lie in
+    slips), and further than asked for. Over (gamma, eps) what is known of the reference:
+    `reference_error` and so on is its distance from a second one, made otherwise as
+    `reference_ways` says; no error below it means anything.
 
     Failures stay in the table with their status and errors of NaN.
 

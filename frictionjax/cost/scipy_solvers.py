@@ -32,8 +32,6 @@ class Run(NamedTuple):
     status: Status
     steps: float
     rejected: float
-    evaluations: float
-    jacobians: float
     residual: float = float("nan")
     calls: float = 0.0
     record: StepRecord | None = None
@@ -94,7 +92,6 @@ def run_scipy(
         return called(_rates, t, y)
 
     def jacobian(t, y):
-        record.jacobians += 1
         return called(_jacobian, t, y)
 
     def called(fn, t, y):
@@ -130,8 +127,6 @@ def run_scipy(
         status,
         steps=float(record.accepted),
         rejected=float("nan"),
-        evaluations=float(len(record.looks)),
-        jacobians=float(record.jacobians),
         calls=record.calls / spent,
         record=record,
     )

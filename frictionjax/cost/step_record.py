@@ -13,13 +13,12 @@ _NODES = {"Radau": 3}  # times at which an attempt looks at the field; of others
 
 
 class StepRecord:
-    """Accepted steps of a run between times (s) and tips (periods), and all looks at the
-    field: their times, how many took the Jacobian, and their seconds (`calls`).
+    """Accepted steps of a run between times (s) and tips (periods), the times of all looks
+    at the field, and the seconds of its calls (`calls`).
     """
 
     def __init__(self) -> None:
         self.looks: list[float] = []
-        self.jacobians = 0
         self.calls = 0.0
         self._steps: list[tuple] = []
         self._tips: list[tuple] = []

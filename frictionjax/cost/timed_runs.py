@@ -5,12 +5,10 @@ from collections.abc import Callable
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
-from ..wiggly import ENDED, MAX_STEPS, TABLEAU, Status, Tableau, is_ours, solve, solver_of
-from .evaluations import can_count, count_work
-from .scipy_solvers import SCIPY, Run, run_scipy, told
+from ..wiggly import MAX_STEPS, Status, is_ours, solve
+from .scipy_solvers import SCIPY, Run, run_scipy
 
 # s of the fastest step through diffrax, whose loops cannot be stopped: bounds their number.
 # (1.2 to 2.4 us measured; at 3 us runs were ended that would have taken half the time.)
@@ -24,7 +22,7 @@ def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
     """Through `solve`: our methods, which have their own bounds, and diffrax's."""
     found = solve(scene, eps, gamma, ts, accuracy, method, max_steps=_most(method, seconds))
     jax.block_until_ready((found.z, found.dissipation))
-    status, steps = found.status, float(found.stats["steps"])
+    status = found.status
     if status == Status.MAX_STEPS and not is_ours(method):
         status = Status.TOO_SLOW
     residual = float("nan") if found.residual is None else float(found.residual[-1])
@@ -32,9 +30,8 @@ def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
         np.asarray(found.z),
         np.asarray(found.dissipation),
         status,
-        steps,
+        float(found.stats["steps"]),
         float(found.stats["rejected"]),
-        *_by_stages(method, steps),
         residual,
     )
 
@@ -44,34 +41,6 @@ def _most(method: Any, seconds: float) -> int:
     return (
         MAX_STEPS if is_ours(method) else int(np.clip(seconds / _FAST_STEP, 1, MAX_STEPS))
     )
-
-
-def _by_stages(method: Any, steps: float) -> tuple[float, float]:
-    """Evaluations and Jacobians where each attempt takes as many; NaN where not.
-
-    Rosenbrock methods take every stage, with one Jacobian; so do lanes, none waits.
-    """
-    solver = solver_of(method)
-    tableau = TABLEAU if is_ours(method) else getattr(solver, "tableau", None)
-    if not isinstance(tableau, Tableau):
-        return float("nan"), float("nan")
-    return len(tableau.a) * steps, steps
-
-
-def accounted(run: Run, scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
-    """The run with what it took and what certifies it, where it did not say; not timed."""
-    if method in SCIPY:
-        return told(run, scene, eps, gamma, method)
-    solver = solver_of(method)
-    if not np.isnan(run.evaluations) or run.status not in ENDED or not can_count(solver):
-        return run
-    cell = scene, jnp.asarray(eps), jnp.asarray(gamma), jnp.asarray(ts)
-    counts = count_work(*cell, jnp.asarray(accuracy), solver, _most(method, seconds))
-    # Other steps than those of the run would be the work of another run.
-    if (float(counts.steps), float(counts.rejected)) != (run.steps, run.rejected):
-        return run
-    evaluations, jacobians = map(float, counts.work)
-    return run._replace(evaluations=evaluations, jacobians=jacobians)
 
 
 def runner(scene, eps, gamma, ts, accuracy, method, seconds) -> Callable[[], Run]:

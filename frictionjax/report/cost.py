@@ -31,8 +31,6 @@ _HEADER = (
     "compile s",
     "steps",
     "rejected",
-    "field",
-    "Jacobian",
     "status",
 )
 
@@ -111,9 +109,9 @@ _COLUMNS = (
     "time asked for; all in eps. dissipation: relative. residual: in energies of a slip.\n"
     "mescd: right digits at the end. '<': below the error of the reference, which is what\n"
     "is printed ('>' of mescd). s: median of warm runs, spread: slowest over fastest of\n"
-    "several. compile s: what the first call took longer; methods share programs. field,\n"
-    "Jacobian: evaluations, - where a solver does not tell. 'wrong': success was reported\n"
-    "half an eps or more off, and further than asked for, beyond the reference's error."
+    "several. compile s: what the first call took longer; methods share programs.\n"
+    "'wrong': success was reported half an eps or more off, and further than asked for,\n"
+    "beyond the reference's error."
 )
 # Names of columns and of what is measured in them.
 _MEASURED = {
@@ -170,7 +168,6 @@ def cost_table(cell: xr.Dataset) -> str:
 
 def _row(run: xr.Dataset, names: dict[int, str]) -> tuple[str, ...]:
     *errors, mescd = (_judged(run, name) for name in _MEASURED.values())
-    counts = ("steps", "rejected", "evaluations", "jacobians")
     known, several = int(run.runs) > 0, int(run.runs) > 1
     status = "wrong" if int(run.wrong) else names[int(run.status)]
     return (
@@ -182,7 +179,7 @@ def _row(run: xr.Dataset, names: dict[int, str]) -> tuple[str, ...]:
         formatted(float(run.seconds)),
         f"{float(run.seconds_high / run.seconds_low):.2f}" if several else "-",
         f"{float(run.compile_seconds):.1f}" if known else "-",
-        *(_count(float(run[name])) for name in counts),
+        *(_count(float(run[name])) for name in ("steps", "rejected")),
         status,
     )
 

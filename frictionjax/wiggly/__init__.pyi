@@ -26,16 +26,9 @@ from .rosenbrock import dense_output as dense_output
 from .sequential import MAX_STEPS as MAX_STEPS
 from .sequential import OURS as OURS
 from .sequential import AbstractObserver as AbstractObserver
-from .sequential import AbstractWrappedController as AbstractWrappedController
-from .sequential import AbstractWrappedSolver as AbstractWrappedSolver
 from .sequential import Rodas4P2 as Rodas4P2
-from .sequential import checkpoint_at_start as checkpoint_at_start
-from .sequential import checkpoints_at as checkpoints_at
-from .sequential import controller_of as controller_of
 from .sequential import field_of as field_of
 from .sequential import integrate as integrate
 from .sequential import is_ours as is_ours
 from .sequential import solver_of as solver_of
-from .sequential import times_of_stops as times_of_stops
-from .sequential import with_tolerance as with_tolerance
 from .trajectory import solve as solve

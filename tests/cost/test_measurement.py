@@ -69,18 +69,14 @@ def test_measurements(data):
     assert float(cell.reference_error) < 1e-4
     assert np.all(ours.seconds_low <= ours.seconds)
     assert np.all(ours.seconds <= ours.seconds_high)
-    assert np.all(ours.evaluations > ours.steps)
     assert np.all(cell.sel(solver="Kvaerno3").error < ours.accuracy)
-    for name in ("steps", "rejected", "evaluations", "jacobians", "residual"):
+    for name in ("steps", "rejected", "residual"):
         assert np.all(np.isfinite(cell[name])), name
     assert np.all(cell.rejected < 0.5 * cell.steps)
     assert np.all(cell.calls_share.sel(solver=["auto", "Kvaerno3"]) == 0)
     assert np.all(cell.calls_share.sel(solver="LSODA") > 0.2)
     assert np.all(cell.calls_share.sel(solver="LSODA") < 1)
     assert "share of their seconds: LSODA" in dict(cost_sections(data))[""]
-    implicit = cell.sel(solver="Kvaerno3")
-    assert np.all(implicit.evaluations > 5 * implicit.steps)
-    assert np.all(implicit.jacobians == 2 * implicit.steps)
 
 
 def test_success_in_another_well_is_called_wrong(data):

@@ -140,8 +140,6 @@ def test_scipy_solves_the_same_system(scene, when, truth, method):
     assert found["error"] < 5e-3  # 5e-4, 1.5e-3, 7e-6
     assert found["dissipation_error"] < 1e-3
     assert run.steps > 100
-    assert run.evaluations > run.steps
-    assert run.jacobians > 0
     known = told(run, scene, EPS, 1.0, method)
     assert run.steps + known.rejected == known.steps
 

@@ -1,8 +1,4 @@
 from .augmented_solver import AbstractObserver as AbstractObserver
-from .checkpoints import checkpoint_at_start as checkpoint_at_start
-from .checkpoints import checkpoints_at as checkpoints_at
-from .checkpoints import controller_of as controller_of
-from .checkpoints import times_of_stops as times_of_stops
 from .integration import MAX_STEPS as MAX_STEPS
 from .integration import field_of as field_of
 from .integration import integrate as integrate
@@ -10,6 +6,3 @@ from .own_methods import OURS as OURS
 from .own_methods import is_ours as is_ours
 from .rosenbrock_solvers import Rodas4P2 as Rodas4P2
 from .solvers_by_name import solver_of as solver_of
-from .solvers_by_name import with_tolerance as with_tolerance
-from .wrapped import AbstractWrappedController as AbstractWrappedController
-from .wrapped import AbstractWrappedSolver as AbstractWrappedSolver

@@ -1,6 +1,5 @@
 """Fronts of an integration: stretches between stops, each a `diffeqsolve` of its own."""
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -25,10 +24,7 @@ _STEPS, _MORE = 3840, 256
 
 
 class Checkpoint(NamedTuple):
-    """How far an integration has come: the last step's length opens the next interval.
-
-    `tally`: what the controller has added up over all attempts, where it does.
-    """
+    """How far an integration has come: the last step's length opens the next interval."""
 
     t: Real
     y: tuple
@@ -36,10 +32,9 @@ class Checkpoint(NamedTuple):
     code: Int[Array, ""]
     steps: Int[Array, ""]
     rejected: Int[Array, ""]
-    tally: PyTree = ()
 
 
-def checkpoint_at_start(y: tuple, plan: StepPlan, tally: PyTree = ()) -> Checkpoint:
+def checkpoint_at_start(y: tuple, plan: StepPlan) -> Checkpoint:
     """The front at t = 0 with the tip and what follows it, `y`.
 
     Traced numbers are not looked at before: with an eps of -1 steps of NaN were made, and
@@ -49,7 +44,7 @@ def checkpoint_at_start(y: tuple, plan: StepPlan, tally: PyTree = ()) -> Checkpo
     numbers = jnp.stack([y[0], plan.first_step, plan.tolerance, plan.reach])
     known = jnp.all(jnp.isfinite(numbers))
     code = jnp.where(known, int(Status.OK), int(Status.NOT_FINITE))
-    return Checkpoint(zero, y, plan.first_step, code, none, none, tally)
+    return Checkpoint(zero, y, plan.first_step, code, none, none)
 
 
 def times_of_stops(
@@ -102,21 +97,19 @@ def checkpoints_at(
     controller: diffrax.AbstractAdaptiveStepSizeController,
     max_steps: int,
     adjoint: diffrax.AbstractAdjoint | None = None,
-    tally: Callable[[PyTree], PyTree] | None = None,
 ) -> Checkpoint:
     """Fronts at the stops, stacked; `solver` is of (y, ..., step).
 
-    `tally`: what the controller's state has added up. One `diffeqsolve` for each piece, not
-    one for all with `SaveAt(ts)`: XLA compiles the loop as a single function only while its
-    state is small, 11 us a step against 2.6. With an `adjoint` of the caller's, all between
-    two stops is one piece.
+    One `diffeqsolve` for each piece, not one for all with `SaveAt(ts)`: XLA compiles the
+    loop as a single function only while its state is small, 11 us a step against 2.6. With
+    an `adjoint` of the caller's, all between two stops is one piece.
     """
     parts = field, plan, solver, controller
     if adjoint:
-        piece = partial(_piece, *parts, tally, max_steps, max_steps, adjoint)
+        piece = partial(_piece, *parts, max_steps, max_steps, adjoint)
         return jax.lax.scan(lambda f, stop: (piece(f, stop),) * 2, start, stops)[1]
     steps = max_steps, min(max_steps, _STEPS)
-    forth = partial(_piece, *parts, tally, *steps, diffrax.RecursiveCheckpointAdjoint(1))
+    forth = partial(_piece, *parts, *steps, diffrax.RecursiveCheckpointAdjoint(1))
     pieces = (
         eqx.filter_closure_convert(piece, start, stops[0])
         for piece in (forth, partial(_again, field, solver, controller))
@@ -135,7 +128,6 @@ def _piece(
     plan: StepPlan,
     solver: diffrax.AbstractSolver,
     controller: diffrax.AbstractAdaptiveStepSizeController,
-    tally: Callable[[PyTree], PyTree] | None,
     max_steps: int,
     steps: int,
     adjoint: diffrax.AbstractAdjoint,
@@ -144,15 +136,14 @@ def _piece(
 ) -> Checkpoint:
     """At most so many steps towards the stop; none where the front does not go on."""
     stop = jnp.where(_goes_on(plan.shortest_step, front, stop), stop, front.t)
-    saveat = diffrax.SaveAt(t1=True, controller_state=tally is not None)
-    found = _solved(steps, adjoint, saveat, field, solver, controller, front, stop)
+    last = diffrax.SaveAt(t1=True)
+    found = _solved(steps, adjoint, last, field, solver, controller, front, stop)
     ended = jax.tree_util.tree_map(lambda leaf: leaf[0], (found.ts, *found.ys))
     reached, *y, step = ended
     taken = front.steps + found.stats["num_steps"]
     unfinished = found.result == diffrax.RESULTS.max_steps_reached
     goes_on = unfinished & (taken < max_steps)
     code = jnp.where(goes_on, int(Status.OK), _code(found.result))
-    more = () if tally is None else tally(found.controller_state)
     return Checkpoint(
         t=jnp.where(unfinished, reached, stop),
         y=tuple(y),
@@ -160,7 +151,6 @@ def _piece(
         code=jnp.where(front.code == Status.OK, code, front.code),
         steps=taken,
         rejected=front.rejected + found.stats["num_rejected_steps"],
-        tally=jax.tree_util.tree_map(jnp.add, front.tally, more),
     )
 
 
