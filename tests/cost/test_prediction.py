@@ -138,7 +138,7 @@ def test_the_rows_of_tables_are_foreseen(monkeypatch, eps, gamma, times, method)
         rows[:] += found.jobs.cell.size, found.legs.start.size
         return found
 
-    monkeypatch.setattr(rounds, "plan_windows", plan)
+    monkeypatch.setattr(rounds, "plan_brackets", plan)
     cells = cells_of(np.array(eps), np.array(gamma))
     work = workload(scene_of(), *cells, times, 1e-3, method)
     fx.sweep(scene_of(), eps, gamma, np.linspace(0.0, 3.0, times), 1e-3, method)
