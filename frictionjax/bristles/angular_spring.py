@@ -1,5 +1,7 @@
 """Third model of the paper: rigid rod on an angular spring (Section 3.3)."""
 
+from typing import ClassVar
+
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
@@ -18,13 +20,16 @@ class AngularSpring(AbstractBristle):
     Raises `ValueError` unless k > 0, L > h > 0 and theta_lim > theta_rest > -pi/2.
     """
 
+    positive: ClassVar = ("stiffness", "length", "height")
+    angles: ClassVar = ("rest_angle",)
+
     stiffness: Real = eqx.field(converter=as_real)
     length: Real = eqx.field(converter=as_real)
     height: Real = eqx.field(converter=as_real)
     rest_angle: Real = eqx.field(converter=as_real)
 
     def __check_init__(self):
-        for name in ("stiffness", "length", "height"):
+        for name in self.positive:
             value = getattr(self, name)
             require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
         require_real("bristle.rest_angle", self.rest_angle, "rest_angle > -pi/2")

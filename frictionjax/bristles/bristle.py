@@ -1,7 +1,7 @@
 """What a bristle is."""
 
 import abc
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import jax.numpy as jnp
 
@@ -30,8 +30,13 @@ class Rod(NamedTuple):
 class AbstractBristle(Part):
     """A bristle: two scalar functions of the height `eta` of the surface under its tip.
 
-    Everything else (a, alpha, mu, rho, V_eps, the dynamics) follows by autodiff.
+    Everything else (a, alpha, mu, rho, V_eps, the dynamics) follows by autodiff. `positive`
+    and `angles` name constructor arguments: those > 0, and those within a right angle
+    either way. Designs look for them there; any other number may be anywhere.
     """
+
+    positive: ClassVar[tuple[str, ...]] = ()
+    angles: ClassVar[tuple[str, ...]] = ()
 
     @abc.abstractmethod
     def offset(self, eta: Real) -> Real:

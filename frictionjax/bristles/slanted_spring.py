@@ -1,5 +1,7 @@
 """Second model of the paper: slanted spring (Section 3.2)."""
 
+from typing import ClassVar
+
 import equinox as eqx
 import jax.numpy as jnp
 
@@ -17,13 +19,16 @@ class SlantedSpring(AbstractBristle):
     Raises `ValueError` for parameters out of range.
     """
 
+    positive: ClassVar = ("stiffness", "rest_length", "height")
+    angles: ClassVar = ("angle",)
+
     stiffness: Real = eqx.field(converter=as_real)
     rest_length: Real = eqx.field(converter=as_real)
     height: Real = eqx.field(converter=as_real)
     angle: Real = eqx.field(converter=as_real)
 
     def __check_init__(self):
-        for name in ("stiffness", "rest_length", "height"):
+        for name in self.positive:
             value = getattr(self, name)
             require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
         allowed = "-pi/2 < angle < pi/2"

@@ -1,5 +1,7 @@
 """First model of the paper: vertical spring (Section 3.1)."""
 
+from typing import ClassVar
+
 import equinox as eqx
 import jax.numpy as jnp
 
@@ -15,12 +17,14 @@ class VerticalSpring(AbstractBristle):
     Raises `ValueError` for a stiffness, length or height that is not positive.
     """
 
+    positive: ClassVar = ("stiffness", "rest_length", "height")
+
     stiffness: Real = eqx.field(converter=as_real)
     rest_length: Real = eqx.field(converter=as_real)
     height: Real = eqx.field(converter=as_real)
 
     def __check_init__(self):
-        for name in ("stiffness", "rest_length", "height"):
+        for name in self.positive:
             value = getattr(self, name)
             require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
 

@@ -1,34 +1,57 @@
-"""Bristles and surfaces as entries of JSON documents, and back."""
+"""The kinds of parts that files can hold, and their numbers by name.
 
-import dataclasses
+Of a part that is no such kind, one made of functions say, files hold nothing.
+"""
+
 from typing import Any
 
 import equinox as eqx
 import numpy as np
 
-from .. import bristles, profiles
+from .. import bristles, loads, profiles, supports
+from .._checks import Part, asked_names
 
-_BRISTLES = ("Homothetic", "VerticalSpring", "SlantedSpring", "AngularSpring")
-_PROFILES = ("Sine", "Fourier", "Spline", "Polyline")
-_PARTS: dict[str, Any] = {name: getattr(bristles, name) for name in _BRISTLES}
-_PARTS |= {name: getattr(profiles, name) for name in _PROFILES}
+
+def _by_name(*kinds: type[Part]) -> dict[str, type[Part]]:
+    return {kind.__name__: kind for kind in kinds}
+
+
+PARTS: dict[str, dict[str, type[Part]]] = {
+    "profile": _by_name(
+        profiles.Sine, profiles.Fourier, profiles.Spline, profiles.Polyline
+    ),
+    "bristle": _by_name(
+        bristles.Homothetic,
+        bristles.VerticalSpring,
+        bristles.SlantedSpring,
+        bristles.AngularSpring,
+    ),
+    "support": _by_name(supports.Spring),
+    "load": _by_name(loads.Ramp, loads.Sine, loads.Triangle, loads.PiecewiseLinear),
+}
+"""Of every table of a scene its kinds, by the name that files call them."""
+_WITHOUT_SCENE = PARTS["profile"] | PARTS["bristle"]  # what documents of results hold
+
+
+def numbers_of_part(part: Any) -> dict[str, Any]:
+    """Constructor arguments of a part by name, those that it has."""
+    given = {name: getattr(part, name) for name in asked_names(type(part), {})}
+    return {name: value for name, value in given.items() if value is not None}
 
 
 def part_entry(part: Any) -> dict[str, Any]:
-    """Kind and numbers of a part; the kind alone of one made of functions.
+    """Kind and numbers of a profile or a bristle; the kind alone of one made of functions.
 
     Of a batch of bristles each number is a list.
     """
     kind = type(part).__name__
-    if _PARTS.get(kind) is not type(part):
+    if _WITHOUT_SCENE.get(kind) is not type(part):
         return {"kind": kind}
-    if kind == "Spline":
-        count = np.size(part.coefficients)
-        return {"kind": kind, "heights": [float(part(k / count)) for k in range(count)]}
-    names = [f.name for f in dataclasses.fields(part) if not f.metadata.get("static")]
-    given = {name: getattr(part, name) for name in names}
-    known = {name: value for name, value in given.items() if value is not None}
-    return {"kind": kind} | {k: np.asarray(value).tolist() for k, value in known.items()}
+    if isinstance(part, profiles.Spline):  # as evaluated: rounded otherwise than .heights
+        places = np.arange(np.size(part.coefficients)) / np.size(part.coefficients)
+        return {"kind": kind, "heights": [float(part(y)) for y in places]}
+    known = numbers_of_part(part).items()
+    return {"kind": kind} | {name: np.asarray(value).tolist() for name, value in known}
 
 
 def part_of(entry: dict[str, Any]) -> Any:
@@ -36,10 +59,11 @@ def part_of(entry: dict[str, Any]) -> Any:
     numbers = {name: value for name, value in entry.items() if name != "kind"}
     if not numbers:
         return None
-    kind = entry["kind"]
-    if kind in _PROFILES or np.ndim(next(iter(numbers.values()))) == 0:
-        return _PARTS[kind](**numbers)
-    first = _PARTS[kind](**{name: rows[0] for name, rows in numbers.items()})
+    kind = _WITHOUT_SCENE[entry["kind"]]
+    one = np.ndim(next(iter(numbers.values()))) == 0
+    if issubclass(kind, profiles.AbstractProfile) or one:
+        return kind(**numbers)
+    first = kind(**{name: rows[0] for name, rows in numbers.items()})
     # The constructor takes one bristle.
     leaves = [np.array(rows) for rows in numbers.values()]
     return eqx.tree_at(lambda b: [getattr(b, k) for k in numbers], first, leaves)

@@ -10,21 +10,13 @@ import equinox as eqx
 import numpy as np
 import tomli_w
 
-from .. import bristles, loads, profiles, supports
-from .._checks import require
+from .._checks import asked_names, require
 from ..measured import fit_profile, read_heights
 from ..model import BristlePotential, Scene
+from ..profiles import Fourier
+from .registry import PARTS, numbers_of_part
 from .whole_files import write_whole
 
-_PARTS = {
-    "profile": (profiles, ("Sine", "Fourier", "Spline", "Polyline")),
-    "bristle": (
-        bristles,
-        ("Homothetic", "VerticalSpring", "SlantedSpring", "AngularSpring"),
-    ),
-    "support": (supports, ("Spring",)),
-    "load": (loads, ("Ramp", "Sine", "Triangle", "PiecewiseLinear")),
-}
 _TOP = ("duration", "z0")
 _STUDY = ("eps", "gamma", "accuracy")
 _TEXTS = ("length_unit", "height_unit", "decimal", "outliers")
@@ -104,9 +96,9 @@ def parse_scene(text: str, name: str, folder: Path | None = None) -> SceneFile:
 
 
 def _scene_of(document: dict[str, Any], folder: Path) -> Scene:
-    known = (*_TOP, *_PARTS, "study")
-    _require_keys("", document, known, ("duration", *_PARTS))
-    parts = {table: _part_of(table, document[table], folder) for table in _PARTS}
+    known = (*_TOP, *PARTS, "study")
+    _require_keys("", document, known, ("duration", *PARTS))
+    parts = {table: _part_of(table, document[table], folder) for table in PARTS}
     top = {key: document.get(key, 0.0) for key in _TOP}
     for key, value in top.items():
         _need(not isinstance(value, list), f"{key} = {value!r}", "a number")
@@ -115,23 +107,23 @@ def _scene_of(document: dict[str, Any], folder: Path) -> Scene:
 
 def _part_of(table: str, entries: Any, folder: Path) -> Any:
     _need(isinstance(entries, dict), f"{table} = {entries!r}", f"a table [{table}]")
-    module, kinds = _PARTS[table]
+    kinds = PARTS[table]
     kind = entries.get("kind")
     known = isinstance(kind, str) and kind in kinds
     said = "no kind" if kind is None else f"kind = {kind!r}"
     _need(known, f"[{table}] {said}", f"a kind that is one of {', '.join(kinds)}")
-    build = getattr(module, kind)
+    build = kinds[kind]
     given = {key: value for key, value in entries.items() if key != "kind"}
     if kind == "Fourier" and "heights" in given:
         return _measured_profile(given, folder)
+    names = asked_names(build, {})
     signature = inspect.signature(build.__init__).parameters
-    names = [name for name in signature if name != "self"]
     needed = [n for n in names if signature[n].default is inspect.Parameter.empty]
     _require_keys(f"[{table}] ", given, names, needed)
     return build(**{key: _numbers(f"[{table}] {key}", v) for key, v in given.items()})
 
 
-def _measured_profile(given: dict[str, Any], folder: Path) -> profiles.Fourier:
+def _measured_profile(given: dict[str, Any], folder: Path) -> Fourier:
     _require_keys("[profile] ", given, ("heights", *_FIT, *_READING), ())
     name = given["heights"]
     text = isinstance(name, str)
@@ -207,7 +199,7 @@ def scene_document(scene: Scene, study: dict[str, Any] | None = None) -> str:
     known = isinstance(scene.potential, BristlePotential)
     require(known, "scene.potential", type(scene.potential).__name__, _SAVED)
     document: dict[str, Any] = {key: float(getattr(scene, key)) for key in _TOP}
-    for table in _PARTS:
+    for table in PARTS:
         document[table] = _entries_of(table, getattr(scene, table))
     if study:
         document["study"] = {key: _plain(value) for key, value in study.items()}
@@ -216,13 +208,11 @@ def scene_document(scene: Scene, study: dict[str, Any] | None = None) -> str:
 
 def _entries_of(table: str, part: eqx.Module) -> dict[str, Any]:
     kind = type(part).__name__
-    module, kinds = _PARTS[table]
-    saved = kind in kinds and type(part) is getattr(module, kind)
+    kinds = PARTS[table]
+    saved = kinds.get(kind) is type(part)
     require(saved, f"scene.{table}", kind, f"one of {', '.join(kinds)}: no functions")
-    names = list(inspect.signature(type(part).__init__).parameters)[1:]  # without self
-    given = {name: getattr(part, name) for name in names}
-    known = {name: value for name, value in given.items() if value is not None}
-    return {"kind": kind} | {name: _plain(value) for name, value in known.items()}
+    known = numbers_of_part(part).items()
+    return {"kind": kind} | {name: _plain(value) for name, value in known}
 
 
 def _plain(value: Any) -> Any:

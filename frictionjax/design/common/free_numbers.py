@@ -8,13 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..._checks import Real, as_text, is_known, known_numbers, require
-from ...bristles import (
-    AbstractBristle,
-    AngularSpring,
-    Homothetic,
-    SlantedSpring,
-    VerticalSpring,
-)
+from ...bristles import AbstractBristle, AngularSpring
 
 _DECADES = 1e4  # an unbounded number is looked for up to this many times its own size
 _TINY = 1e-12  # of its own size: where a positive number starts if bounds say 0
@@ -22,20 +16,8 @@ _RIGHT = 0.5 * np.pi
 _ALIKE = 1e-5  # relative: six digits look the same
 _ROUNDED = 4 * np.finfo(float).eps  # relative: how far a bound may be off its range
 
-_POSITIVE, _ANGLE = "positive", "angle"
-_MODELS: dict[type, dict[str, str]] = {
-    Homothetic: {},
-    VerticalSpring: dict.fromkeys(("stiffness", "rest_length", "height"), _POSITIVE),
-    SlantedSpring: dict.fromkeys(("stiffness", "rest_length", "height"), _POSITIVE)
-    | {"angle": _ANGLE},
-    AngularSpring: {
-        "stiffness": _POSITIVE,
-        "rest_angle": _ANGLE,
-        "angle": "limit",
-        "height": "limit_by_height",
-        "length": "limit_by_length",
-    },
-}
+# Of a rod: it is as long as its height at least, and near theta_lim = 0 hardly longer.
+_OF_RODS = {"height": "limit_by_height", "length": "limit_by_length"}
 
 
 class FreeParameter(eqx.Module):
@@ -168,8 +150,16 @@ def free_parameter(bristle: Any, free: str) -> FreeParameter:
     extra = ["angle"] if isinstance(bristle, AngularSpring) else []
     allowed = f"one of {', '.join([*named, *extra]) or 'no name: nothing to choose'}"
     require(len(found) == 1, "free", free, allowed)
-    kind = _MODELS.get(type(bristle), {}).get(free, "line")
-    return FreeParameter(found[0], kind, *named[found[0]])
+    return FreeParameter(found[0], _kind_of(bristle, free), *named[found[0]])
+
+
+def _kind_of(bristle: Any, free: str) -> str:
+    """The coordinate in which a number is looked for; see `FreeParameter`."""
+    if isinstance(bristle, AngularSpring) and free in _OF_RODS:
+        return _OF_RODS[free]
+    if free in getattr(bristle, "positive", ()):
+        return "positive"
+    return "angle" if free in getattr(bristle, "angles", ()) else "line"
 
 
 def entries_of(part: Any, name: str) -> list[str]:
