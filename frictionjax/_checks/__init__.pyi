@@ -28,6 +28,8 @@ from .parts import eagerly as eagerly
 from .parts import exchanged as exchanged
 from .parts import is_checked as is_checked
 from .parts import mark_checked as mark_checked
+from .results import CodedResult as CodedResult
+from .results import Result as Result
 from .status_enums import Outcome as Outcome
 from .status_enums import counted as counted
 from .status_enums import flags as flags

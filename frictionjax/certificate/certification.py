@@ -6,7 +6,15 @@ from typing import Any, NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
-from .._checks import Outcome, as_real, known_numbers, require, require_real, with_nan
+from .._checks import (
+    Outcome,
+    Result,
+    as_real,
+    known_numbers,
+    require,
+    require_real,
+    with_nan,
+)
 from ..model import Scene, coefficients_jit, known_scene, require_reach, require_times
 from .curve import Force, along_curve, force_of
 from .transits import folds_of, missing_forces, viscosity_ratio
@@ -33,19 +41,7 @@ class CertificateStatus(Outcome):
     VISCOSITY = 5, "slips take another time than eps^gamma gives them"
 
 
-class Certificate(NamedTuple):
-    """What was found about a curve.
-
-    `residual` of the energy-dissipation balance in J, `int (eps^gamma z' + D E)^2 /
-    (2 eps^gamma)`, with its quadrature error `residual_error`; `scale = eps (rho_plus -
-    rho_minus)`, the energy of one slip, in J. `slips`: wells crossed. `distance`: the
-    curve is at least so far, in units of eps, from every solution. `missing_force`: the
-    most that was missing when a well was left, in units of `Phi'' eps`, the force of one
-    well. `viscosity`: measured in slips, relative to `eps^gamma`; NaN without slips.
-    `skipped`: wells crossed without the force. `status`: a `CertificateStatus`, which has a
-    `.message`.
-    """
-
+class _Numbers(NamedTuple):
     residual: float
     residual_error: float
     scale: float
@@ -57,15 +53,21 @@ class Certificate(NamedTuple):
     spacing: float
     status: CertificateStatus
 
-    @property
-    def ok(self) -> bool:
-        """Whether the curve is within about eps/100 of a solution."""
-        return self.status == CertificateStatus.OK
 
-    @property
-    def message(self) -> str:
-        """The verdict for people."""
-        return self.status.message
+class Certificate(Result, _Numbers):
+    """What was found about a curve.
+
+    `residual` of the energy-dissipation balance in J, `int (eps^gamma z' + D E)^2 /
+    (2 eps^gamma)`, with its quadrature error `residual_error`; `scale = eps (rho_plus -
+    rho_minus)`, the energy of one slip, in J. `slips`: wells crossed. `distance`: the
+    curve is at least so far, in units of eps, from every solution. `missing_force`: the
+    most that was missing when a well was left, in units of `Phi'' eps`, the force of one
+    well. `viscosity`: measured in slips, relative to `eps^gamma`; NaN without slips.
+    `skipped`: wells crossed without the force. `status`: a `CertificateStatus`; `ok`:
+    whether the curve is within about eps/100 of a solution; `message`: the verdict.
+    """
+
+    __slots__ = ()
 
 
 @with_nan

@@ -9,15 +9,12 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import (
+    CodedResult,
     Outcome,
     Real,
-    counted,
-    flags,
     is_concrete,
-    is_known,
     no_less,
     no_more,
-    outcomes,
     require,
     with_nan,
 )
@@ -42,7 +39,7 @@ class LimitStatus(Outcome):
     NOT_FINITE = 1, "not finite, or the load turns more often than there is room for"
 
 
-class LimitSolution(eqx.Module):
+class LimitSolution(CodedResult, eqx.Module):
     """Limit trajectory: times `ts` (s), states `z` (m), `dissipation` (J), shapes (n,).
 
     `dissipation` is cumulative, `int_0^ts R(z')`. `ok`, `status`: not finite only where
@@ -52,28 +49,17 @@ class LimitSolution(eqx.Module):
     ts: Float[Array, " n"]
     z: Float[Array, " n"]
     dissipation: Float[Array, " n"]
+    _outcomes = LimitStatus
 
     @property
     def _codes(self) -> Array:
         good = jnp.all(jnp.isfinite(self.z) & jnp.isfinite(self.dissipation), axis=-1)
         return jnp.where(good, int(LimitStatus.OK), int(LimitStatus.NOT_FINITE))
 
-    @property
-    def ok(self) -> Any:
-        """One bool; of a batch (`jax.vmap`), or where traced, an array of them."""
-        return flags(self._codes == LimitStatus.OK)
-
-    @property
-    def status(self) -> Any:
-        """A `LimitStatus`; an array of them of a batch, integers where traced."""
-        return outcomes(LimitStatus, self._codes)
-
-    def __repr__(self) -> str:
-        if not is_known(self):
-            return super().__repr__()
+    def _in_words(self) -> str:
         codes, count = self._codes, np.shape(self.z)[-1]
         batch = f"batch {codes.shape}: " if codes.ndim else ""
-        return f"LimitSolution({batch}{counted(LimitStatus, codes)}, {count} times)"
+        return f"LimitSolution({batch}{self._ended}, {count} times)"
 
 
 def strip(support: AbstractSupport, found: Coefficients, load: Real) -> tuple[Real, Real]:

@@ -9,12 +9,9 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from .._checks import (
+    CodedResult,
     as_real,
-    counted,
-    flags,
     is_concrete,
-    is_known,
-    outcomes,
     require,
     require_flags,
     require_numbers,
@@ -27,7 +24,7 @@ from .equation import Status, plan_steps, require_accuracy
 from .sequential import MAX_STEPS, integrate, is_ours, solver_of
 
 
-class Solution(eqx.Module):
+class Solution(CodedResult, eqx.Module):
     """Trajectory of the wiggly system.
 
     `ts` in s, `z` in m, shapes (n,). `dissipation`: `int_0^ts eps^gamma z'^2` in J.
@@ -49,16 +46,19 @@ class Solution(eqx.Module):
     status_code: Int[Array, ""]
     counts: dict[str, Any]
     how: str = eqx.field(static=True)
+    _outcomes = Status
 
     @property
     def stats(self) -> dict[str, Any]:
         """Counts, and under "values" how the values were obtained."""
         return {**self.counts, "values": self.how}
 
-    def __repr__(self) -> str:
-        if not is_known(self):
-            return super().__repr__()
-        ended, steps = counted(Status, self.status_code), np.asarray(self.stats["steps"])
+    @property
+    def _codes(self) -> Any:
+        return self.status_code
+
+    def _in_words(self) -> str:
+        ended, steps = self._ended, np.asarray(self.stats["steps"])
         if np.ndim(self.status_code):
             parts = (
                 f"{np.shape(self.z)[-1]} times each, up to {np.max(steps, initial=0)} steps"
@@ -66,16 +66,6 @@ class Solution(eqx.Module):
             return f"Solution(batch {np.shape(self.status_code)}: {ended}; {parts})"
         end = f"z({float(self.ts[-1]):.6g} s) = {float(self.z[-1]):.9g} m"
         return f"Solution({ended}: {self.ts.size} times, {end}, {int(steps)} steps)"
-
-    @property
-    def ok(self) -> Any:
-        """One bool; of a batch (`jax.vmap`), or where traced, an array of them."""
-        return flags(self.status_code == Status.OK)
-
-    @property
-    def status(self) -> Any:
-        """A `Status` with `.message`; of a batch an array; integers where traced."""
-        return outcomes(Status, self.status_code)
 
 
 @eqx.filter_jit
