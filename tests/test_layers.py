@@ -43,7 +43,7 @@ FLOORS = {
     "design.surface": [
         {"barrier", "status"},
         {"starts", "open_directions", "reachable", "history"},
-        {"multistart", "json"},
+        {"multistart"},
         {"least_bent", "result"},
         {"report"},
         {"fit"},

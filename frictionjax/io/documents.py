@@ -1,4 +1,4 @@
-"""Documents of fits: JSON from a text or a file, checked."""
+"""Documents: JSON from a text or a file, checked, and what of a value it can hold."""
 
 import json
 from pathlib import Path
@@ -10,10 +10,10 @@ from .._checks import require
 from .whole_files import write_whole
 
 
-def document_of(source: Any, kind: str, needed: set[str]) -> dict[str, Any]:
-    """The document of a JSON text, or of the file at a path.
+def read_document(source: Any) -> Any:
+    """What a JSON text holds, or the file at a path.
 
-    Raises `ValueError` for what is not there, no JSON, another kind, or lacks a part.
+    Raises `ValueError` for what is not there, or no JSON.
     """
     text = str(source)
     if not text.lstrip().startswith("{"):
@@ -22,9 +22,13 @@ def document_of(source: Any, kind: str, needed: set[str]) -> dict[str, Any]:
         except (OSError, UnicodeDecodeError):
             require(False, "source", str(source), "the text or the file of a fit's JSON")
     try:
-        document = json.loads(text)
+        return json.loads(text)
     except json.JSONDecodeError as problem:
         raise ValueError(f"source: not JSON ({problem})") from None
+
+
+def checked_document(document: Any, kind: str, needed: set[str]) -> dict[str, Any]:
+    """The document; raises `ValueError` for another kind, or where it lacks an entry."""
     known = isinstance(document, dict) and document.get("kind") == kind
     require(known, "source", "another document", f"JSON with kind = {kind!r}")
     missing = sorted(needed - set(document))
@@ -39,16 +43,20 @@ def written(text: str, path: Any) -> str:
     return text
 
 
-def plain(value: Any) -> Any:
-    """Lists in place of arrays; JSON has neither NaN, null here, nor infinity, a text."""
+def plain(value: Any, infinite: bool = True) -> Any:
+    """Lists in place of arrays; JSON has neither NaN, null here, nor infinity, a text.
+
+    Null too where not `infinite`.
+    """
     if isinstance(value, dict):
-        return {name: plain(entry) for name, entry in value.items()}
+        return {name: plain(entry, infinite) for name, entry in value.items()}
     if hasattr(value, "shape"):
-        return plain(np.asarray(value).tolist())
-    if isinstance(value, list):
-        return [plain(entry) for entry in value]
+        return plain(np.asarray(value).tolist(), infinite)
+    if isinstance(value, list | tuple):
+        return [plain(entry, infinite) for entry in value]
     if isinstance(value, float) and not np.isfinite(value):
-        return None if np.isnan(value) else ("inf" if value > 0 else "-inf")
+        unknown = np.isnan(value) or not infinite
+        return None if unknown else ("inf" if value > 0 else "-inf")
     return value
 
 

@@ -7,22 +7,14 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..._checks import (
-    Real,
-    as_text,
-    counted,
-    flags,
-    is_concrete,
-    is_known,
-    outcomes,
-    require_whole,
-)
+from ..._checks import CodedResult, Real, as_text, is_concrete, require_whole
 from ..._compile import Program
 from ...bristles import AbstractBristle, pulling_text
-from ...io import written
+from ...io import AS_IS, CODES, LEAF, PART, TOLD, Document, record
 from ...profiles import AbstractProfile
 from ..common import (
     QUANTITIES,
+    DesignResult,
     FreeParameter,
     Slopes,
     free_parameter,
@@ -30,12 +22,19 @@ from ..common import (
     quantity_of,
 )
 from .inverse import Pulled
-from .json import angle_from_json, angle_to_json
 from .sensitivities import Sensitivities, sensitivities_of
 from .status import GOOD, FitStatus, fit_status_of
 
 
-class AngleFit(eqx.Module):
+def _unknown(entries: dict[str, Any]) -> Real:
+    """A number a target that documents of earlier versions lack."""
+    return jnp.full(np.shape(entries["target"]), jnp.nan)
+
+
+_PULLED = record(Pulled, Pulled._fields, LEAF)
+
+
+class AngleFit(DesignResult, CodedResult, eqx.Module):
     """A bristle that gives a wanted friction; every array has the shape of the target.
 
     `bristle`: the one given, with the number called `free` set to `value`: of all
@@ -65,6 +64,25 @@ class AngleFit(eqx.Module):
     quantity: str = eqx.field(static=True)
     pulling: bool = eqx.field(static=True, default=False)
 
+    _outcomes, _good = FitStatus, GOOD
+    document = Document(
+        "frictionjax.AngleFit",
+        {"message": TOLD}
+        | dict.fromkeys(("value", "achieved", "target"), LEAF)
+        | dict.fromkeys(("roots", "admissible", "reachable"), LEAF)
+        | {
+            "free": AS_IS,
+            "quantity": AS_IS,
+            "code": CODES,
+            "alpha": LEAF.or_else(_unknown),
+            "pulling": AS_IS.or_else(lambda entries: True),
+            "pulled": _PULLED.or_else(lambda entries: Pulled(*[_unknown(entries)] * 2)),
+            "bristle": PART,
+            "profile": PART,
+            "slopes": record(Slopes, Slopes._fields, LEAF),
+        },
+    )
+
     @property
     def solutions(self) -> Real:
         """All solutions, increasing; one target's alone are without padding."""
@@ -73,14 +91,8 @@ class AngleFit(eqx.Module):
         return self.roots
 
     @property
-    def success(self) -> Any:
-        """Whether the bristle gives what was asked for: one bool, or one a target."""
-        return flags(jnp.isin(self.code, np.array([int(s) for s in GOOD])))
-
-    @property
-    def status(self) -> Any:
-        """`FitStatus`, or an array of them; integers where traced."""
-        return outcomes(FitStatus, self.code)
+    def _codes(self) -> Real:
+        return self.code
 
     @property
     def message(self) -> Any:
@@ -124,25 +136,9 @@ class AngleFit(eqx.Module):
         """Derivatives of `value`, by the implicit function theorem."""
         return sensitivities_of(self)
 
-    def to_json(self, path: Any = None) -> str:
-        """Everything as JSON; written to `path` where given."""
-        return written(angle_to_json(self), path)
-
-    @classmethod
-    def from_json(cls, source: Any) -> "AngleFit":
-        """The result again, from the text or the path of its JSON.
-
-        A bristle or a surface given as functions is None. Raises `ValueError` for what is
-        no such JSON.
-        """
-        return cls(**angle_from_json(source))
-
-    def __repr__(self) -> str:
-        if not is_known(self):
-            return super().__repr__()
+    def _in_words(self) -> str:
         if self.code.ndim:
-            ended = counted(FitStatus, self.code)
-            return f"AngleFit({self.free}, batch {self.code.shape}: {ended})"
+            return f"AngleFit({self.free}, batch {self.code.shape}: {self._ended})"
         return f"AngleFit({self.free}={as_text(self.value)}: {self.message})"
 
 

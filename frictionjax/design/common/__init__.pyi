@@ -1,4 +1,5 @@
 from .aligned_text import aligned as aligned
+from .design_result import DesignResult as DesignResult
 from .free_numbers import FreeParameter as FreeParameter
 from .free_numbers import free_parameter as free_parameter
 from .free_numbers import require_bounds as require_bounds

@@ -10,15 +10,15 @@ import numpy as np
 from ..._checks import Real, as_real, as_text, is_concrete, require, require_real, with_nan
 from ..._compile import Program, in_chunks
 from ...bristles import AbstractBristle, normal_force, pulling_text
-from ...io import written
+from ...io import AS_IS, LEAF, PART, TOLD, Document, Form, by_name, nested
 from ...model import BristlePotential, smallest_stretch
 from ...profiles import AbstractProfile
 from ...supports import Spring
 from ..bristle import AngleFit, FitStatus, fit_angle, intervals_text
-from ..common import QUANTITIES, FreeParameter, free_parameter, quantity_of
-from .json import slide_from_json, slide_to_json
+from ..common import QUANTITIES, DesignResult, FreeParameter, free_parameter, quantity_of
 from .scan import Scan, crossings, scan_slides, sliding, touching
 from .slide_friction import (
+    SLIDE,
     SLIDE_FORCES,
     SteadySlide,
     forces_of,
@@ -30,7 +30,10 @@ from .slide_friction import (
 _TOGETHER = 11  # slides of a call, which wait for the slowest: those near poles take 5x
 
 
-class SlideFit(eqx.Module):
+_PAIRS = Form(read=lambda rows: jnp.asarray(np.array(rows, float).reshape(-1, 2)))
+
+
+class SlideFit(DesignResult, eqx.Module):
     """A bristle whose steady slide at `eps` gives a wanted quantity.
 
     As `AngleFit`, with the quantity made of the slide's forces, `force` "mean" or "peak":
@@ -56,10 +59,22 @@ class SlideFit(eqx.Module):
     status: FitStatus = eqx.field(static=True)
     force: str = eqx.field(static=True)
 
-    @property
-    def success(self) -> bool:
-        """Whether the slide gives what was asked for."""
-        return self.status in (FitStatus.OK, FitStatus.TANGENT)
+    _good = FitStatus.OK, FitStatus.TANGENT
+    document = Document(
+        "frictionjax.SlideFit",
+        {"message": TOLD}
+        | dict.fromkeys(("value", "achieved", "target", "solutions"), LEAF)
+        | {
+            "reachable": _PAIRS,
+            "failed": LEAF,
+            "by_target": LEAF,
+            "status": by_name(FitStatus),
+            "force": AS_IS,
+            "bristle": PART,
+            "slide": SLIDE,
+            "limit": nested(AngleFit),
+        },
+    )
 
     @property
     def message(self) -> str:
@@ -91,19 +106,6 @@ class SlideFit(eqx.Module):
         """Where the limit's design would pull. Slides of those are not computed."""
         pulls = self.limit.status == FitStatus.PULLS
         return f"; in the limit: {self.limit.message}" if pulls else ""
-
-    def to_json(self, path: Any = None) -> str:
-        """Everything as JSON; written to `path` where given."""
-        return written(slide_to_json(self), path)
-
-    @classmethod
-    def from_json(cls, source: Any) -> "SlideFit":
-        """The result again, from the text or the path of its JSON.
-
-        A bristle or a surface given as functions is None. Raises `ValueError` for what is
-        no such JSON.
-        """
-        return cls(**slide_from_json(source))
 
     def __repr__(self) -> str:
         return f"SlideFit({self.message})"

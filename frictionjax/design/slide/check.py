@@ -5,11 +5,12 @@ from typing import Any
 import equinox as eqx
 import numpy as np
 
-from ..._checks import Real, as_real, is_known, with_nan
+from ..._checks import CodedResult, Real, as_real, with_nan
 from ...bristles import AbstractBristle, pulling_text
 from ...model import Coefficients, friction
 from ...profiles import AbstractProfile
 from ...supports import Spring
+from ...wiggly import Status
 from ..common import aligned
 from .slide_friction import SteadySlide, steady_slide
 
@@ -17,13 +18,21 @@ _MEANS = ("eps/m", "mean +/N", "gap", "mean -/N", "gap", "ratio", "gap")
 _HEADER = (*_MEANS, "peak +/N", "peak -/N", "status")
 
 
-class DesignCheck(eqx.Module):
-    """The limit `law`, the steady `slide` at every eps, and the gaps between them."""
+class DesignCheck(CodedResult, eqx.Module):
+    """The limit `law`, the steady `slide` at every eps, and the gaps between them.
+
+    `ok`, `status` and `message` are those of the slides.
+    """
 
     law: Coefficients
     slide: SteadySlide
     gamma: Real
     rate: Real
+    _outcomes = Status
+
+    @property
+    def _codes(self) -> Any:
+        return self.slide._codes
 
     @property
     def ratio(self) -> Real:
@@ -69,9 +78,7 @@ class DesignCheck(eqx.Module):
             worst.name.lower(),
         )
 
-    def __repr__(self) -> str:
-        if not is_known(self):
-            return super().__repr__()
+    def _in_words(self) -> str:
         if shape := np.shape(self.law.rho_plus):
             return f"DesignCheck(batch {shape}: {self.slide!r})"
         told = f"gamma = {float(self.gamma):.4g}, rate = {float(self.rate):.4g} N/s"

@@ -1,5 +1,6 @@
 """The friction that a steady slide shows at a given eps, gamma and rate."""
 
+import dataclasses
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -7,14 +8,11 @@ import jax
 import jax.numpy as jnp
 
 from ..._checks import (
+    CodedResult,
     Real,
     as_real,
     as_text,
     checked,
-    counted,
-    flags,
-    is_known,
-    outcomes,
     require,
     require_numbers,
     require_real,
@@ -23,6 +21,7 @@ from ..._checks import (
 )
 from ..._compile import Program, padded_size
 from ...bristles import AbstractBristle
+from ...io import CODES, LEAF, record
 from ...model import potential, require_admissible, require_reach
 from ...profiles import AbstractProfile
 from ...supports import Spring
@@ -41,12 +40,13 @@ _OPEN = 1e-7  # of log D over a period: mean forces right to that
 _ADDED = 1e-5  # of the force: more than that by a viscosity that floats resolve is told
 
 
-class SteadySlide(eqx.Module):
+class SteadySlide(CodedResult, eqx.Module):
     """Forces in the spring while a tip slides steadily, of the shape of `eps`.
 
     `mean_plus`, `peak_plus` (N, > 0): mean over time, and largest, of `l - Phi'(z)` in a
     slide to the right; `mean_minus`, `peak_minus` (N, < 0) to the left. All tend to
-    rho_plus and rho_minus with eps. `code_plus`, `code_minus`: a `Status` as an integer.
+    rho_plus and rho_minus with eps. `code_plus`, `code_minus`: a `Status` as an integer,
+    `status` the worse of the two.
     """
 
     eps: Real
@@ -56,6 +56,7 @@ class SteadySlide(eqx.Module):
     peak_minus: Real
     code_plus: Real
     code_minus: Real
+    _outcomes = Status
 
     @property
     def ratio(self) -> Real:
@@ -63,25 +64,23 @@ class SteadySlide(eqx.Module):
         return -self.mean_plus / self.mean_minus
 
     @property
-    def ok(self) -> Any:
-        """Whether the numbers can be trusted: one bool, or one an eps."""
-        return flags((self.code_plus == 0) & (self.code_minus == 0))
-
-    @property
-    def status(self) -> Any:
-        """The worse `Status` of the two slides, an array of them; integers where traced."""
-        return outcomes(Status, self._worse)
-
-    @property
-    def _worse(self) -> Any:
+    def _codes(self) -> Any:
         return jnp.maximum(self.code_plus, self.code_minus)
 
-    def __repr__(self) -> str:
-        if not is_known(self):
-            return super().__repr__()
+    def _in_words(self) -> str:
         names = ("eps", "mean_plus", "mean_minus", "peak_plus", "peak_minus")
         known = ", ".join(f"{name}={as_text(getattr(self, name))}" for name in names)
-        return f"SteadySlide({known}, status={counted(Status, self._worse)})"
+        return f"SteadySlide({known}, status={self._ended})"
+
+
+SLIDE = record(
+    SteadySlide,
+    [field.name for field in dataclasses.fields(SteadySlide)],
+    LEAF,
+    code_plus=CODES,
+    code_minus=CODES,
+)
+"""A slide in a document."""
 
 
 class _Sides(NamedTuple):

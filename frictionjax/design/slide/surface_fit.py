@@ -8,13 +8,13 @@ import numpy as np
 
 from ..._checks import as_text, require_real, with_nan
 from ...bristles import AbstractBristle
-from ...io import written
+from ...io import ARRAY, AS_IS, TOLD, Document, by_name, nested, several
 from ...profiles import Fourier
 from ...supports import Spring
-from ..common import Target, require_targets
+from ..common import DesignResult, Target, require_targets
 from ..surface import MET, ProfileFit, ProfileStatus, fit_profile
-from .json import dump_profile, profile_fields
 from .slide_friction import (
+    SLIDE,
     SteadySlide,
     forces_of,
     require_force,
@@ -30,7 +30,7 @@ _DESIGNED = (*MET, ProfileStatus.CONTRADICTORY)
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class SlideProfileFit:
+class SlideProfileFit(DesignResult):
     """A surface, least bent for its coefficients, with wanted steady slides at `eps`.
 
     `targets`, `achieved` (targets, 2): forces to the right and to the left in N, of the
@@ -51,6 +51,23 @@ class SlideProfileFit:
     steps: int
     status: ProfileStatus
 
+    _good = MET
+    document = Document(
+        "frictionjax.SlideProfileFit",
+        {
+            "message": TOLD,
+            "force": AS_IS,
+            "targets": ARRAY,
+            "achieved": ARRAY,
+            "history": ARRAY,
+            "status": by_name(ProfileStatus),
+            "steps": AS_IS,
+            "slides": several(SLIDE),
+            "fit": nested(ProfileFit),
+            "limit": nested(ProfileFit),
+        },
+    )
+
     @property
     def profile(self) -> Fourier:
         """The surface."""
@@ -60,11 +77,6 @@ class SlideProfileFit:
     def bristles(self) -> tuple[AbstractBristle | None, ...]:
         """The bristles on it, one for each target."""
         return self.fit.bristles
-
-    @property
-    def success(self) -> bool:
-        """Whether the slides show the forces asked for."""
-        return self.status in MET
 
     @property
     def residuals(self) -> np.ndarray:
@@ -84,19 +96,6 @@ class SlideProfileFit:
         if self.status in (ProfileStatus.NO_SLIDE, ProfileStatus.NOT_SETTLED):
             return f"{asked}: {self.status.message} in {self.steps} designs; {shown}"
         return f"{asked}: not reached; {shown}, in the limit: {self.fit.message}"
-
-    def to_json(self, path: Any = None) -> str:
-        """Everything but the iterates' shapes as JSON; written to `path` where given."""
-        return written(dump_profile(self), path)
-
-    @classmethod
-    def from_json(cls, source: Any) -> "SlideProfileFit":
-        """The result again, from the text or the path of its JSON.
-
-        Bristles given as functions are None, the iterates' shapes empty. Raises
-        `ValueError` for what is no such JSON.
-        """
-        return cls(**profile_fields(source))
 
     def plot(self):
         """The surface, beside the limit's, and how it was found."""

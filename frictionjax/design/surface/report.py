@@ -23,7 +23,7 @@ from .reachable import (
     slopes_asked,
 )
 from .result import ProfileFit
-from .status import MET, ProfileStatus
+from .status import ProfileStatus
 
 _SURE = 0.99  # of random targets that agree with one surface have a smaller chi2
 _TIE = 1e-9  # relative difference of losses that counts as none
@@ -67,9 +67,8 @@ def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
         chi2=float(losses[best]),
         degrees_of_freedom=_freedom(problem),
         misfit=float(np.sqrt(losses[best] / wanted.size)),
-        success=status in MET,
         status=status,
-        message=_message(problem, runs, best, status, reached, losses[best]),
+        why=_message(problem, runs, best, status, reached, losses[best]),
         starts=starts,
         history=history,
         identify=partial(identifiability, task.law, cos, sin, free),

@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import jax
@@ -10,18 +10,48 @@ import numpy as np
 
 from ..._checks import as_text, require_real, require_whole
 from ...bristles import AbstractBristle, pulling_text
-from ...io import written
+from ...io import ARRAY, AS_IS, NUMBER, PART, TOLD, Document, Form, by_name, record, several
 from ...model import Coefficients
 from ...profiles import Fourier
+from ..common import DesignResult
 from .barrier import heights_of_waves, waves_of_heights
 from .history import History, Start
-from .json import profile_from_json, profile_to_json
 from .open_directions import CoefficientIdentifiability, members
-from .status import ProfileStatus
+from .status import MET, ProfileStatus
+
+_SHAPES = ("cos", "sin", "free")  # of iterates: most of the numbers, left out
+
+
+def _without_shapes(**columns: Any) -> History:
+    empty = np.zeros((*columns["loss"].shape, 0))
+    return History(**columns, **dict.fromkeys(_SHAPES, empty))
+
+
+_COEFFICIENTS = record(
+    Coefficients,
+    [field.name for field in dataclasses.fields(Coefficients)],
+    NUMBER._replace(write=float),
+)
+_START = record(
+    Start,
+    Start._fields,
+    NUMBER,
+    status=by_name(ProfileStatus),
+    free=Form(read=tuple),
+)
+_HISTORY = record(
+    _without_shapes, [name for name in History._fields if name not in _SHAPES], ARRAY
+)
+_SEEN = record(
+    partial(partial, CoefficientIdentifiability),
+    CoefficientIdentifiability._fields,
+    ARRAY,
+    rank=AS_IS,
+)
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class ProfileFit:
+class ProfileFit(DesignResult):
     """Result of `fit_profile`.
 
     `profile`, `bristles`: the best surface and the bristles on it, one for each target.
@@ -32,7 +62,7 @@ class ProfileFit:
     `chi2`: weighted squares, in units of uncertainties where given, else of the targets;
     `degrees_of_freedom` of them, and `misfit` = sqrt(chi2/residuals). `starts`: best first.
     `free`: value of each free parameter by name. `bounds`: those on the surface.
-    `identify`: makes `identifiability`, when that is asked for.
+    `identify`: makes `identifiability`, when that is asked for. `why`: the `message`.
     """
 
     profile: Fourier
@@ -46,14 +76,41 @@ class ProfileFit:
     chi2: float
     degrees_of_freedom: int
     misfit: float
-    success: bool
     status: ProfileStatus
-    message: str
+    why: str
     starts: tuple[Start, ...]
     history: History | None
     identify: Callable[[], CoefficientIdentifiability]
     free: dict[str, float]
     bounds: dict[str, float | None]
+
+    _good = MET
+    document = Document(
+        "frictionjax.ProfileFit",
+        {"status": by_name(ProfileStatus)}
+        | dict.fromkeys(("bending_energy", "bending_bound", "largest_error"), NUMBER)
+        | dict.fromkeys(("chi2", "degrees_of_freedom", "misfit"), NUMBER)
+        | {
+            "success": TOLD,
+            "message": AS_IS._replace(argument="why"),
+            "free": AS_IS,
+            "bounds": AS_IS,
+            "profile": record(Fourier, ("cos", "sin"), ARRAY),
+            "bristles": several(PART),
+            "coefficients": several(_COEFFICIENTS),
+            "targets": ARRAY,
+            "residuals": ARRAY,
+            "starts": several(_START),
+            "history": _HISTORY.or_else(lambda entries: None),
+            "identifiability": _SEEN._replace(argument="identify"),
+        },
+        infinite=False,
+    )
+
+    @property
+    def message(self) -> str:
+        """Why, for people."""
+        return self.why
 
     @cached_property
     def identifiability(self) -> CoefficientIdentifiability:
@@ -104,19 +161,6 @@ class ProfileFit:
         from ...plot import draw_profile_fit
 
         return draw_profile_fit(self)
-
-    def to_json(self, path: Any = None) -> str:
-        """Everything but the iterates' shapes as JSON; written to `path` where given."""
-        return written(profile_to_json(self), path)
-
-    @classmethod
-    def from_json(cls, source: Any) -> "ProfileFit":
-        """The result again, from the text or the path of its JSON.
-
-        Bristles given as functions are None, the iterates' shapes empty. Raises
-        `ValueError` for what is no such JSON.
-        """
-        return cls(**profile_from_json(source))
 
     def __repr__(self) -> str:
         rows = [

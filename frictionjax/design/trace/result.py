@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...io import written
+from ...io import ARRAY, AS_IS, BOOLS, INTEGERS, NUMBER, Document, Form, by_name, record
 from ...profiles import Fourier
+from ..common import DesignResult
 from ..measured_trace import Trace
-from .json import trace_from_json, trace_to_json
 from .status import TraceStatus
 from .weights import TraceIdentifiability
 
@@ -31,8 +31,22 @@ class TraceHistory(NamedTuple):
     blur: np.ndarray
 
 
+def _trace_entry(trace: Trace) -> dict[str, Any]:
+    known = {"ts": trace.ts, trace.quantity: trace.values}
+    given = trace.uncertainty is not None
+    return known | ({"uncertainty": trace.uncertainty} if given else {})
+
+
+_COUNTS = dict.fromkeys(("used", "slipping", "disputed"), INTEGERS)
+_HISTORY = record(TraceHistory, TraceHistory._fields, ARRAY, **_COUNTS)
+_FLAGS = dict.fromkeys(("determined", "visited"), BOOLS)
+_SEEN = record(
+    TraceIdentifiability, TraceIdentifiability._fields, ARRAY, rank=AS_IS, **_FLAGS
+)
+
+
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class TraceFit:
+class TraceFit(DesignResult):
     """Result of `fit_trace`.
 
     `profile`: the surface found. `trace`: what was asked for, at `eps` and `gamma`.
@@ -65,10 +79,21 @@ class TraceFit:
     identifiability: TraceIdentifiability
     odd: str = ""
 
-    @property
-    def success(self) -> bool:
-        """Whether the surface explains the trace, and the trace determines some of it."""
-        return self.status == TraceStatus.FITTED
+    document = Document(
+        "frictionjax.TraceFit",
+        {"status": by_name(TraceStatus), "odd": AS_IS.or_else(lambda entries: "")}
+        | dict.fromkeys(("eps", "gamma", "disputed"), NUMBER)
+        | dict.fromkeys(("chi2", "degrees_of_freedom"), NUMBER)
+        | dict.fromkeys(("achieved", "residuals", "deviation", "tips"), ARRAY)
+        | {
+            "used": BOOLS,
+            "slipping": BOOLS,
+            "profile": record(Fourier, ("cos", "sin"), ARRAY),
+            "trace": Form(_trace_entry, lambda entry: Trace(**entry)),
+            "history": _HISTORY,
+            "identifiability": _SEEN,
+        },
+    )
 
     @property
     def message(self) -> str:
@@ -103,20 +128,6 @@ class TraceFit:
         from ...plot import draw_trace_fit
 
         return draw_trace_fit(self, truth)
-
-    def to_json(self, path: Any = None) -> str:
-        """Everything as JSON; written to `path` where given."""
-        return written(trace_to_json(self), path)
-
-    @classmethod
-    def from_json(cls, source: Any) -> "TraceFit":
-        """The result again, from the text or the path of its JSON.
-
-        Raises `ValueError` for what is no such JSON.
-        """
-        known = trace_from_json(source)
-        known["history"] = TraceHistory(**known["history"])
-        return cls(**known)
 
     def __repr__(self) -> str:
         used = f"{int(np.sum(self.used))} of {self.used.size} samples used"

@@ -1,0 +1,31 @@
+"""What inverse designs return."""
+
+from typing import Any, ClassVar, Self
+
+from ..._checks import Result
+from ...io import Document, written
+
+
+class DesignResult(Result):
+    """Base of results of inverse designs; `document` declares their JSON."""
+
+    __slots__ = ()
+    document: ClassVar[Document]
+
+    @property
+    def success(self) -> Any:
+        """Whether it is what was asked for: one bool, or one a target; as `ok`."""
+        return self.ok
+
+    def to_json(self, path: Any = None) -> str:
+        """Everything as JSON, but iterates' shapes; written to `path` where given."""
+        return written(self.document.text(self), path)
+
+    @classmethod
+    def from_json(cls, source: Any) -> Self:
+        """The result again, from the text or the path of its JSON.
+
+        A bristle or a surface given as functions is None, iterates' shapes are empty.
+        Raises `ValueError` for what is no such JSON.
+        """
+        return cls(**cls.document.parse(source))
