@@ -136,5 +136,11 @@ class Document(NamedTuple):
         return _read(self.forms, checked_document(entries, self.kind, needed))
 
     def parse(self, source: Any) -> dict[str, Any]:
-        """`fields` of a JSON text, or of the file at a path; raises `ValueError`."""
-        return self.fields(read_document(source))
+        """`fields` of a JSON text, or of the file at a path.
+
+        Raises `ValueError` for what is no such JSON, inside of entries too.
+        """
+        try:
+            return self.fields(read_document(source))
+        except (LookupError, TypeError) as problem:
+            raise ValueError(f"source: not a whole fit ({problem!r})") from None

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..._checks import CodedResult, Real, as_text, is_concrete, require_whole
+from ..._checks import CodedResult, Real, as_text, is_concrete, is_known, require_whole
 from ..._compile import Program
 from ...bristles import AbstractBristle, pulling_text
 from ...io import AS_IS, CODES, LEAF, PART, TOLD, Document, record
@@ -96,10 +96,12 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
 
     @property
     def message(self) -> Any:
-        """Why, for people: one text, or a list of one a target."""
+        """Why, for people: one text, or a list of one a target; empty where traced."""
+        if not is_known(self.code):
+            return ""
         if self.code.ndim == 0:
             return _message(self)
-        return [_message(self[i]) for i in range(self.code.shape[0])]
+        return [self[i].message for i in range(self.code.shape[0])]
 
     def __getitem__(self, index: int) -> "AngleFit":
         """One target's fit out of a batch."""

@@ -27,6 +27,11 @@ def _without_shapes(**columns: Any) -> History:
     return History(**columns, **dict.fromkeys(_SHAPES, empty))
 
 
+def _as_found(**seen: Any) -> Callable[[], CoefficientIdentifiability]:
+    """What `identify` is of a fit that has been asked before."""
+    return partial(CoefficientIdentifiability, **seen)
+
+
 _COEFFICIENTS = record(
     Coefficients,
     [field.name for field in dataclasses.fields(Coefficients)],
@@ -43,7 +48,7 @@ _HISTORY = record(
     _without_shapes, [name for name in History._fields if name not in _SHAPES], ARRAY
 )
 _SEEN = record(
-    partial(partial, CoefficientIdentifiability),
+    _as_found,
     CoefficientIdentifiability._fields,
     ARRAY,
     rank=AS_IS,
