@@ -31,9 +31,6 @@ from .parts import mark_checked as mark_checked
 from .results import CodedResult as CodedResult
 from .results import Result as Result
 from .status_enums import Outcome as Outcome
-from .status_enums import counted as counted
-from .status_enums import flags as flags
-from .status_enums import outcomes as outcomes
 from .surroundings import SurroundingsError as SurroundingsError
 from .surroundings import is_debugged as is_debugged
 from .surroundings import with_nan as with_nan

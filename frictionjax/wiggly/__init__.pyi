@@ -15,7 +15,6 @@ from .equation import pull_of as pull_of
 from .equation import require_accuracy as require_accuracy
 from .equation import status_of as status_of
 from .equation import warn_of_failed as warn_of_failed
-from .plan import TABLEAU as TABLEAU
 from .predicted_work import Workload as Workload
 from .predicted_work import workload as workload
 from .rosenbrock import RODAS4P2 as RODAS4P2
