@@ -25,13 +25,13 @@ jax.config.update("jax_enable_x64", True)
 
 # Files that take longest, first: the last one under way then leaves no worker idle.
 _LONGEST = (
-    "wiggly/sequential/test_gradients",
-    "wiggly/sums/test_strip_excess",
-    "wiggly/sums/test_sampled_slides",
+    "wiggly/sequential/test_sequential_gradients",
+    "wiggly/sums/test_sums_strip_excess",
+    "wiggly/sums/test_sums_of_sampled_slides",
     "design/trace/test_fit",
     "wiggly/test_guarantees",
     "cost/test_measurement",
-    "wiggly/sums/test_few_wells",
+    "wiggly/sums/test_sums_of_few_wells",
     "sweeps/test_sweep_cells",
     "design/surface/test_fit",
     "certificate/test_certification",

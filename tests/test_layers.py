@@ -1,6 +1,8 @@
 """Rooms and floors of the library: imports go down, and through the doors of packages."""
 
 import ast
+import re
+import sys
 import tomllib
 from collections import Counter
 from graphlib import TopologicalSorter
@@ -11,6 +13,8 @@ import pytest
 import frictionjax
 
 ROOT = Path(frictionjax.__file__).parent
+TESTS = Path(__file__).parent
+HOME = TESTS.parent
 
 # Of every package that holds packages: its floors from the bottom. Units on one floor know
 # nothing of each other.
@@ -217,11 +221,65 @@ def test_imports_never_loop():
         assert list(TopologicalSorter(units).static_order())
 
 
+def in_pyproject():
+    with (HOME / "pyproject.toml").open("rb") as file:
+        return tomllib.load(file)
+
+
+def test_packages_that_the_library_imports_are_declared():
+    """Not only what they need themselves, which may change with their next release."""
+    project = in_pyproject()["project"]
+    extras = project["optional-dependencies"]
+    declared = {
+        re.split(r"[^\w-]", requirement)[0].replace("-", "_")
+        for requirement in [*project["dependencies"], *extras["instruments"]]
+    }
+    needed = set().union(*(imported(path)[1] for path in FILES))
+    assert needed - set(sys.stdlib_module_names) <= declared
+
+
+# Tests of no one package: of the repository, of scenes that are hard for the whole library,
+# of what people hand over, and of what every solution satisfies.
+CUTTING_ACROSS = {
+    "test_layers",
+    "test_notebooks",
+    "_checks/test_arrays",
+    "_checks/test_inside_jit",
+    "_checks/test_precision",
+    "_compile/test_nothing_unasked",
+    "wiggly/test_guarantees",
+    "wiggly/test_random_scenes",
+}
+TEST_FILES = [path.relative_to(TESTS) for path in sorted(TESTS.rglob("test_*.py"))]
+
+
+def subjects(folder):
+    """What tests in a folder may be of: files and packages of that package, and itself."""
+    package = ROOT / folder
+    assert (package / "__init__.py").exists(), f"no package {folder}"
+    below = {path.parent.name for path in package.glob("*/__init__.py")}
+    return {path.stem for path in package.glob("*.py")} | below | {package.name}
+
+
+@pytest.mark.parametrize("path", TEST_FILES, ids=str)
+def test_tests_mirror_packages(path):
+    """`test_x.py` and `test_x_of_some_kind.py` test the file or the package `x` there."""
+    if path.parent.name != "hard" and str(path.with_suffix("")) not in CUTTING_ACROSS:
+        name = path.stem.removeprefix("test_")
+        starts = {name} | {name[: m.start()] for m in re.finditer("_", name)}
+        assert starts & subjects(path.parent), f"{path} tests no file of its package"
+
+
+def test_the_longest_tests_are_named_as_they_are():
+    for node in ast.parse((TESTS / "conftest.py").read_text()).body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "_LONGEST":
+            names = set(ast.literal_eval(node.value))
+    assert names <= {str(path.with_suffix("")) for path in TEST_FILES}
+
+
 def test_types_of_every_benchmark_are_checked():
     """Scripts that are not listed would be taken for code without a body."""
-    home = Path(__file__).parent.parent
-    with (home / "pyproject.toml").open("rb") as file:
-        settings = tomllib.load(file)["tool"]["mypy"]
+    settings = in_pyproject()["tool"]["mypy"]
     (scripts,) = settings["overrides"]
     assert settings["check_untyped_defs"]
-    assert scripts["module"] == sorted(p.stem for p in (home / "benchmarks").glob("*.py"))
+    assert scripts["module"] == sorted(p.stem for p in (HOME / "benchmarks").glob("*.py"))
