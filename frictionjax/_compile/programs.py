@@ -48,7 +48,7 @@ class Program:
     def _compiled(self, structure: Any, rest: tuple) -> Callable:
         fn = self._fn
 
-        def run(numbers):
+        def run(numbers: tuple) -> Any:
             leaves = list(numbers)
             for index, leaf in rest:
                 leaves.insert(index, leaf)

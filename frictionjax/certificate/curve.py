@@ -6,6 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 
 from .._checks import Real
 from ..loads import AbstractLoad
@@ -82,7 +83,7 @@ class Force(eqx.Module):
 def _sample(force: Force, t: Real, z: Real) -> CurveSamples:
     well, inside = force.potential.tip(z, force.eps)
 
-    def along(y):
+    def along(y: Array) -> tuple[Array, Array]:
         value, slope = force.with_slope(t, well, y)
         return slope, value
 
@@ -93,7 +94,9 @@ def _sample(force: Force, t: Real, z: Real) -> CurveSamples:
     return CurveSamples(well, inside, value, slope, bend, force.load(t), wiggle)
 
 
-def _hermite(s, chord, first, last):
+def _hermite(
+    s: Column, chord: Column, first: Column, last: Column
+) -> tuple[Column, Column]:
     """Rise and slope of the cubic on [0, 1] with the given end slopes, at the share s."""
     a, b = first - chord, last - chord
     rise = s * chord + s * (1 - s) * ((1 - s) * a - s * b)
@@ -106,7 +109,7 @@ def _along(force: Force, viscosity, ends, first, last):
     step = t1 - t0
     chord = (right.well - left.well) + (right.inside - left.inside)
 
-    def node(s):
+    def node(s: Array) -> tuple[Array, Array, Array]:
         rise, speed = _hermite(s, chord, first, last)
         y = left.inside + rise
         found = force(t0 + s * step, left.well, y)
@@ -188,5 +191,5 @@ def along_curve(force: Force, viscosity: float, ts, z) -> tuple[CurveSamples, In
     return CurveSamples(*_join(samples)), Intervals(*_join(between))
 
 
-def _join(pieces):
+def _join(pieces: list[tuple]) -> list[np.ndarray]:
     return [np.concatenate(parts) for parts in zip(*pieces, strict=True)]

@@ -6,6 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 
 from ..numerics import Extrema, periodic_extrema
 from .curve import CurveSamples, Force, Intervals
@@ -54,7 +55,7 @@ def over_windows(operation: np.ufunc, values: np.ndarray, first, last) -> np.nda
 
 @eqx.filter_jit
 def _extrema(force: Force) -> Extrema:
-    def wiggle(y):
+    def wiggle(y: Array) -> Array:
         return force.potential.tip_force(y, force.eps)[0]
 
     return periodic_extrema(wiggle, force.potential.points)

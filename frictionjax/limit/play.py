@@ -73,7 +73,7 @@ def play_step(support: AbstractSupport, found: Coefficients, z: Real, load: Real
     return jnp.clip(z, lower, upper)
 
 
-def _then(first, second):
+def _then(first: tuple[Array, Array], second: tuple[Array, Array]) -> tuple[Array, Array]:
     """The clip that two clips make one after the other; associative."""
     (a, b), (lower, upper) = first, second
     return jnp.clip(a, lower, upper), jnp.clip(b, lower, upper)

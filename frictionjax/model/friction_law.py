@@ -81,24 +81,31 @@ def dual_dissipation(potential: AbstractPotential, xi: Real) -> Real:
     if isinstance(potential, BristlePotential):
         a, alpha, profile = potential.a(), potential.alpha(), potential.profile
 
-        def primitive(y):
+        def primitive(y: Real) -> Real:
             w = profile(y)
             return xi * (y + a * w) - alpha * w
     else:
 
-        def primitive(y):
+        def primitive(y: Real) -> Real:
             return xi * y - potential.W(y)
 
     slope = jax.grad(primitive)
     edges = _with_inflections(slope, 2 * potential.points)
     values, slopes = jax.vmap(jax.value_and_grad(primitive))(edges)
 
-    def variation(left, right, start, end, slope_start, slope_end):
+    def variation(
+        left: Array,
+        right: Array,
+        start: Array,
+        end: Array,
+        slope_start: Array,
+        slope_end: Array,
+    ) -> Array:
         turns = slope_start * slope_end < 0
         share = slope_start / jnp.where(turns, slope_start - slope_end, 1.0)
         secant = left + (right - left) * jnp.clip(share, 0.0, 1.0)
 
-        def newton(_, y):
+        def newton(_: Any, y: Real) -> Real:
             value, bend = jax.jvp(slope, (y,), (jnp.ones_like(y),))
             return jnp.clip(y - value / jnp.where(bend == 0, 1.0, bend), left, right)
 

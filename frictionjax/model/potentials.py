@@ -149,7 +149,7 @@ class BristlePotential(AbstractPotential):
         return climb * slope / stretch, stretch
 
     def well_coordinate(self, Y: Real, eps: Real) -> Real:
-        def state(y):
+        def state(y: Real) -> Real:
             return y + increment(self.bristle.offset, eps * self.profile(y)) / eps
 
         return _invert(state, Y)

@@ -5,6 +5,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+from jaxtyping import Array
 
 from .._checks import Real
 
@@ -27,7 +28,7 @@ def find_root(fn: Callable[[Real], Real], lower: Any, upper: Any) -> Any:
     traced in half the time of a `vmap` over it. Roots that are found stay as they are.
     """
 
-    def body(state):
+    def body(state: tuple) -> tuple:
         low, high, x, last, live, count = state
         scale = jnp.maximum(jnp.abs(lower), jnp.abs(upper))
         value, slope = jax.jvp(fn, (x,), (jnp.ones_like(x),))
@@ -52,7 +53,7 @@ def find_root(fn: Callable[[Real], Real], lower: Any, upper: Any) -> Any:
         done = (left <= _ROUNDING) | (value == 0) | jnp.isnan(value) | (high <= low)
         return low, high, jnp.where(live, new, x), jnp.abs(new - x), live & ~done, count + 1
 
-    def go_on(state):
+    def go_on(state: tuple) -> Array:
         *_, live, count = state
         return jnp.any(live) & (count < _MAX_ITERATIONS)
 
@@ -89,7 +90,7 @@ def increasing_root(fn: Callable[[Real], Real], guess: Real) -> Real:
     """
     guess = jax.lax.stop_gradient(jnp.asarray(guess))
 
-    def holds(width):
+    def holds(width: Array) -> Array:
         return (fn(guess - width) <= 0) & (fn(guess + width) >= 0)
 
     value, slope = jax.jvp(fn, (guess,), (jnp.ones_like(guess),))

@@ -2,10 +2,12 @@
 
 import math
 from functools import partial
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
+from jaxtyping import Array
 
 from .._checks import Real
 
@@ -57,7 +59,9 @@ def sin_cos(y: Real) -> tuple[Real, Real]:
 
 
 @sin_cos.defjvp
-def _sin_cos_jvp(primals, tangents):
+def _sin_cos_jvp(
+    primals: tuple, tangents: tuple
+) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
     sine, cosine = sin_cos(primals[0])
     turn = 2 * jnp.pi * tangents[0]
     return (sine, cosine), (cosine * turn, -sine * turn)
@@ -102,7 +106,7 @@ def _next_harmonic(first: tuple, pair: tuple, total: Real, cos: Real, sin: Real)
     return (sine, cosine), total + cos * cosine + sin * sine
 
 
-def _fourier_sum_jvp(primals, tangents):
+def _fourier_sum_jvp(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
     cos, sin, y = primals
     cos_dot, sin_dot, y_dot = tangents
     total = fourier_sum(cos, sin, y)
@@ -120,7 +124,7 @@ def _is_zero(tangent) -> bool:
     return isinstance(tangent, SymbolicZero)
 
 
-def _filled(tangent):
+def _filled(tangent: Any) -> Array:
     return jnp.zeros(tangent.shape) if _is_zero(tangent) else tangent
 
 

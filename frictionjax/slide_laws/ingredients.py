@@ -7,6 +7,7 @@ import jax
 import numpy as np
 from jaxtyping import Array, Float
 
+from .._checks import Real
 from .._compile import Program, in_chunks
 from ..model import (
     CHUNK,
@@ -90,7 +91,7 @@ def _forces(potential: AbstractPotential, eps: Float[Array, ""], y: Float[Array,
     else:
         state, force = y, jax.vmap(slope_of(potential._leading))(y)
 
-    def change(size):
+    def change(size: Real) -> Array:
         whole = jax.vmap(lambda place: potential.tip_force(place, size)[0])(y)
         return (whole - force) / size
 

@@ -1,6 +1,6 @@
 """Cells of a sweep: a wiggly trajectory watched beside its limit, in vmapped blocks."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -107,7 +107,7 @@ def _cell(scene: Scene, eps: Real, gamma: Real, ts, accuracy, solver, balanced) 
 def run_block(scene, eps, gamma, ts, accuracy, solver, balanced) -> Cell:
     """One block of lanes; the only program that a sweep compiles for its trajectories."""
 
-    def lane(eps, gamma):
+    def lane(eps: Real, gamma: Real) -> Any:
         return _cell(scene, eps, gamma, ts, accuracy, solver, balanced)
 
     return jax.vmap(lane)(eps, gamma)

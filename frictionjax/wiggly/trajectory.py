@@ -10,6 +10,7 @@ from jaxtyping import Array, Float, Int
 
 from .._checks import (
     CodedResult,
+    Real,
     as_real,
     is_concrete,
     require,
@@ -69,7 +70,17 @@ class Solution(CodedResult, eqx.Module):
 
 
 @eqx.filter_jit
-def _solve(scene, eps, gamma, ts, accuracy, solver, balanced, max_steps, adjoint):
+def _solve(
+    scene: Scene,
+    eps: Real,
+    gamma: Real,
+    ts: Array,
+    accuracy: Any,
+    solver: Any,
+    balanced: bool,
+    max_steps: Any,
+    adjoint: Any,
+) -> Any:
     plan = plan_steps(scene, eps, gamma, accuracy)
     found = integrate(
         scene,

@@ -1,7 +1,7 @@
 """Where a free number is admissible, and all turns of a quantity over it."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float, Int
 from ..._checks import Real
 from ...bristles import AbstractBristle
 from ...numerics import find_root, slope_of
-from ..common import FreeParameter, Slopes, on_slopes, quantity_of, side_of
+from ..common import FreeParameter, OnSlopes, Slopes, on_slopes, quantity_of, side_of
 
 MOST_INTERVALS = 4  # intervals of admissible numbers: slanted springs have three
 _HALVES = slice(MOST_INTERVALS), slice(MOST_INTERVALS, 2 * MOST_INTERVALS)
@@ -67,7 +67,7 @@ def survey(
     """
 
     @jax.jit  # traced once
-    def law(x):
+    def law(x: Real) -> tuple[Real, Real, OnSlopes]:
         part = free.at(bristle, x)
         found = on_slopes(part, slopes)
         return quantity_of(found, which), side_of(part, found), found
@@ -95,7 +95,7 @@ def _pieces(
     now = jnp.where(jnp.isfinite(now), jnp.clip(now, low, high), low)
     nodes = jnp.sort(jnp.concatenate([grid, _narrow(law, grid), now[None]]))
 
-    def side(x):
+    def side(x: Array) -> Array:
         return jax.vmap(law)(x)[1]
 
     sides = side(nodes)
@@ -125,10 +125,10 @@ def _narrow(law: Callable, grid: Float[Array, " n"]) -> Float[Array, " few"]:
     for. Where there is none, a place that does no harm.
     """
 
-    def pressing(x):
+    def pressing(x: Array) -> OnSlopes:
         return jax.vmap(jax.vmap(law))(x)[2]
 
-    def deficits(x, side):
+    def deficits(x: Array, side: Array) -> Array:
         """alpha, turned so that it rises to 0, and the margin, at places in two columns."""
         found = pressing(x)
         both = jnp.stack([-side * found.alpha[:, 0], found.margin[:, 1]], axis=1)
@@ -143,7 +143,7 @@ def _narrow(law: Callable, grid: Float[Array, " n"]) -> Float[Array, " few"]:
     # alpha itself, not its size: the place wanted is where it is largest beyond 0.
     side = jnp.tile(sides[at[:, 0]], 2)
 
-    def third(_, ends):
+    def third(_: Any, ends: tuple[Array, Array]) -> tuple[Array, Array]:
         low, high = ends
         left, right = low + (high - low) / 3, high - (high - low) / 3
         both = deficits(jnp.concatenate([left, right]), side)
@@ -161,7 +161,7 @@ def _edges(side: Callable, inside: Array, outside: Array) -> Array:
     """
     wanted = side(inside)
 
-    def halve(_, ends):
+    def halve(_: Any, ends: tuple[Array, Array]) -> tuple[Array, Array]:
         good, bad = ends
         middle = 0.5 * (good + bad)
         holds = side(middle) == wanted

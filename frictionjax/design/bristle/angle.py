@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 
 from ..._checks import (
     Real,
@@ -54,7 +55,7 @@ def _survey(free: FreeParameter, bristle, slopes, which, bounds, pulling):
     low, high = free.interval(bristle, bounds)
     value = jax.vmap(jax.vmap(lambda x: free.value(bristle, x)))
 
-    def ranges(seen):
+    def ranges(seen: Admissible) -> _Range:
         admissible = jnp.sort(value(seen.ends), axis=1)
         return _Range(seen, admissible, jnp.stack([seen.low, seen.high], axis=1))
 
@@ -90,7 +91,7 @@ def _in_sizes(target: Real, fit: Any) -> Any:
     padded = jnp.pad(targets, (0, -count % size), mode="edge")
     parts = [fit(padded[at : at + size]) for at in range(0, count, size)]
 
-    def joined(*leaves):
+    def joined(*leaves: Array) -> Array:
         whole = jnp.concatenate(leaves)[:count] if len(leaves) > 1 else leaves[0][:count]
         return whole if target.ndim else whole[0]
 

@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float, Int
 from ..._checks import Real
 from ...bristles import AbstractBristle
 from ...numerics import find_root
-from ..common import FreeParameter, Slopes, on_slopes, quantity_of
+from ..common import FreeParameter, OnSlopes, Slopes, on_slopes, quantity_of
 from .admissible import Admissible, first_places
 from .status import FitStatus
 
@@ -87,10 +87,10 @@ def solve_targets(
     aims = jax.lax.stop_gradient(targets)
     known = jax.vmap(lambda aim: _brackets(found, aim, now))(aims)
 
-    def law(x):
+    def law(x: Real) -> OnSlopes:
         return on_slopes(free.at(bristle, x), slopes)
 
-    def quantity(x):
+    def quantity(x: Real) -> Real:
         return quantity_of(law(x), which)
 
     roots = _polished(jax.vmap(jax.vmap(quantity)), targets, known)
@@ -186,7 +186,7 @@ def _polished(quantity: Callable, targets: Array, known: RootBrackets) -> Array:
     lower = jnp.where(known.simple, known.lower, idle)
     upper = jnp.where(known.simple, known.upper, idle)
 
-    def fn(x):
+    def fn(x: Array) -> Array:
         gap = side * (quantity(jnp.where(known.simple, x, idle)) - targets[:, None])
         return jnp.where(known.simple, gap, x - idle)
 

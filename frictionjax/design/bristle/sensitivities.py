@@ -13,6 +13,7 @@ from ...profiles import AbstractProfile
 from ..common import (
     QUANTITIES,
     FreeParameter,
+    Slopes,
     free_parameter,
     on_slopes,
     quantity_of,
@@ -42,7 +43,7 @@ def _one(free: FreeParameter, bristle, profile, value, which):
 
     numbers, rest = eqx.partition(bristle, eqx.is_inexact_array)
 
-    def quantity(v, numbers, slopes):
+    def quantity(v: Real, numbers: Any, slopes: Slopes) -> Real:
         part = free.put(eqx.combine(numbers, rest), v)
         return quantity_of(on_slopes(part, slopes), which)
 
@@ -59,7 +60,7 @@ def _derivatives(free: FreeParameter, bristle, profile, value, which):
 
 @Program
 def _batch(free: FreeParameter, bristles, profile, values, which):
-    def one(bristle, value):
+    def one(bristle: Any, value: Real) -> Any:
         return _one(free, bristle, profile, value, which)
 
     return eqx.filter_vmap(one, in_axes=(eqx.if_array(0), 0))(bristles, values)
@@ -76,7 +77,7 @@ def sensitivities_of(fit: Any) -> Sensitivities:
     count = fit.value.shape[0]
     more = padded_size(count, *_ROOM) - count
 
-    def padded(leaf):
+    def padded(leaf: Any) -> Any:
         if not eqx.is_array(leaf):
             return leaf
         return jnp.pad(leaf, [(0, more)] + [(0, 0)] * (leaf.ndim - 1), mode="edge")

@@ -13,6 +13,7 @@ from .manufacturing import tolerance as tolerance
 from .maps import design_map as design_map
 from .quantities import MEANING as MEANING
 from .quantities import QUANTITIES as QUANTITIES
+from .quantities import OnSlopes as OnSlopes
 from .quantities import Slopes as Slopes
 from .quantities import on_slopes as on_slopes
 from .quantities import quantity_of as quantity_of

@@ -127,7 +127,7 @@ class FreeParameter(eqx.Module):
 def with_arrays(bristle: Any) -> Any:
     """A part whose plain floats are arrays too: numbers to choose and differentiate."""
 
-    def array(leaf):
+    def array(leaf: Any) -> Any:
         return jnp.asarray(leaf) if isinstance(leaf, float | np.floating) else leaf
 
     return jax.tree_util.tree_map(array, bristle)

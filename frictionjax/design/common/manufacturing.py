@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import xarray as xr
+from jaxtyping import Array, Bool, Float
 
 from ..._checks import as_text, known_numbers, require, require_whole, require_x64, with_nan
 from ..._compile import Program
@@ -31,12 +32,18 @@ class _Spread(NamedTuple):
 
 
 @Program
-def _sampled(numbers, of_profile, bristle, profile, values):
+def _sampled(
+    numbers: tuple,
+    of_profile: tuple,
+    bristle: AbstractBristle,
+    profile: AbstractProfile,
+    values: Float[Array, "n m"],
+) -> tuple[Float[Array, "n 4"], Float[Array, " n"]]:
     """The four quantities (n, 4) at values (n, m) of the numbers, and alpha's side (n,)."""
     grounds = any(of_profile)
     still = None if grounds else slopes_of(profile)
 
-    def one(row):
+    def one(row: Array) -> tuple[Array, Array]:
         part, surface = _changed(numbers, of_profile, bristle, profile, row)
         slopes = slopes_of(surface) if still is None else still
         found = on_slopes(part, slopes)
@@ -48,10 +55,16 @@ def _sampled(numbers, of_profile, bristle, profile, values):
 
 
 @Program
-def _jacobian(numbers, of_profile, bristle, profile, values):
+def _jacobian(
+    numbers: tuple,
+    of_profile: tuple,
+    bristle: AbstractBristle,
+    profile: AbstractProfile,
+    values: Float[Array, " m"],
+) -> Float[Array, "4 m"]:
     """Derivatives (4, m) of the quantities by the numbers."""
 
-    def one(row):
+    def one(row: Array) -> Array:
         part, surface = _changed(numbers, of_profile, bristle, profile, row)
         found = on_slopes(part, slopes_of(surface))
         return jnp.stack([quantity_of(found, i) for i in range(4)])
@@ -59,7 +72,13 @@ def _jacobian(numbers, of_profile, bristle, profile, values):
     return jax.jacrev(one)(values)
 
 
-def _changed(numbers, of_profile, bristle, profile, row):
+def _changed(
+    numbers: tuple,
+    of_profile: tuple,
+    bristle: AbstractBristle,
+    profile: AbstractProfile,
+    row: Float[Array, " m"],
+) -> tuple[AbstractBristle, AbstractProfile]:
     for i, (number, there) in enumerate(zip(numbers, of_profile, strict=True)):
         if there:
             profile = number.put(profile, row[i])
@@ -68,7 +87,7 @@ def _changed(numbers, of_profile, bristle, profile, row):
     return bristle, profile
 
 
-def _in_range(numbers, row):
+def _in_range(numbers: tuple, row: Float[Array, " m"]) -> Bool[Array, ""]:
     """Whether constructors would take the numbers."""
     good = jnp.asarray(True)
     for i, number in enumerate(numbers):

@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import xarray as xr
+from jaxtyping import Array
 
 from ..._checks import (
     checked,
@@ -166,8 +167,16 @@ def _base(bristle, names, profile, steepness) -> np.ndarray:
 
 
 @Program
-def _mapped(frees, surface, bristle, base, pulling, across, up):
-    def one(*values):
+def _mapped(
+    frees: tuple,
+    surface: tuple,
+    bristle: AbstractBristle,
+    base: Any,
+    pulling: Array,
+    across: Array,
+    up: Array,
+) -> Any:
+    def one(*values: Array) -> Any:
         part, ground = bristle, dict(zip(("steepness", "asymmetry"), base, strict=True))
         good = jnp.asarray(True)
         for free, name, value in zip(frees, surface, values, strict=True):

@@ -6,6 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 
 from ..._checks import Real, as_real, as_text, is_concrete, require, require_real, with_nan
 from ..._compile import Program, in_chunks
@@ -138,10 +139,16 @@ def _quantity(free, bristle, profile, asked: _Asked, x):
 
 
 @Program
-def _quantities(free, bristle, profile, asked, places):
+def _quantities(
+    free: FreeParameter,
+    bristle: AbstractBristle,
+    profile: AbstractProfile,
+    asked: Any,
+    places: Array,
+) -> Array:
     """The quantity at coordinates (n,), NaN where there is no slide."""
 
-    def one(x):
+    def one(x: Array) -> Array:
         found, slide = _quantity(free, bristle, profile, asked, x)
         return jnp.where(slide.ok, found, jnp.nan)
 
@@ -149,10 +156,16 @@ def _quantities(free, bristle, profile, asked, places):
 
 
 @Program
-def _alone(free, bristle, profile, asked, x):
+def _alone(
+    free: FreeParameter,
+    bristle: AbstractBristle,
+    profile: AbstractProfile,
+    asked: Any,
+    x: Array,
+) -> _Slide:
     """A slide, its quantity and the number, and how both change with the coordinate."""
 
-    def one(x):
+    def one(x: Array) -> tuple[tuple[Array, Array], SteadySlide]:
         found, slide = _quantity(free, bristle, profile, asked, x)
         return (found, free.value(bristle, x)), slide
 
@@ -163,22 +176,28 @@ def _alone(free, bristle, profile, asked, x):
 
 
 @Program
-def _follows(free, bristle, profile, places, eps):
+def _follows(
+    free: FreeParameter,
+    bristle: AbstractBristle,
+    profile: AbstractProfile,
+    places: Array,
+    eps: Any,
+) -> Array:
     """Whether bristles at coordinates (n,) follow the surface at this eps: G > 0."""
 
-    def one(x):
+    def one(x: Array) -> Array:
         return smallest_stretch(BristlePotential(profile, free.at(bristle, x)), eps) > 0
 
     return jax.vmap(one)(places)
 
 
 @Program
-def _coordinates(free, bristle, ends):
+def _coordinates(free: FreeParameter, bristle: AbstractBristle, ends: Array) -> Array:
     return jax.vmap(jax.vmap(lambda value: free.coordinate(bristle, value)))(ends)
 
 
 @Program
-def _values(free, bristle, places):
+def _values(free: FreeParameter, bristle: AbstractBristle, places: Array) -> Array:
     return jax.vmap(lambda x: free.value(bristle, x))(places)
 
 
@@ -220,17 +239,17 @@ def fit_slide(
     require(parts, "eps", eps, "an eps at which some bristle slides (G > 0)")
     target = float(limit.target)
 
-    def shown(places):
+    def shown(places: np.ndarray) -> np.ndarray:
         fixed = free, limit.bristle, profile, asked
         return in_chunks(_quantities, _TOGETHER, fixed, (places,))
 
-    def alone(x):
+    def alone(x: Any) -> _Slide:
         return _alone(free, limit.bristle, profile, asked, np.asarray(x))
 
-    def gap(x):
+    def gap(x: Any) -> float:
         return float(alone(x).shown) - target
 
-    def slope(x):
+    def slope(x: Any) -> float:
         return float(alone(x).slope)
 
     scans = [scan_slides(shown, slope, *ends) for ends in parts]
@@ -241,7 +260,7 @@ def fit_slide(
     good = np.array([alone(x).slide.ok for x in found], dtype=bool)
     failed, found = np.concatenate([failed, found[~good]]), found[good]
 
-    def values(places):
+    def values(places: np.ndarray) -> Array:
         return _values(free, limit.bristle, places)
 
     at = _nearest(scans, target)
@@ -277,7 +296,7 @@ def _sliding_parts(
     ends = ends[~np.isnan(ends[:, 0])]
     places = np.sort(np.asarray(_coordinates(free, limit.bristle, ends)), axis=1)
 
-    def follows(some):
+    def follows(some: np.ndarray) -> np.ndarray:
         return np.asarray(_follows(free, limit.bristle, profile, some, eps))
 
     return [part for low, high in places for part in sliding(follows, low, high)]

@@ -13,7 +13,8 @@ the spring is `f = U + D`, and its mean over time is its mean over the way (its 
 equation, times f), so `mean f = int_0^1 D G dy`: what a slip dissipates, over eps.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -133,7 +134,7 @@ def _once(slide: SlideScene, start: Real, level: Real):
     """Adaptive steps over a period from `level`; the steps, where it ends, and how many."""
     height, _ = slide.ground(start)
 
-    def body(state):
+    def body(state: tuple) -> tuple:
         way, level, step, steps, count, tried = state
         last = way + step >= 1.0
         step = jnp.where(last, 1.0 - way, step)
@@ -151,7 +152,7 @@ def _once(slide: SlideScene, start: Real, level: Real):
         step = jnp.clip(step * ratio, _SHORTEST, _LARGEST)
         return way, level, step, steps, count + good, tried + 1
 
-    def go_on(state):
+    def go_on(state: tuple) -> Array:
         way, level, _, _, count, tried = state
         return (way < 1.0) & (count < STEPS) & (tried < 4 * STEPS) & jnp.isfinite(level)
 
@@ -163,7 +164,7 @@ def _once(slide: SlideScene, start: Real, level: Real):
 def _end(slide: SlideScene, period: PeriodicOrbit, level: Real) -> Real:
     """L after the same steps from another level; in forward mode differentiable."""
 
-    def one(i, state):
+    def one(i: Array, state: tuple[Array, Array]) -> tuple[Array, Array]:
         way, level = state
         new, _ = _step(slide, period.start + way, period.steps[i], level)
         return way + period.steps[i], new
@@ -182,7 +183,9 @@ def replay(
     shares = jnp.asarray(_SHARES)
     turn = jnp.log(slide.pull / slide.give)
 
-    def one(state, step):
+    def one(
+        state: tuple[Array, Array], step: Array
+    ) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         way, level = state
         there = step > 0
         # A step that is not there goes nowhere: its derivatives must stay finite.
@@ -190,7 +193,7 @@ def replay(
         x = period.start + way
         new, stages = _step(slide, x, safe, level)
 
-        def inside(share):
+        def inside(share: Array) -> Array:
             return dense_output(_TABLEAU, level, new, stages, share)
 
         share = _turn(level, new, turn)
@@ -228,16 +231,18 @@ def find_periodic_orbit(slide: SlideScene) -> PeriodicOrbit:
     none, far = jnp.zeros(STEPS), jnp.asarray(jnp.inf)
     begin = PeriodicOrbit(start, none, jnp.log(low), jnp.zeros(()), far, jnp.asarray(0))
 
-    def remeshed(period):
+    def remeshed(period: PeriodicOrbit) -> PeriodicOrbit:
         steps, _, used = _once(slide, start, period.level)
         return period._replace(steps=steps, used=used)
 
-    def iterated(renew, limit, most, period):
-        def body(state):
+    def iterated(
+        renew: Callable, limit: Any, most: int, period: PeriodicOrbit
+    ) -> PeriodicOrbit:
+        def body(state: tuple[PeriodicOrbit, Any]) -> tuple[PeriodicOrbit, Any]:
             period, count = state
             return _newton(slide, renew(period), limit), count + 1
 
-        def go_on(state):
+        def go_on(state: tuple[PeriodicOrbit, Any]) -> Array:
             period, count = state
             good = jnp.isfinite(period.level) & (period.used < STEPS)
             return (period.closed > limit) & (count < most) & good
@@ -270,7 +275,7 @@ def slide_forces(slide: SlideScene) -> tuple[Real, Real, PeriodicOrbit]:
     still = jax.lax.stop_gradient(slide)
     period = jax.lax.stop_gradient(find_periodic_orbit(still))
 
-    def totals(slide, level):
+    def totals(slide: SlideScene, level: Array) -> tuple[Array, Array, Array]:
         last, means, peaks = replay(slide, period, level)
         return last, jnp.sum(means), jnp.max(peaks)
 

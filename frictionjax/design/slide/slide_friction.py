@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+from jaxtyping import Array
 
 from ..._checks import (
     CodedResult,
@@ -22,7 +23,7 @@ from ..._checks import (
 from ..._compile import Program, padded_size
 from ...bristles import AbstractBristle
 from ...io import CODES, LEAF, record
-from ...model import potential, require_admissible, require_reach
+from ...model import AbstractPotential, potential, require_admissible, require_reach
 from ...profiles import AbstractProfile
 from ...supports import Spring
 from ...wiggly import Status
@@ -135,7 +136,9 @@ def forces_of(slide: SteadySlide, force: str) -> SlideForces:
 
 
 @Program
-def _forces(potential, eps, gamma, rate, stiffness):
+def _forces(
+    potential: AbstractPotential, eps: Array, gamma: Array, rate: Array, stiffness: Array
+) -> Any:
     return jax.vmap(lambda e: _both_sides(potential, e, gamma, rate, stiffness))(eps)
 
 

@@ -130,7 +130,7 @@ def _one(layout, kept, most, task, own, place, key, share) -> StartRuns:
     settled = settle(layout, task, final)
     bound = energy_bound(last, final, settled.reach)
 
-    def misfit(x):
+    def misfit(x: Array) -> Array:
         point = layout.split(x)
         return jnp.sum(
             coefficient_residuals(task, point.plus[1], point.minus[1], point.free) ** 2

@@ -36,7 +36,7 @@ def _sensitivities(law: AbstractLaw, cos: Array, sin: Array, free: Array) -> Arr
     found = peaks(waves_of_heights(cos, sin))
     turns = 2 * jnp.pi * jnp.arange(1, cos.size + 1)
 
-    def coefficients(unknowns):
+    def coefficients(unknowns: Array) -> Array:
         c, s = unknowns[: cos.size], unknowns[cos.size : 2 * cos.size]
         phase = turns * found.places[:, None]
         # The places are where slopes are extreme: their motion adds nothing.
@@ -76,7 +76,7 @@ def members(
     seen = jax.vmap(lambda y: at(jnp.eye(waves.size), y))(found.places)
     span = jnp.linalg.qr(seen.T)[0]
 
-    def one(key):
+    def one(key: Array) -> tuple[Array, Array]:
         way = jax.random.normal(key, (waves.size,)) / decay
         way = way - span @ (span.T @ way)
         way = size * jnp.linalg.norm(waves) * way / jnp.linalg.norm(way)

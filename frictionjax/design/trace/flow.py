@@ -49,7 +49,7 @@ def _step(field: TipField, t: Real, y: Real, length: Real) -> tuple[Real, Real]:
     point = field.point(t, y)
     inverse = 1 / (1 / (length * _TABLEAU.gamma) - point.by_state)
 
-    def stage(state, row):
+    def stage(state: tuple[Array, Array], row: tuple) -> tuple[tuple[Array, Array], Array]:
         found, _ = state
         index, a, c, time, by_time = row
         inside = y + a @ found
@@ -144,8 +144,8 @@ def waves_of_numbers(numbers: Array) -> WaveProfile:
 def flow(numbers, scene, eps, gamma, ts, plan) -> Flow:
     """The trajectory and its derivative by the coefficients of the series."""
 
-    def along(way):
-        def states(numbers):
+    def along(way: Array) -> tuple:
+        def states(numbers: Array) -> tuple:
             return _states(waves_of_numbers(numbers), scene, eps, gamma, ts, plan)
 
         return jax.jvp(states, (numbers,), (way,), has_aux=True)
@@ -160,8 +160,8 @@ def flow(numbers, scene, eps, gamma, ts, plan) -> Flow:
 def bumped_flow(centres, width, numbers, scene, eps, gamma, ts, plan) -> Flow:
     """The trajectory and its derivative by the sizes of local bumps at the centres."""
 
-    def along(centre):
-        def states(size):
+    def along(centre: Array) -> tuple:
+        def states(size: Array) -> tuple:
             profile = Bumped(waves_of_numbers(numbers), size, centre, width)
             return _states(profile, scene, eps, gamma, ts, plan)
 

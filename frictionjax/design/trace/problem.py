@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 
 from ..._checks import as_real, require
 from ..._compile import Program, padded_size
@@ -99,7 +100,7 @@ def _cut(found: Flow, count: int) -> Flow:
 
 
 @Program
-def _follows(numbers, scene, eps):
+def _follows(numbers: Array, scene: Scene, eps: Any) -> Array:
     """`G` at this eps and at eps = 0, and the slopes that the contact allows."""
     waves = waves_of_numbers(numbers)
     potential = with_profile(scene, waves).potential
@@ -113,19 +114,19 @@ def _follows(numbers, scene, eps):
 
 
 @Program
-def _tips(numbers, scene, eps, z):
+def _tips(numbers: Array, scene: Scene, eps: Any, z: Array) -> Array:
     potential = with_profile(scene, waves_of_numbers(numbers)).potential
     return jax.vmap(lambda s: potential.tip(s, eps)[1])(z)
 
 
 @Program
-def states_under(scene, forces):
+def states_under(scene: Scene, forces: Any) -> Array:
     """States at which the support has these forces."""
     return jax.vmap(scene.support.state_of)(forces)
 
 
 @Program
-def _fastest(scene):
+def _fastest(scene: Scene) -> Array:
     """Largest |l'|/Phi'' without wiggles, m/s."""
     ts = scene.duration * (jnp.arange(1024) + 0.5) / 1024
     states = jax.vmap(lambda t: scene.support.state_of(scene.load(t)))(ts)

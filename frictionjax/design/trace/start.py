@@ -5,8 +5,10 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 
 from ..._compile import Program
+from ...model import Scene
 from .flow import waves_of_numbers, with_profile
 
 _ROUNDS = 12
@@ -45,14 +47,16 @@ def read(ts: np.ndarray, z: np.ndarray, sd: np.ndarray, rest: np.ndarray, drag, 
 
 
 @Program
-def wiggle(numbers, scene, eps, states):
+def wiggle(
+    numbers: Array, scene: Scene, eps: Any, states: Array
+) -> tuple[Array, Array, Array]:
     """`V_eps'` in N, `V_eps''` in N/m at states (n,), and the first by the numbers."""
 
-    def one(numbers, z):
+    def one(numbers: Array, z: Array) -> Array:
         potential = with_profile(scene, waves_of_numbers(numbers)).potential
         return potential.tip_force(potential.tip(z, eps)[1], eps)[0]
 
-    def at(z):
+    def at(z: Array) -> tuple[Array, Array, Array]:
         force, stiffness = jax.jvp(lambda s: one(numbers, s), (z,), (jnp.ones_like(z),))
         return force, stiffness, jax.jacfwd(one)(numbers, z)
 

@@ -53,7 +53,7 @@ def _unseen(order: int, size: Real, centre: Real, width: Real, y: Real) -> Real:
     return jnp.zeros_like(y)
 
 
-def _unseen_jvp(order, primals, tangents):
+def _unseen_jvp(order: int, primals: tuple, tangents: tuple) -> tuple[Array, Array]:
     size, centre, width, y = primals
     size_dot, _, _, y_dot = tangents
     change = jnp.zeros_like(y)

@@ -48,7 +48,7 @@ def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
     """Scan one period of `V_eps'` in the tip coordinate."""
     points = potential.points
 
-    def force(y):
+    def force(y: Real) -> Real:
         return potential.tip_force(y, eps)[0]
 
     # Nobody differentiates a plan: a tenth less to trace.

@@ -44,7 +44,7 @@ class Recorder(eqx.Module):
         watched = () if self.watch is None else (self.watch.start(z),)
         return (*balance, *watched)
 
-    def record(self, memory: tuple, t0: Real, t1: Real, y0: Real, y1: Real) -> tuple:
+    def record(self, memory: tuple, t0: Any, t1: Any, y0: Real, y1: Real) -> tuple:
         after: list = []
         spent = jnp.zeros_like(y1)
         if self.balanced:
@@ -73,10 +73,19 @@ class AugmentedSolver(AbstractWrappedSolver):
     solver: diffrax.AbstractSolver
     recorder: Recorder
 
-    def init(self, terms, t0, t1, y0, args):
+    def init(self, terms: Any, t0: Any, t1: Any, y0: tuple, args: Any) -> Any:
         return self.solver.init(self._tip_terms(), t0, t1, y0[0], args)
 
-    def step(self, terms, t0, t1, y0, args, solver_state, made_jump):
+    def step(
+        self,
+        terms: Any,
+        t0: Any,
+        t1: Any,
+        y0: tuple,
+        args: Any,
+        solver_state: Any,
+        made_jump: Any,
+    ) -> tuple:
         tip0, *memory0, step0 = y0
         tip1, error, _, solver_state, result = self.solver.step(
             self._tip_terms(), t0, t1, tip0, args, solver_state, made_jump
@@ -87,7 +96,7 @@ class AugmentedSolver(AbstractWrappedSolver):
         still: Any = (error, *_zeros_like(y1[1:]))
         return y1, still, {"y0": y0, "y1": y1}, solver_state, result
 
-    def _velocity(self, t, y, args):
+    def _velocity(self, t: Any, y: Real, args: Any) -> Real:
         return self.recorder.field.velocity(t, y)
 
     def _tip_terms(self) -> diffrax.ODETerm:
@@ -101,7 +110,7 @@ def _zeros_like(memory: PyTree) -> PyTree:
 def augmented_field(field: TipField):
     """Vector field of (y, *memory, step), as diffrax wants it: only y moves."""
 
-    def vector_field(t, state, args):
+    def vector_field(t: Real, state: tuple, args: Any) -> tuple:
         tip, *rest = state
         return (field.velocity(t, tip), *_zeros_like(tuple(rest)))
 

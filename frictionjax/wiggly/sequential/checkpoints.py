@@ -64,7 +64,7 @@ def times_of_stops(
     return times[order], jnp.argsort(order)[ends.shape[0] :]
 
 
-def _beside(ts, ends, rounding):
+def _beside(ts: Array, ends: Array, rounding: Array) -> Array:
     """The times, or the end that is a rounding away."""
     after = jnp.clip(jnp.searchsorted(ends, ts), 1, ends.shape[0] - 1)
     for near in (ends[after - 1], ends[after]) if ends.shape[0] > 1 else (ends[0],):

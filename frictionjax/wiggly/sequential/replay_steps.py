@@ -1,9 +1,12 @@
 """Steps that are known: a controller that takes them again, each as it was."""
 
+from typing import Any
+
 import diffrax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ..._checks import Real
 from .wrapped import AbstractWrappedController
 
 
@@ -28,19 +31,37 @@ class ReplaySteps(AbstractWrappedController):
         self.controller = controller
         self.times = times
 
-    def wrap(self, direction):
+    def wrap(self, direction: Any) -> "ReplaySteps":
         return self
 
-    def init(self, terms, t0, t1, y0, dt0, args, func, error_order):
+    def init(
+        self,
+        terms: Any,
+        t0: Any,
+        t1: Any,
+        y0: Any,
+        dt0: Any,
+        args: Any,
+        func: Any,
+        error_order: Any,
+    ) -> tuple:
         return self._end(0, t1), (jnp.asarray(1), t1)
 
     def adapt_step_size(
-        self, t0, t1, y0, y1_candidate, args, y_error, error_order, controller_state
-    ):
+        self,
+        t0: Any,
+        t1: Any,
+        y0: Any,
+        y1_candidate: Any,
+        args: Any,
+        y_error: Any,
+        error_order: Any,
+        controller_state: tuple,
+    ) -> tuple:
         index, last = controller_state
         after = self._end(index, last), False, (index + 1, last)
         return jnp.asarray(True), t1, *after, diffrax.RESULTS.successful
 
-    def _end(self, index, last):
+    def _end(self, index: Any, last: Real) -> Array:
         time = self.times[index]
         return jnp.where(time < last, time, last)

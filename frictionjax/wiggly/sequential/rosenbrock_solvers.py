@@ -1,11 +1,12 @@
 """Rosenbrock methods as solvers of diffrax."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import diffrax
 import jax
 import jax.numpy as jnp
 from equinox import AbstractClassVar
+from jaxtyping import Array
 
 from ..._checks import Real, require
 from ..rosenbrock import RODAS4P2, RODAS5P, Linearised, Tableau, combine, rosenbrock_step
@@ -20,7 +21,7 @@ class StageInterpolation(diffrax.AbstractLocalInterpolation):
     y1: Real
     bends: Real
 
-    def evaluate(self, t0, t1=None, left=True):
+    def evaluate(self, t0: Any, t1: Any = None, left: bool = True) -> Array:
         if t1 is not None:
             return self.evaluate(t1) - self.evaluate(t0)
         share = (t0 - self.t0) / jnp.where(self.t1 == self.t0, 1.0, self.t1 - self.t0)
@@ -38,19 +39,28 @@ class AbstractRosenbrock(diffrax.AbstractAdaptiveSolver):
     term_structure: ClassVar = diffrax.ODETerm
     interpolation_cls: ClassVar = StageInterpolation
 
-    def order(self, terms):
+    def order(self, terms: Any) -> int:
         return self.tableau.order
 
-    def init(self, terms, t0, t1, y0, args):
+    def init(self, terms: Any, t0: Any, t1: Any, y0: Any, args: Any) -> None:
         shape = getattr(y0, "shape", type(y0).__name__)
         require(shape == (), "y0", f"a state of shape {shape}", "one number, of shape ()")
         return None
 
-    def func(self, terms, t0, y0, args):
+    def func(self, terms: Any, t0: Any, y0: Real, args: Any) -> Real:
         return terms.vf(t0, y0, args)
 
-    def step(self, terms, t0, t1, y0, args, solver_state, made_jump):
-        def field(t, y):
+    def step(
+        self,
+        terms: Any,
+        t0: Any,
+        t1: Any,
+        y0: Real,
+        args: Any,
+        solver_state: None,
+        made_jump: Any,
+    ) -> tuple:
+        def field(t: Real, y: Real) -> Real:
             return terms.vf(t, y, args)
 
         velocity, by_state = jax.jvp(lambda y: field(t0, y), (y0,), (jnp.ones_like(y0),))

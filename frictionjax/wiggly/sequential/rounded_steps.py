@@ -4,6 +4,7 @@ from typing import Any, cast
 
 import diffrax
 import jax.numpy as jnp
+from jaxtyping import Array
 
 from ..equation import PER_OCTAVE
 from .wrapped import AbstractWrappedController
@@ -26,13 +27,31 @@ class RoundedSteps(AbstractWrappedController):
     def wrap(self, direction: Any) -> "RoundedSteps":
         return RoundedSteps(cast(Any, self.controller.wrap(direction)))
 
-    def init(self, terms, t0, t1, y0, dt0, args, func, error_order):
+    def init(
+        self,
+        terms: Any,
+        t0: Any,
+        t1: Any,
+        y0: Any,
+        dt0: Any,
+        args: Any,
+        func: Any,
+        error_order: Any,
+    ) -> tuple:
         first, state = self.controller.init(terms, t0, t1, y0, dt0, args, func, error_order)
         return t0 + _round_down(first - t0), state
 
     def adapt_step_size(
-        self, t0, t1, y0, y1_candidate, args, y_error, error_order, controller_state
-    ):
+        self,
+        t0: Any,
+        t1: Any,
+        y0: Any,
+        y1_candidate: Any,
+        args: Any,
+        y_error: Any,
+        error_order: Any,
+        controller_state: Any,
+    ) -> tuple:
         keep, next_t0, next_t1, jump, state, result = self.controller.adapt_step_size(
             t0, t1, y0, y1_candidate, args, y_error, error_order, controller_state
         )
@@ -40,7 +59,7 @@ class RoundedSteps(AbstractWrappedController):
         return keep, next_t0, next_t1, jump, state, result
 
 
-def _round_down(step):
+def _round_down(step: Any) -> Array:
     # A hair above the grid point counts as on it: products of grid steps land there.
     level = jnp.floor(PER_OCTAVE * jnp.log2(jnp.maximum(step, 1e-300)) + 1e-6)
     return jnp.exp2(level / PER_OCTAVE)

@@ -56,10 +56,10 @@ def _forth(parts: tuple, goes_on: Any, log: Log | None) -> tuple[PyTree, Log | N
     """Fronts at the stops, and the log where there is one."""
     piece, _, front, stops = parts
 
-    def stretch(carry, given):
+    def stretch(carry: tuple, given: tuple) -> tuple[tuple, PyTree]:
         index, stop = given
 
-        def advance(carry):
+        def advance(carry: tuple) -> tuple:
             front, log = carry
             after = piece(front, stop)
             return after, None if log is None else _noted(log, front, after.t, index)
@@ -87,13 +87,13 @@ def _back(log: Log, by_fronts: PyTree, perturbed: PyTree, parts: tuple, _: Any) 
     _, again, front, stops = parts
     wanted, fixed = eqx.partition(again, perturbed[1])
 
-    def over_piece(carry):
+    def over_piece(carry: tuple) -> tuple:
         by_front, by_wanted, by_stop, left = carry
         index = left - 1
         begin = jax.tree_util.tree_map(lambda leaf: leaf[index], log.begins)
         moving, still = eqx.partition(begin, eqx.is_inexact_array)
 
-        def passage(wanted, moving, end):
+        def passage(wanted: PyTree, moving: PyTree, end: Array) -> PyTree:
             after = eqx.combine(wanted, fixed)(eqx.combine(moving, still), end)
             return eqx.filter(after, eqx.is_inexact_array)
 
@@ -105,14 +105,14 @@ def _back(log: Log, by_fronts: PyTree, perturbed: PyTree, parts: tuple, _: Any) 
         by_end = jnp.where(after.t == end, jnp.where(last, by_end, 0.0), jnp.nan)
         return by_front, _added(by_wanted, more), by_stop + by_end, index
 
-    def over_stop(carry, given):
+    def over_stop(carry: tuple, given: tuple) -> tuple[tuple, PyTree]:
         by_front, by_wanted, left = carry
         index, by_here = given
         start = _added(by_front, by_here), by_wanted, jnp.zeros_like(stops[0]), left
-        *carry, by_stop, left = jax.lax.while_loop(
+        *back, by_stop, left = jax.lax.while_loop(
             lambda c: (c[3] > 0) & (log.stops[c[3] - 1] == index), over_piece, start
         )
-        return (*carry, left), by_stop
+        return (*back, left), by_stop
 
     moving = eqx.filter(front, eqx.is_inexact_array)
     none = jax.tree_util.tree_map(jnp.zeros_like, (moving, wanted))
@@ -135,7 +135,7 @@ def _added(one: PyTree, other: PyTree) -> PyTree:
 def _whole(by_fronts: PyTree, moving: PyTree, count: int) -> PyTree:
     """Zeros for what nothing depends on."""
 
-    def filled(by, leaf):
+    def filled(by: Any, leaf: Any) -> Any:
         blank = by is None and leaf is not None
         return jnp.zeros((count, *leaf.shape), leaf.dtype) if blank else by
 

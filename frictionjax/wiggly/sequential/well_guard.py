@@ -1,5 +1,7 @@
 """Step size control that cannot step over a well."""
 
+from typing import Any
+
 import diffrax
 import jax.numpy as jnp
 
@@ -30,15 +32,33 @@ class WellGuard(AbstractWrappedController):
     def __init__(self, controller: diffrax.PIDController, reach: Real):
         self.controller, self.reach = controller, reach
 
-    def wrap(self, direction):
+    def wrap(self, direction: Any) -> "WellGuard":
         return WellGuard(self.controller.wrap(direction), self.reach)
 
-    def init(self, terms, t0, t1, y0, dt0, args, func, error_order):
+    def init(
+        self,
+        terms: Any,
+        t0: Any,
+        t1: Any,
+        y0: tuple,
+        dt0: Any,
+        args: Any,
+        func: Any,
+        error_order: Any,
+    ) -> tuple:
         return self.controller.init(terms, t0, t1, y0, dt0, args, func, error_order)
 
     def adapt_step_size(
-        self, t0, t1, y0, y1_candidate, args, y_error, error_order, controller_state
-    ):
+        self,
+        t0: Any,
+        t1: Any,
+        y0: tuple,
+        y1_candidate: tuple,
+        args: Any,
+        y_error: Any,
+        error_order: Any,
+        controller_state: Any,
+    ) -> tuple:
         tip0, tip1, error = y0[0], y1_candidate[0], y_error[0]
         excess = jnp.abs(tip1 - tip0) / self.reach
         finite = jnp.isfinite(excess) & jnp.isfinite(error)

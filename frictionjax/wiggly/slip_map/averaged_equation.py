@@ -5,7 +5,7 @@ P the time of a passage under that force. It says how a slide is cut into panels
 guess for the recursion that is solved on them.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -49,7 +49,17 @@ def _grid(wells: np.ndarray) -> np.ndarray:
 def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, number):
     pitch = (_RANGE[1] - _RANGE[0]) / (_ROWS - 1)
 
-    def one(table, low, fold, sign, eps, origin, first, time, number):
+    def one(
+        table: Array,
+        low: Array,
+        fold: Array,
+        sign: Array,
+        eps: Array,
+        origin: Array,
+        first: Array,
+        time: Array,
+        number: Array,
+    ) -> Any:
         def law(force: Array) -> tuple[Array, Array]:
             """P in s, and its derivative."""
             place = (jnp.log(force) - low) / pitch
@@ -62,12 +72,12 @@ def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, numbe
             held = scene.support.force(origin + sign * eps * (first + at))
             return sign * (scene.load(time) - held) - fold
 
-        def step(before, at):
+        def step(before: tuple, at: Array) -> tuple[tuple, tuple]:
             # Newton's method for log X: in T it diverged where X is 1e-7 of the load.
             time, force, last = before
             wells = at - last
 
-            def sweep(_, state):
+            def sweep(_: Any, state: tuple[Array, Array]) -> tuple[Array, Array]:
                 log, _ = state
                 force = jnp.exp(log)
                 length, slope = law(force)

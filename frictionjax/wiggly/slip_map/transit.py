@@ -5,7 +5,8 @@ eq. 2.7, `dt/dy = eps^(gamma+1) G/(l - Phi' - V_eps')`, over exactly one period.
 integrand is smooth and hardly stiff, where `y'` as a function of time is both.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -242,12 +243,22 @@ def well_pull_of(
 
 
 @jax.jit
-def _passages(sweeps, way, against, weight, sign, load, support, viscosity, times):
+def _passages(
+    sweeps: int,
+    way: Array,
+    against: Array,
+    weight: Array,
+    sign: Array,
+    load: Array,
+    support: Array,
+    viscosity: Array,
+    times: Array,
+) -> Any:
     """Newton's method for `t(y)`, linearised exactly: quadratic, and fit for stiff ends."""
     shape = (*times.shape[:-1], -1, _POINTS)
     to_nodes, weights = jnp.asarray(_TO_NODES.T), jnp.asarray(_W)
 
-    def running(values):
+    def running(values: Array) -> tuple[Array, Array]:
         """Integrals from the start to each node, and to the end."""
         panels = values.reshape(shape)
         each = panels @ weights
@@ -262,13 +273,13 @@ def _passages(sweeps, way, against, weight, sign, load, support, viscosity, time
     held = side * (s[0] + z * (s[1] + z * (s[2] / 2 + z * s[3] / 6))) + against[:, None, :]
     pace = viscosity[:, None, None] * weight[:, None, :]
 
-    def slopes(t):
+    def slopes(t: Array) -> tuple[Array, Array, Array]:
         force = f[0] + t * (f[1] + t * (f[2] / 2 + t * f[3] / 6)) - held
         gain = f[1] + t * (f[2] + t * f[3] / 2)
         rate = pace / force
         return force, rate, -rate * gain / force
 
-    def sweep(_, t):
+    def sweep(_: Any, t: Array) -> Array:
         _, rate, bend = slopes(t)
         grown, _ = running(bend)
         # (t + d)' = rate + bend d; e = exp(grown) solves the homogeneous equation.
@@ -326,7 +337,7 @@ def one_transit_time(
 
 @Program
 def _series(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"]):
-    def derivatives(fn):
+    def derivatives(fn: Callable) -> Callable:
         first = jax.grad(fn)
         second = jax.grad(first)
         third = jax.grad(second)

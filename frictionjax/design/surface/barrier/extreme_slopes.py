@@ -74,7 +74,7 @@ def with_extreme_slopes(waves: Array, plus: Real, minus: Real) -> Array:
     steeper = jnp.where(plus >= minus, 0, 1)
     wanted = jnp.stack([plus, -minus])
 
-    def body(state):
+    def body(state: tuple) -> tuple:
         waves, _, count = state
         found = peaks(waves)
         gap = wanted - found.values
@@ -85,7 +85,7 @@ def with_extreme_slopes(waves: Array, plus: Real, minus: Real) -> Array:
         moved = (1 + scale) * waves + push * bump
         return jnp.where(exact, waves, moved), exact, count + 1
 
-    def go_on(state):
+    def go_on(state: tuple) -> Array:
         return ~state[1] & (state[2] < _STEPS)
 
     return jax.lax.while_loop(go_on, body, (waves, False, 0))[0]

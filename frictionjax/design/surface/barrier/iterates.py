@@ -154,7 +154,9 @@ def newton() -> optax.GradientTransformationExtraArgs:
     `update(..., barrier=...)`. Eigenvalues of the Hessian scaled to a unit diagonal.
     """
 
-    def update(updates, state, params=None, *, barrier, **_):
+    def update(
+        updates: Array, state: Any, params: Any = None, *, barrier: Barrier, **_: Any
+    ) -> tuple[Array, Any]:
         hessian = barrier.hessian(params)
         scale = 1 / jnp.sqrt(jnp.abs(jnp.diag(hessian)))
         values, vectors = jnp.linalg.eigh(hessian * scale * scale[:, None])
@@ -168,7 +170,9 @@ def newton() -> optax.GradientTransformationExtraArgs:
 def stop_before_walls() -> optax.GradientTransformationExtraArgs:
     """Shorten steps that would reach a wall of the barrier."""
 
-    def update(updates, state, params=None, *, barrier, **_):
+    def update(
+        updates: Array, state: Any, params: Any = None, *, barrier: Barrier, **_: Any
+    ) -> tuple[Array, Any]:
         way = barrier.room(params, updates) / _WALL
         return updates / jnp.maximum(way, 1.0), state
 
@@ -218,7 +222,7 @@ def follow_barrier(
     if optimise is None:
         optimise = optimiser()
 
-    def body(state):
+    def body(state: tuple) -> tuple:
         x, memory, weight, path = state
         barrier = last._replace(weight=weight)
         loss, slope = jax.value_and_grad(barrier.value)(x)
@@ -238,7 +242,7 @@ def follow_barrier(
         lower = jnp.maximum(weight * SHRINK, LAST)
         return x + step, memory, jnp.where(centred, lower, weight), path
 
-    def go_on(state):
+    def go_on(state: tuple) -> Array:
         path = state[-1]
         return ~path.done & (path.steps < most) & jnp.all(jnp.isfinite(state[0]))
 

@@ -1,6 +1,6 @@
 """The last digits: slopes and parameters that meet the targets, and a surface with them."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -44,14 +44,14 @@ def settle(layout: FitShape, task: FitTask, x: Array) -> Settled:
     before = peaks(point.waves).values
     wanted = jnp.concatenate([before * jnp.array([1.0, -1.0]), point.free])
 
-    def misfit(z):
+    def misfit(z: Array) -> Array:
         return coefficient_residuals(task, z[0], z[1], z[2:])
 
     # Short steps in parameters near their bounds: what lies on a bound stays there.
     ease = jnp.minimum(point.free, 1 - point.free)
     scale = jnp.concatenate([wanted[:2], ease])
 
-    def gauss_newton(_, z):
+    def gauss_newton(_: Any, z: Array) -> Array:
         pull = jax.jacfwd(misfit)(z) * scale
         return z - scale * (jnp.linalg.pinv(pull, rtol=_RANK) @ misfit(z))
 
