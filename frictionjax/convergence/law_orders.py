@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 
 from ..slide_laws import NO_LAW, Law
 from .order import (
@@ -50,14 +51,14 @@ class LawFit(NamedTuple):
 
     fit: Fit
     law: Law
-    fitted: np.ndarray
+    fitted: Float[np.ndarray, " n"]
 
 
 def fit_with_law(
-    eps: np.ndarray,
-    errors: np.ndarray,
-    uncertainty: np.ndarray,
-    predicted: np.ndarray | None,
+    eps: Float[np.ndarray, " n"],
+    errors: Float[np.ndarray, " n"],
+    uncertainty: Float[np.ndarray, " n"],
+    predicted: Float[np.ndarray, " n"] | None,
     law: Law,
     trust: Trust,
 ) -> LawFit:

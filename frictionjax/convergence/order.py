@@ -4,6 +4,7 @@ import enum
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 from scipy.special import fdtr, stdtrit  # scipy.stats takes 0.2 s to import
 
 from .._checks import require
@@ -122,14 +123,14 @@ def _no_fit(points: int, floor: int, failed: int) -> Fit:
     return Fit(nan, nan, nan, nan, nan, nan, *counts, nan, nan, nan, nan)
 
 
-def plain_slope(eps: np.ndarray, errors: np.ndarray) -> float:
+def plain_slope(eps: Float[np.ndarray, " n"], errors: Float[np.ndarray, " n"]) -> float:
     """Slope of log error over log eps by least squares, all points alike."""
     x, y = np.log(eps), np.log(errors)
     return float((x - x.mean()) @ y / np.sum((x - x.mean()) ** 2))
 
 
 def constant_range(
-    eps: np.ndarray, errors: np.ndarray, low: float, high: float
+    eps: Float[np.ndarray, " n"], errors: Float[np.ndarray, " n"], low: float, high: float
 ) -> tuple[float, float]:
     """Constants of the powers of orders `low` to `high` through the errors of small eps.
 
@@ -222,7 +223,9 @@ def _is_even(left: np.ndarray) -> bool:
     return bool(fdtr(half - 1, left.size - half - 1, ratio) < 1 - _RARE)
 
 
-def local_orders(eps: np.ndarray, errors: np.ndarray) -> np.ndarray:
+def local_orders(
+    eps: Float[np.ndarray, " n"], errors: Float[np.ndarray, " n"]
+) -> Float[np.ndarray, " pairs"]:
     """Slopes between neighbours in the log-log plot, shape (n - 1,); signs are kept."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.diff(np.log(errors)) / np.diff(np.log(eps))

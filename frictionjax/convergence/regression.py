@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 from scipy.special import stdtrit  # scipy.stats takes 0.2 s to import
 
 _LEVEL = 0.95
@@ -27,7 +28,7 @@ class Asymptote(NamedTuple):
     slope: float
     low: float
     high: float
-    left: np.ndarray
+    left: Float[np.ndarray, " n"]
 
 
 class _Curves(NamedTuple):
@@ -55,7 +56,9 @@ class _Judged(NamedTuple):
     limit: float
 
 
-def asymptote(x: np.ndarray, y: np.ndarray, scatter: float = 0.0) -> Asymptote:
+def asymptote(
+    x: Float[np.ndarray, " n"], y: Float[np.ndarray, " n"], scatter: float = 0.0
+) -> Asymptote:
     """Slope of y (n,), n >= 4, as x (n,) -> -inf; y scatters by at least `scatter`.
 
     The interval is the hull of those of all curves that the data do not exclude (profile

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 
 from .columns import read_text
 from .encoding import decoded_text
@@ -25,8 +26,8 @@ class Measured(NamedTuple):
     a unit, missing heights, an order of columns.
     """
 
-    x: np.ndarray
-    heights: np.ndarray
+    x: Float[np.ndarray, " n"]
+    heights: Float[np.ndarray, "*rows n"]
     notes: Sequence[str] = ()
 
 

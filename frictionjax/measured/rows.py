@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import jax
 import numpy as np
+from jaxtyping import Float
 
 from .._checks import require
 from ..bristles import AbstractBristle
@@ -36,7 +37,7 @@ class RowCoefficients(NamedTuple):
     cannot be told.
     """
 
-    values: dict[str, np.ndarray]
+    values: dict[str, Float[np.ndarray, " rows"]]
     period: float
     used: list[int]
     refused: dict[int, str]

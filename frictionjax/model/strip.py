@@ -27,8 +27,8 @@ def _strips(scene: Scene, rho_plus: Real, rho_minus: Real, times: Float[Array, "
 
 
 def strips_at(
-    scene: Scene, rho_plus: float, rho_minus: float, times: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    scene: Scene, rho_plus: float, rho_minus: float, times: Float[np.ndarray, " n"]
+) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
     """Load in N, `z_minus` and `z_plus` in m at each time, for known values."""
     if times.size == 0:
         return times, times, times

@@ -102,6 +102,6 @@ def _highest(
     return heights, near * part + inside
 
 
-def smallest(values: Array) -> Real:
+def smallest(values: Float[Array, "*shape"]) -> Real:
     """The minimum, NaN where any value is: `jnp.min` loses NaNs of long arrays."""
     return jnp.where(jnp.any(jnp.isnan(values)), jnp.nan, jnp.min(values))

@@ -114,7 +114,10 @@ class Fourier(AbstractSampled):
 
     @classmethod
     def of_measured(
-        cls, cos: np.ndarray, sin: np.ndarray, waves: SampledWaves
+        cls,
+        cos: Float[np.ndarray, " harmonics"],
+        sin: Float[np.ndarray, " harmonics"],
+        waves: SampledWaves,
     ) -> "tuple[Fourier, SlopeErrors]":
         """A series in periods with the errors that measured waves leave to its slopes."""
         errors = of_waves(slopes_of_waves(cos - 1j * sin), waves)

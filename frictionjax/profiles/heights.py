@@ -3,6 +3,7 @@
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
+from jaxtyping import Float
 
 from .._checks import (
     no_more,
@@ -39,8 +40,8 @@ class SeriesFit(NamedTuple):
     `waves`: of more harmonics than were asked for, with their noise.
     """
 
-    cos: np.ndarray
-    sin: np.ndarray
+    cos: Float[np.ndarray, " harmonics"]
+    sin: Float[np.ndarray, " harmonics"]
     period: float
     explained: float
     waves: SampledWaves
@@ -69,7 +70,9 @@ def _misfit(x: np.ndarray, heights: np.ndarray, period: float, harmonics: int) -
     return float(np.mean((heights.T - design @ solution) ** 2))
 
 
-def find_period(x: np.ndarray, heights: np.ndarray, harmonics: int) -> float:
+def find_period(
+    x: Float[np.ndarray, " n"], heights: Float[np.ndarray, "*rows n"], harmonics: int
+) -> float:
     """Period of one trace (n,) or of the rows of a map (rows, n).
 
     The strongest fundamental on a fine frequency grid from 1.5 periods in the trace to

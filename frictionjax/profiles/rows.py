@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from jaxtyping import Complex
 
 from .._checks import is_masked, known_numbers, numbers_of, require, require_whole
 from .heights import SeriesFit, find_period, fit_heights, require_left
@@ -70,12 +71,14 @@ def _common_period(x: np.ndarray, rows: np.ndarray, harmonics: int) -> float | N
     return find_period(x.astype(float), rows, harmonics)
 
 
-def complex_series(fit: SeriesFit) -> np.ndarray:
+def complex_series(fit: SeriesFit) -> Complex[np.ndarray, " harmonics"]:
     """Coefficients of `Re sum_n c_n exp(2 pi i n y)`, shape (harmonics,)."""
     return fit.cos - 1j * fit.sin
 
 
-def mean_in_phase(series: Sequence[np.ndarray]) -> np.ndarray:
+def mean_in_phase(
+    series: Sequence[Complex[np.ndarray, " harmonics"]],
+) -> Complex[np.ndarray, " harmonics"]:
     """Mean of complex coefficients of series that differ in phase."""
     return np.mean([_in_phase(waves) for waves in series], axis=0)
 

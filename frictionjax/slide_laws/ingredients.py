@@ -36,15 +36,15 @@ class SlideData(NamedTuple):
     m/s, 0 where it rests, `stiffness` Phi'' in N/m.
     """
 
-    phase: np.ndarray
-    force: np.ndarray
-    change: np.ndarray
-    length: np.ndarray
-    pull: np.ndarray
-    speed: np.ndarray
-    stiffness: np.ndarray
+    phase: Float[np.ndarray, " n"]
+    force: Float[np.ndarray, " n"]
+    change: Float[np.ndarray, " n"]
+    length: Float[np.ndarray, " m"]
+    pull: Float[np.ndarray, " m"]
+    speed: Float[np.ndarray, " m"]
+    stiffness: Float[np.ndarray, " m"]
 
-    def attributes(self) -> dict[str, np.ndarray]:
+    def attributes(self) -> dict[str, Float[np.ndarray, " places"]]:
         """By the names that they have in the attributes of a data set."""
         return {name: getattr(self, field) for name, field in _ATTRIBUTES.items()}
 
@@ -68,7 +68,9 @@ _ATTRIBUTES = {
 }
 
 
-def slide_data(scene: Scene, found: Coefficients, eps: np.ndarray) -> SlideData | None:
+def slide_data(
+    scene: Scene, found: Coefficients, eps: Float[np.ndarray, " cells"]
+) -> SlideData | None:
     """What the laws need of a scene with these coefficients, for known values.
 
     None where the load turns more often than there are moments: nothing slides long.

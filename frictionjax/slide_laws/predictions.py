@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float, Int
 
 from .averaged_motion import AveragedMotion, averaged_motion, steady_force
 from .exponents import AVERAGED, FREE, SLIPS, LimitOrbit, fold_force, limit_orbit
@@ -38,7 +39,7 @@ class Prediction(NamedTuple):
     NaN where the limit does not slide over a few wells.
     """
 
-    errors: np.ndarray
+    errors: Float[np.ndarray, "g e"]
     laws: list[Law]
 
 
@@ -50,21 +51,21 @@ class _Slide(NamedTuple):
     """Slides in one direction: moments (m,), their speed and stiffness, the wells."""
 
     well: WellForce
-    moments: np.ndarray
-    speed: np.ndarray
-    stiffness: np.ndarray
+    moments: Int[np.ndarray, " m"]
+    speed: Float[np.ndarray, " m"]
+    stiffness: Float[np.ndarray, " m"]
 
 
 class _Errors(NamedTuple):
     """`sup_error`, `strip_excess` (m) and `dissipation_error` (J) of cells (c,)."""
 
-    sup: np.ndarray
-    strip: np.ndarray
-    dissipation: np.ndarray
+    sup: Float[np.ndarray, " c"]
+    strip: Float[np.ndarray, " c"]
+    dissipation: Float[np.ndarray, " c"]
 
 
 def predict_errors(
-    data: SlideData, eps: np.ndarray, gamma: np.ndarray
+    data: SlideData, eps: Float[np.ndarray, " e"], gamma: Float[np.ndarray, " g"]
 ) -> dict[str, Prediction]:
     """What the laws say of cells `gamma` (g,) x `eps` (e,), by name of the error.
 

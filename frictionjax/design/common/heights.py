@@ -7,6 +7,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Float
 
 from ..._checks import require_real, require_whole
 from ...io import write_whole
@@ -15,7 +16,7 @@ from ...profiles import AbstractProfile
 
 def surface_heights(
     profile: AbstractProfile, period: Any, samples: int = 1024
-) -> np.ndarray:
+) -> Float[np.ndarray, "rows 2"]:
     """Positions and heights in m over one period, shape (samples + 1, 2).
 
     A surface of this `period` (m, the eps of the theory) has the height

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import jax.numpy as jnp
+from jaxtyping import Array, Bool
 
 from ..._checks import Real
 from ...numerics import cubic, cubic_slope
@@ -37,7 +38,9 @@ class Balance(NamedTuple):
     residual: Real
 
 
-def slopes_between(start: Point, end: Point, step: Real, way: Real):
+def slopes_between(
+    start: Point, end: Point, step: Real, way: Real
+) -> tuple[Real, Real, Bool[Array, ""]]:
     """Slopes for interpolating a step over `way` periods, and whether it ends in a rest.
 
     On a step from a slip deep into the rest behind it, the first slope is a spike through

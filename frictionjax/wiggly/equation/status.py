@@ -3,6 +3,7 @@
 import warnings
 
 import numpy as np
+from jaxtyping import Float, Int
 
 from ..._checks import Outcome
 
@@ -42,7 +43,10 @@ class FailedCells(UserWarning):
 
 
 def warn_of_failed(
-    codes: np.ndarray, gamma: np.ndarray, eps: np.ndarray, frames: int = 0
+    codes: Int[np.ndarray, "g e"],
+    gamma: Float[np.ndarray, " g"],
+    eps: Float[np.ndarray, " e"],
+    frames: int = 0,
 ) -> None:
     """One warning that names the cells (gamma, eps) whose status is not OK.
 

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Float
 
 from ..._checks import Real, known_numbers, require, require_real
 from ...loads import steep_times
@@ -59,7 +60,9 @@ def require_accuracy(
     require_real(name, accuracy, allowed, lambda a: least <= a <= 1)
 
 
-def accuracies_of(accuracies: Any, least: float = _LEAST_ASKED) -> np.ndarray:
+def accuracies_of(
+    accuracies: Any, least: float = _LEAST_ASKED
+) -> Float[np.ndarray, " accuracies"]:
     """Accuracies asked for, one or several, each once and rising.
 
     Raises `ValueError` where they are none, or less than `least`.

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array
+from jaxtyping import Array, Shaped
 
 from ..._compile import flattened, in_background
 from ..rosenbrock import Tableau
@@ -144,7 +144,7 @@ def march(
     legs: Segments,
     tableau: Tableau,
     wanted: Sums,
-    work: np.ndarray | None = None,
+    work: Shaped[np.ndarray, " jobs"] | None = None,
 ) -> SegmentEnds:
     """Run all jobs side by side; each lane takes the next job when it is through.
 

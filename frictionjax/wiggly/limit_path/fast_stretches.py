@@ -5,6 +5,7 @@ is between two nodes of a survey; its speed tells nothing of that elsewhere, its
 """
 
 import numpy as np
+from jaxtyping import Bool, Float
 
 from ...model import Scene
 from .path import Path, speeds_at, states_at
@@ -37,8 +38,12 @@ def _states(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
 
 
 def probes_of(
-    scene: Scene, path: Path, low: np.ndarray, high: np.ndarray, samples: int = SAMPLES
-) -> np.ndarray:
+    scene: Scene,
+    path: Path,
+    low: Float[np.ndarray, " n"],
+    high: Float[np.ndarray, " n"],
+    samples: int = SAMPLES,
+) -> Float[np.ndarray, "n m"]:
     """Times in [low, high] (n,) in s, (n, m), at which the path's speed tells the most.
 
     Evenly spaced ones, and where the path moves otherwise than its speed there says: a ramp
@@ -63,7 +68,9 @@ def probes_of(
     return np.concatenate(found, axis=1)
 
 
-def nodes_inside(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def nodes_inside(
+    low: Float[np.ndarray, " n"], high: Float[np.ndarray, " n"]
+) -> Float[np.ndarray, "n nodes"]:
     """Nodes of [low, high] (n,) in s, (n, NODES): at the ends from inside, where slides
     begin and pieces meet."""
     share = np.clip(nodes_of(0.0, 1.0, NODES), _INSIDE, 1 - _INSIDE)
@@ -72,13 +79,23 @@ def nodes_inside(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     return np.clip(times, *(end[:, None] for end in ends))
 
 
-def strictly_between(low: np.ndarray, high: np.ndarray, times: np.ndarray) -> np.ndarray:
+def strictly_between(
+    low: Float[np.ndarray, " n"],
+    high: Float[np.ndarray, " n"],
+    times: Float[np.ndarray, "n m"],
+) -> Bool[np.ndarray, "n m"]:
     """Which times (n, m) are inside: at the ends the path rests still, or has the speed of
     the next piece."""
     return (times > low[:, None]) & (times < high[:, None])
 
 
-def unseen_of(low, high, known, times, speeds) -> np.ndarray:
+def unseen_of(
+    low: Float[np.ndarray, " n"],
+    high: Float[np.ndarray, " n"],
+    known: Float[np.ndarray, "n nodes"],
+    times: Float[np.ndarray, "n m"],
+    speeds: Float[np.ndarray, "n m"],
+) -> Float[np.ndarray, " n"]:
     """By how much a polynomial through `known` (n, nodes) misses speeds (n, m), at most.
 
     Of the speed there; only times between `low` and `high` (n,) count.

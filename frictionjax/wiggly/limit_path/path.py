@@ -9,7 +9,7 @@ from typing import NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int, Shaped
 
 from ..._compile import Program, in_chunks
 from ...model import CHUNK, Scene, strips_at
@@ -23,9 +23,9 @@ class Probes(NamedTuple):
     m/s. `unseen` (P,): by how much a polynomial through a few nodes misses them, relative.
     """
 
-    times: np.ndarray
-    speeds: np.ndarray
-    unseen: np.ndarray
+    times: Float[np.ndarray, "pieces n"]
+    speeds: Float[np.ndarray, "pieces n"]
+    unseen: Float[np.ndarray, " pieces"]
 
 
 NO_PROBES = Probes(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0))
@@ -42,12 +42,12 @@ class Path(NamedTuple):
     `probes`: speeds on the way.
     """
 
-    edges: np.ndarray
-    states: np.ndarray
-    direction: np.ndarray
-    touch: np.ndarray
-    travel: np.ndarray
-    rho: np.ndarray
+    edges: Float[np.ndarray, " edges"]
+    states: Float[np.ndarray, " edges"]
+    direction: Shaped[np.ndarray, " pieces"]
+    touch: Float[np.ndarray, " pieces"]
+    travel: Float[np.ndarray, " edges"]
+    rho: Float[np.ndarray, " pieces"]
     rho_plus: float
     rho_minus: float
     speed: float = 0.0
@@ -60,7 +60,7 @@ class Path(NamedTuple):
         """`rho_plus - rho_minus` in N: times eps, the energy of one slip."""
         return self.rho_plus - self.rho_minus
 
-    def piece_of(self, times: np.ndarray) -> np.ndarray:
+    def piece_of(self, times: Float[np.ndarray, "*shape"]) -> Int[np.ndarray, "*shape"]:
         """Index of the piece that holds each time; a turning point opens its piece."""
         found = np.searchsorted(self.edges, times, side="right") - 1
         return np.clip(found, 0, self.direction.size - 1)
@@ -88,7 +88,9 @@ def _state_under(scene: Scene, times: Float[Array, " n"], pull: Float[Array, " n
     return (jax.vmap(scene.support.state_of)(loads - pull),)
 
 
-def times_at(scene: Scene, path: Path, piece: np.ndarray, states: np.ndarray) -> np.ndarray:
+def times_at(
+    scene: Scene, path: Path, piece: Int[np.ndarray, " n"], states: Float[np.ndarray, " n"]
+) -> Float[np.ndarray, " n"]:
     """When the path is at each state, on the slide of each piece."""
     if states.size == 0:
         return states
@@ -98,19 +100,27 @@ def times_at(scene: Scene, path: Path, piece: np.ndarray, states: np.ndarray) ->
 
 
 def arrivals_at(
-    scene: Scene, states: np.ndarray, pull: np.ndarray, early: np.ndarray, late: np.ndarray
-) -> np.ndarray:
+    scene: Scene,
+    states: Float[np.ndarray, " n"],
+    pull: Float[np.ndarray, " n"],
+    early: Float[np.ndarray, " n"],
+    late: Float[np.ndarray, " n"],
+) -> Float[np.ndarray, " n"]:
     """Time in [early, late] at which `l - Phi'` is `pull` (N) at each state."""
     columns = states, pull, early, late
     return in_chunks(_times_at, CHUNK, (scene,), columns)[0]
 
 
-def state_under(scene: Scene, times: np.ndarray, pull: np.ndarray) -> np.ndarray:
+def state_under(
+    scene: Scene, times: Float[np.ndarray, " n"], pull: Float[np.ndarray, " n"]
+) -> Float[np.ndarray, " n"]:
     """State in m at which `l - Phi'` is `pull` (N) at each time."""
     return in_chunks(_state_under, CHUNK, (scene,), (times, pull))[0]
 
 
-def states_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
+def states_at(
+    scene: Scene, path: Path, times: Float[np.ndarray, " n"]
+) -> Float[np.ndarray, " n"]:
     """The path's state in m at each time."""
     piece = path.piece_of(times)
     _, lower, upper = strips_at(scene, path.rho_plus, path.rho_minus, times)
@@ -121,8 +131,11 @@ def states_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
 
 
 def slopes_at(
-    scene: Scene, path: Path, times: np.ndarray, states: np.ndarray
-) -> np.ndarray:
+    scene: Scene,
+    path: Path,
+    times: Float[np.ndarray, " n"],
+    states: Float[np.ndarray, " n"],
+) -> Float[np.ndarray, " n"]:
     """The path's speed in m/s at each time, from the right at kinks."""
     if times.size == 0:
         return times
@@ -132,12 +145,14 @@ def slopes_at(
     return np.where(slides, slope / stiffness, 0.0)
 
 
-def speeds_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
+def speeds_at(
+    scene: Scene, path: Path, times: Float[np.ndarray, "*shape"]
+) -> Float[np.ndarray, "*shape"]:
     """The path's speed in m/s at times of any shape."""
     flat = times.ravel()
     return slopes_at(scene, path, flat, states_at(scene, path, flat)).reshape(times.shape)
 
 
-def stiffness_at(scene: Scene, states: np.ndarray) -> np.ndarray:
+def stiffness_at(scene: Scene, states: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
     """Phi'' in N/m at states (n,) in m."""
     return in_chunks(_rates, CHUNK, (scene,), (np.zeros_like(states), states))[1]

@@ -1,6 +1,7 @@
 """Which slides end slow: tips rest there where the path does, and starts are forgotten."""
 
 import numpy as np
+from jaxtyping import Bool, Float
 
 from ...model import Scene
 from .path import Path, slopes_at, times_at
@@ -11,7 +12,12 @@ RESTS = 0.7
 _END = 8.0  # wells before a slide's end where it should be slow
 
 
-def slow_ends(scene: Scene, path: Path, eps: np.ndarray, lag: np.ndarray) -> np.ndarray:
+def slow_ends(
+    scene: Scene,
+    path: Path,
+    eps: Float[np.ndarray, " cells"],
+    lag: Float[np.ndarray, " cells"],
+) -> Bool[np.ndarray, "cells pieces"]:
     """Whether each piece should end slow, (cells, pieces); rests of the path do not.
 
     `eps` in m and `lag`, wells that the fastest slide stays behind, shape (cells,). Slides

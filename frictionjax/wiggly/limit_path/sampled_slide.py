@@ -4,6 +4,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 from numpy.polynomial import chebyshev
 
 NODES = 17  # periods measured in a slide, unless it takes more
@@ -30,18 +31,18 @@ class SampledSlide(NamedTuple):
 
     low: float
     high: float
-    primitives: np.ndarray
-    whole: np.ndarray
-    times: np.ndarray
-    residual: np.ndarray
-    work: np.ndarray
-    extremes: np.ndarray
+    primitives: Float[np.ndarray, "3 terms"]
+    whole: Float[np.ndarray, "3"]
+    times: Float[np.ndarray, " nodes"]
+    residual: Float[np.ndarray, " nodes"]
+    work: Float[np.ndarray, " fine"]
+    extremes: Float[np.ndarray, "5 fine"]
     error_work: float
     error_viscous: float
     error_extreme: float
     error_surplus: float
 
-    def integrals(self, times: np.ndarray) -> np.ndarray:
+    def integrals(self, times: Float[np.ndarray, " n"]) -> Float[np.ndarray, "3 n"]:
         """`int_low^t` of what is summed, in J, (3, times)."""
         scaled = 2 * (times - self.low) / (self.high - self.low) - 1
         found = chebyshev.chebval(scaled, self.primitives.T)
@@ -62,13 +63,18 @@ def _residuals(low, high, middle, density) -> tuple[np.ndarray, np.ndarray]:
     return times, np.concatenate([none, np.cumsum(parts, axis=1)], axis=1)
 
 
-def nodes_of(low: float, high: float, count: int) -> np.ndarray:
+def nodes_of(low: float, high: float, count: int) -> Float[np.ndarray, " count"]:
     """Times of a Chebyshev-Lobatto grid: ends included, where slides change fastest."""
     x = -np.cos(np.pi * np.arange(count) / (count - 1))
     return 0.5 * (low + high) + 0.5 * (high - low) * x
 
 
-def through_nodes(low, high, values: np.ndarray, times: np.ndarray) -> np.ndarray:
+def through_nodes(
+    low: Float[np.ndarray, " n"],
+    high: Float[np.ndarray, " n"],
+    values: Float[np.ndarray, "n count"],
+    times: Float[np.ndarray, "n m"],
+) -> Float[np.ndarray, "n m"]:
     """The polynomial with `values` (n, count) at the nodes of [low, high] (s, (n,)), at
     `times` (n, m)."""
     count = values.shape[1]
@@ -136,12 +142,12 @@ def _densities(means: np.ndarray, scaled, length, fits) -> np.ndarray:
 
 
 def sampled_slides_of(
-    low: np.ndarray,
-    high: np.ndarray,
-    starts: np.ndarray,
-    ends: np.ndarray,
-    sums: np.ndarray,
-    extremes: np.ndarray,
+    low: Float[np.ndarray, " slides"],
+    high: Float[np.ndarray, " slides"],
+    starts: Float[np.ndarray, "slides n"],
+    ends: Float[np.ndarray, "slides n"],
+    sums: Float[np.ndarray, "slides 3 n"],
+    extremes: Float[np.ndarray, "slides 5 n"],
 ) -> list[SampledSlide]:
     """Fit curves through n slip periods [starts, ends] (s) of slides over [low, high].
 

@@ -48,7 +48,7 @@ def checkpoint_at_start(y: tuple, plan: StepPlan) -> Checkpoint:
 
 
 def times_of_stops(
-    ts, turns, until, rounding: Real
+    ts: Float[Array, " n"], turns: Float[Array, " turns"], until: Real, rounding: Real
 ) -> tuple[Float[Array, " m"], Int[Array, " n"]]:
     """Times at which steps end, sorted, and where in them the wanted ones are.
 

@@ -53,7 +53,9 @@ def solver_of(
     return candidate()
 
 
-def with_tolerance(solver: diffrax.AbstractSolver, tolerance) -> diffrax.AbstractSolver:
+def with_tolerance(
+    solver: diffrax.AbstractSolver, tolerance: Any
+) -> diffrax.AbstractSolver:
     """Give an implicit solver's Newton iteration a share of the step's tolerance."""
     finder = getattr(solver, "root_finder", None)
     if finder is None:

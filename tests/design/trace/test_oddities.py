@@ -286,7 +286,7 @@ def test_no_descent_is_begun_after_so_many_steps(monkeypatch):
         read = admissible = held = staticmethod(lambda *_: None)
         observed = staticmethod(lambda: None)
 
-    monkeypatch.setattr(trace_fit, "descend", descend)
+    monkeypatch.setattr(trace_fit, "gauss_newton", descend)
     monkeypatch.setattr(trace_fit, "explains", lambda *_: False)
     monkeypatch.setattr(
         trace_fit, "_starts", lambda *_: [(None, i, None) for i in range(5)]

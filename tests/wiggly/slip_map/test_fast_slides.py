@@ -28,7 +28,7 @@ def test_a_ride_reaches_the_end_of_a_slide_of_a_hundred_million_wells(monkeypatc
         rides.extend(rounds.ground.rides[0])
         raise InterruptedError
 
-    monkeypatch.setattr(engine, "find_rides", only_rides)
+    monkeypatch.setattr(engine, "find_fast_slides", only_rides)
     cell = np.array([1.3e-8]), np.array([0.5]), TIMES, 1e-3
     with pytest.raises(InterruptedError):
         engine.integrate_cells(SCENES["sine"], *cell, "windowed")
