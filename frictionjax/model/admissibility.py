@@ -7,6 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Real, is_concrete, no_more, require
 from .._compile import Program, in_chunks
@@ -107,7 +108,7 @@ _one_margin = Program(_margins_at)
 
 
 @Program
-def _some_margins(potential: AbstractPotential, eps: Real):
+def _some_margins(potential: AbstractPotential, eps: Float[Array, " few"]):
     return jax.lax.map(lambda size: _margins_at(potential, size), eps)
 
 
@@ -122,7 +123,7 @@ def _fits(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:
     return (stretch > 0) & (clear > 0)
 
 
-def require_reach(potential: AbstractPotential, eps: Real) -> None:
+def require_reach(potential: AbstractPotential, eps: Float[ArrayLike, "*shape"]) -> None:
     """Check what has to hold at the eps in use, with the bristle's geometry there.
 
     `G = 1 + A'(eta) w' > 0` (eq. 3.31), and of a rod that only its tip touches the surface,

@@ -84,7 +84,7 @@ def _noises(potential: GivenPotential, eps: Float[Array, " n"]):
     w = _of_values(potential._leading) / values
     slopes = _of_slopes(potential._leading) / force
 
-    def at(size: Real) -> tuple[Real, ...]:
+    def at(size: Real) -> tuple[Array, ...]:
         def rest(phase: Real) -> Real:
             return potential._rest(size, phase)
 

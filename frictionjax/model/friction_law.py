@@ -7,7 +7,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Real, checked, require, require_x64, with_nan
 from ..bristles import AbstractBristle
@@ -65,7 +65,11 @@ def _with_errors_of_samples(wiggle: AbstractPotential, found: Coefficients) -> C
     return dataclasses.replace(found, omega_plus_taken=plus, omega_minus_taken=minus)
 
 
-def dissipation_potential(rho_plus: Real, rho_minus: Real, v: Real) -> Real:
+def dissipation_potential(
+    rho_plus: Float[ArrayLike, ""],
+    rho_minus: Float[ArrayLike, ""],
+    v: Float[Array, "*shape"],
+) -> Float[Array, "*shape"]:
     """`R(v)` (eq. 2.2): `rho_plus v` for v >= 0, `rho_minus v` for v <= 0."""
     return jnp.where(v >= 0, rho_plus * v, rho_minus * v)
 
@@ -136,8 +140,8 @@ def _with_inflections(slope: Callable[[Real], Real], cells: int) -> Array:
 def limit_dissipation(
     potential: AbstractPotential,
     found: Coefficients,
-    v: Real,
-    xi: Real,
+    v: Float[ArrayLike, ""],
+    xi: Float[ArrayLike, ""],
     slack: Real | float = 0.0,
     load: Real | float = 0.0,
 ) -> Real:

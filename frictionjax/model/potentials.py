@@ -10,6 +10,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import (
     Part,
@@ -82,19 +83,25 @@ class AbstractPotential(Part):
         stretch = 1 + ahead / eps
         return climb / (eps * stretch), stretch
 
-    def energy(self, z: Real, eps: Real) -> Real:
+    def energy(
+        self, z: Float[ArrayLike, "*z"], eps: Float[ArrayLike, "*eps"]
+    ) -> Float[Array, "..."]:
         """`V_eps(z)` in J; z in m and eps in m, any shapes that broadcast."""
         return _elementwise(type(self)._energy, self, *_floats(self, z, eps))
 
-    def force(self, z: Real, eps: Real) -> Real:
+    def force(
+        self, z: Float[ArrayLike, "*z"], eps: Float[ArrayLike, "*eps"]
+    ) -> Float[Array, "..."]:
         """`V_eps'(z)` in N by autodiff of the exact inverse; shapes as `energy`."""
         return _elementwise(_energy_slope, self, *_floats(self, z, eps))
 
-    def W(self, Y: Real) -> Real:
+    def W(self, Y: Float[ArrayLike, "*Y"]) -> Float[Array, "*Y"]:
         """Leading part `W(Y)` in N (Lemma 2), any shape."""
         return _elementwise(_leading_anywhere, self, *_floats(self, Y))
 
-    def Q(self, eps: Real, Y: Real) -> Real:
+    def Q(
+        self, eps: Float[ArrayLike, "*eps"], Y: Float[ArrayLike, "*Y"]
+    ) -> Float[Array, "..."]:
         """Rest `Q(eps; Y)` in N/m, bounded as eps -> 0; defined at eps = 0 too."""
         return _elementwise(_rest_anywhere, self, *_floats(self, eps, Y))
 

@@ -148,7 +148,7 @@ class Scene(eqx.Module):
             return self.potential.bristle
         return None
 
-    def turning_points(self) -> Real:
+    def turning_points(self) -> Float[Array, " turns"]:
         """Turning points of the load in (0, T), shape (turns,), padded with T."""
         return self.load.turning_points(jnp.asarray(self.duration), self.turns)
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Real
 
@@ -62,7 +62,9 @@ def find_root(fn: Callable[[Real], Real], lower: Any, upper: Any) -> Any:
     return jax.lax.while_loop(go_on, body, start)[2]
 
 
-def bracketed_root(fn: Callable[[Real], Real], lower: Real, upper: Real) -> Real:
+def bracketed_root(
+    fn: Callable[[Real], Real], lower: Float[ArrayLike, ""], upper: Float[ArrayLike, ""]
+) -> Real:
     """Root of the increasing `fn` in [`lower`, `upper`], to rounding.
 
     Newton's step is taken where it stays inside the bracket and shrinks, else the bracket

@@ -7,7 +7,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
-from jaxtyping import Array
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Real
 
@@ -27,7 +27,9 @@ _COSINE = tuple(
 _UNROLLED, _BLOCK = 8, 8
 
 
-def _horner(coefficients: tuple[float, ...], x: Real) -> Real:
+def _horner(
+    coefficients: tuple[float, ...], x: Float[Array, "*shape"]
+) -> Float[Array, "*shape"]:
     total = jnp.full_like(x, coefficients[-1])
     for coefficient in coefficients[-2::-1]:
         total = total * x + coefficient
@@ -35,7 +37,9 @@ def _horner(coefficients: tuple[float, ...], x: Real) -> Real:
 
 
 @partial(jax.jit, inline=True)  # traced once, not at every use
-def _evaluate(y: Real) -> tuple[Real, Real]:
+def _evaluate(
+    y: Float[Array, "*shape"],
+) -> tuple[Float[Array, "*shape"], Float[Array, "*shape"]]:
     quarter = jnp.round(4 * y)
     r = y - 0.25 * quarter  # exact: both are multiples of the spacing of floats at y
     square = r * r
@@ -49,7 +53,9 @@ def _evaluate(y: Real) -> tuple[Real, Real]:
 
 
 @jax.custom_jvp
-def sin_cos(y: Real) -> tuple[Real, Real]:
+def sin_cos(
+    y: Float[ArrayLike, "*shape"],
+) -> tuple[Float[Array, "*shape"], Float[Array, "*shape"]]:
     """`sin(2 pi y)` and `cos(2 pi y)`, any shape, to 2 ulp on the whole circle.
 
     The argument is reduced in turns, which loses nothing. XLA calls the scalar libm for
@@ -68,7 +74,11 @@ def _sin_cos_jvp(
 
 
 @jax.custom_jvp
-def fourier_sum(cos: Real, sin: Real, y: Real) -> Real:
+def fourier_sum(
+    cos: Float[Array, " harmonics"],
+    sin: Float[Array, " harmonics"],
+    y: Float[ArrayLike, "*shape"],
+) -> Float[Array, "*shape"]:
     """`sum_n cos_n cos(2 pi n y) + sin_n sin(2 pi n y)`, n = 1, 2, ...
 
     `cos`, `sin`: shape (harmonics,); `y`: any shape. Harmonics by the addition theorem
@@ -78,7 +88,11 @@ def fourier_sum(cos: Real, sin: Real, y: Real) -> Real:
 
 
 @partial(jax.jit, inline=True)
-def _add_up(cos: Real, sin: Real, y: Real) -> Real:
+def _add_up(
+    cos: Float[Array, " harmonics"],
+    sin: Float[Array, " harmonics"],
+    y: Float[Array, "*shape"],
+) -> Float[Array, "*shape"]:
     first = _evaluate(y)
     pair, total = first, cos[0] * first[1] + sin[0] * first[0]
     if cos.shape[0] <= _UNROLLED:
@@ -99,7 +113,9 @@ def _add_up(cos: Real, sin: Real, y: Real) -> Real:
     return total
 
 
-def _next_harmonic(first: tuple, pair: tuple, total: Real, cos: Real, sin: Real) -> tuple:
+def _next_harmonic(
+    first: tuple, pair: tuple, total: Float[Array, "*shape"], cos: Real, sin: Real
+) -> tuple:
     """The pair of the next harmonic by the addition theorem, and the sum with it."""
     sine = pair[0] * first[1] + pair[1] * first[0]
     cosine = pair[1] * first[1] - pair[0] * first[0]
@@ -120,7 +136,7 @@ def _fourier_sum_jvp(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
     return total, change
 
 
-def _is_zero(tangent) -> bool:
+def _is_zero(tangent: Any) -> bool:
     return isinstance(tangent, SymbolicZero)
 
 

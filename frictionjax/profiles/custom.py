@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import equinox as eqx
 import jax.numpy as jnp
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Real, as_plain, require_function, require_whole
 from .profile import AbstractProfile, require_smooth
@@ -27,5 +28,5 @@ class Custom(AbstractProfile):
         require_whole("profile.points", self.points, 16)
         require_smooth("profile.fn", self.fn, self.points)
 
-    def __call__(self, y: Real) -> Real:
-        return self.fn(y - jnp.floor(y))
+    def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
+        return self.fn(jnp.asarray(y) - jnp.floor(y))

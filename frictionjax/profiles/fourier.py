@@ -5,9 +5,9 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import Real, as_real, is_concrete, is_known, known_numbers, require
+from .._checks import as_real, is_concrete, is_known, known_numbers, require
 from ..numerics import fourier_sum
 from .heights import HeightsFit, fit_heights
 from .rows import fit_map
@@ -57,7 +57,7 @@ class Fourier(AbstractSampled):
         require_slope_error(self.slope_error)
         require_slope_error(self.slope_taken, "slope_taken")
 
-    def __call__(self, y: Real) -> Real:
+    def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         return fourier_sum(self.cos, self.sin, jnp.asarray(y))
 
     @property

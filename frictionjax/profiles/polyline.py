@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import (
     Real,
@@ -74,7 +74,7 @@ class Polyline(AbstractProfile):
             _require_room(found, float(self.radius))
             self.points = _resolving(found)
 
-    def __call__(self, y: Real) -> Real:
+    def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         corners = _corners(self.x, self.heights, self.radius, jnp)
         y = jnp.asarray(y)
         y = y - jnp.floor(y)

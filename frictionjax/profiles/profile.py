@@ -7,6 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Part, Real, in_64_bits, is_concrete, require, with_nan
 
@@ -23,7 +24,7 @@ class AbstractProfile(Part):
     """
 
     @abc.abstractmethod
-    def __call__(self, y: Real) -> Real:
+    def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         """Height `w(y)` in periods, at tip coordinate `y` in periods."""
 
     @property

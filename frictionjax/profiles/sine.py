@@ -2,6 +2,7 @@
 
 import equinox as eqx
 import jax.numpy as jnp
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Real, as_real, require_real
 from ..numerics import sin_cos
@@ -21,7 +22,7 @@ class Sine(AbstractProfile):
     def __check_init__(self):
         require_real("profile.slope", self.slope, "slope != 0", lambda s: s != 0)
 
-    def __call__(self, y: Real) -> Real:
+    def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         return self.slope / (2 * jnp.pi) * sin_cos(y)[0]
 
     @property

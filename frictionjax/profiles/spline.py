@@ -4,9 +4,9 @@ from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import Real, as_real, is_concrete, is_known, known_numbers, require
+from .._checks import as_real, is_concrete, is_known, known_numbers, require
 from .slope_errors import (
     AbstractSampled,
     SlopeErrors,
@@ -100,7 +100,7 @@ class Spline(AbstractSampled):
         c = self.coefficients
         return (jnp.roll(c, 1) + 4 * c + jnp.roll(c, -1)) / 6
 
-    def __call__(self, y: Real) -> Real:
+    def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         y = jnp.asarray(y)
         count = self.coefficients.shape[0]
         place = (y - jnp.floor(y)) * count

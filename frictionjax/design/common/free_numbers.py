@@ -6,6 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, Float
 
 from ..._checks import Real, as_text, is_known, known_numbers, require
 from ...bristles import AbstractBristle, AngularSpring
@@ -113,7 +114,9 @@ class FreeParameter(eqx.Module):
         """The bristle at the coordinate `x`."""
         return self.put(bristle, self.value(bristle, x))
 
-    def interval(self, bristle: AbstractBristle, bounds: Real) -> tuple[Real, Real]:
+    def interval(
+        self, bristle: AbstractBristle, bounds: Float[Array, "2"]
+    ) -> tuple[Real, Real]:
         """Ends of the coordinate under `bounds` (2,) of the number; NaN where none are."""
         low, high = self.range()
         ends = jax.vmap(lambda v: self.coordinate(bristle, v))(bounds)

@@ -1,6 +1,7 @@
 """Fourier series for programs that carry tangents of all coefficients."""
 
 from functools import partial
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -24,7 +25,7 @@ class WaveProfile(AbstractProfile):
     cos: Float[Array, " harmonics"]
     sin: Float[Array, " harmonics"]
 
-    def __call__(self, y: Real) -> Real:
+    def __call__(self, y: Any) -> Float[Array, "*shape"]:
         order = jnp.arange(1, self.cos.shape[0] + 1)
         sine, cosine = sin_cos(order * (y - jnp.floor(y))[..., None])
         return jnp.sum(self.cos * cosine + self.sin * sine, axis=-1)
@@ -82,7 +83,7 @@ class Bumped(AbstractProfile):
     centre: Real
     width: Real
 
-    def __call__(self, y: Real) -> Real:
+    def __call__(self, y: Any) -> Float[Array, "*shape"]:
         return self.waves(y) + _unseen(0, self.size, self.centre, self.width, y)
 
     @property

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool, Float, Int
 
 from ..._checks import Real
 from ...model import AbstractPotential
@@ -72,7 +72,7 @@ def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
     )
 
 
-def _narrowest_run(slopes: Float[Array, " n"]) -> Real:
+def _narrowest_run(slopes: Float[Array, " n"]) -> Int[Array, ""]:
     """Samples in the shortest run of one sign of the 1-periodic `slopes`, at least 2.
 
     Rounding noise on flat stretches counts as rising.
