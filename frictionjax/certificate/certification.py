@@ -17,17 +17,9 @@ from .._checks import (
 )
 from ..model import Scene, coefficients_jit, known_scene, require_reach, require_times
 from .curve import Force, along_curve, force_of
+from .settings import SETTINGS
 from .transits import folds_of, missing_forces, viscosity_ratio
 from .tube import distance
-
-# Measured at eps 1e-3 to 0.3, gamma 0.5 to 2, every bristle: true curves with and without
-# noise of eps/100 against the wrong ones.
-_COARSE = 0.25  # of eps between two samples: more, and slips are not resolved
-_DISTANCE = 0.03  # of eps: noise 0.0105 (0.018 where rests are sampled thinly), shift 0.07
-# Of Phi'' eps at a fold: noise -0.013 and less, skipped wells 0.16 to 0.8, or anything
-# below where the load overshoots by a well while a fold is passed: there distance tells.
-_MISSING = 0.02
-_VISCOSITY = 0.1  # noise 0.02; a gamma off by 0.1 is 0.13 at eps = 0.3 and grows below
 
 
 class CertificateStatus(Outcome):
@@ -117,7 +109,7 @@ def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
         residual_error=_residual_error(force, viscosity, ts, z, residual),
         scale=scale,
         slips=missing.size,
-        skipped=int(np.sum(missing > _MISSING)),
+        skipped=int(np.sum(missing > SETTINGS.missing_force)),
         status=_verdict(**measured),
         **measured,
     )
@@ -160,10 +152,10 @@ def _verdict(
     *, distance: float, missing_force: float, viscosity: float, spacing: float
 ) -> CertificateStatus:
     """The first test that fails. NaN is no slip: nothing to measure the viscosity by."""
-    if spacing > _COARSE:
+    if spacing > SETTINGS.coarsest:
         return CertificateStatus.UNRESOLVED
-    if missing_force > _MISSING:
+    if missing_force > SETTINGS.missing_force:
         return CertificateStatus.SKIPPED
-    if abs(viscosity - 1) > _VISCOSITY:
+    if abs(viscosity - 1) > SETTINGS.viscosity:
         return CertificateStatus.VISCOSITY
-    return CertificateStatus.OK if distance <= _DISTANCE else CertificateStatus.OFF
+    return CertificateStatus.OK if distance <= SETTINGS.farthest else CertificateStatus.OFF

@@ -12,9 +12,8 @@ from .._checks import Real
 from ..loads import AbstractLoad
 from ..model import AbstractPotential, Scene
 from ..supports import AbstractSupport
+from .settings import SETTINGS
 
-_CHUNK = 1 << 14  # samples a compiled call: any curve runs in the same program
-_STIFF = 1.5  # relaxation times an interval above which velocities are not slopes
 _NODES = np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])  # Gauss on [0, 1]
 _WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18
 
@@ -126,7 +125,7 @@ def _interval(force: Force, viscosity: Real, ends) -> Intervals:
     step = t1 - t0
     chord = (right.well - left.well) + (right.inside - left.inside)
     stiffness = jnp.maximum(jnp.abs(left.slope), jnp.abs(right.slope))
-    stiff = stiffness * step > _STIFF * viscosity
+    stiff = stiffness * step > SETTINGS.stiff * viscosity
     first = step * left.force / (viscosity * force.stretch(left.inside))
     last = step * right.force / (viscosity * force.stretch(right.inside))
     bent, bent_residual, y_bent = _along(force, viscosity, ends, first, last)
@@ -174,15 +173,15 @@ def along_curve(force: Force, viscosity: float, ts, z) -> tuple[CurveSamples, In
     """
     traced = jnp.asarray(viscosity)  # a float would compile anew for every gamma
     samples, between = [], []
-    for start in range(0, ts.size - 1, _CHUNK):
-        piece = slice(start, start + _CHUNK + 1)
+    for start in range(0, ts.size - 1, SETTINGS.chunk):
+        piece = slice(start, start + SETTINGS.chunk + 1)
         count = ts[piece].size
-        room = (0, _CHUNK + 1 - count)
+        room = (0, SETTINGS.chunk + 1 - count)
         # The padding goes on in time: an interval of no length would divide by zero.
         later = ts[piece][-1] + (ts[-1] - ts[0]) * np.arange(1, room[1] + 1)
         times = np.concatenate([ts[piece], later])
         at, on = _chunk(force, traced, times, np.pad(z[piece], room, mode="edge"))
-        last = start + _CHUNK >= ts.size - 1
+        last = start + SETTINGS.chunk >= ts.size - 1
         keep = count if last else count - 1
         samples.append(jax.tree_util.tree_map(lambda v, k=keep: np.asarray(v)[:k], at))
         between.append(

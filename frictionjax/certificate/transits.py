@@ -10,9 +10,7 @@ from jaxtyping import Array
 
 from ..numerics import Extrema, periodic_extrema
 from .curve import CurveSamples, Force, Intervals
-
-_FOLD = 0.015  # periods around a fold: noise of eps/100 makes no passage
-_FAST = 0.25  # periods around the fastest place of a slip that count as the slip
+from .settings import SETTINGS
 
 
 class Transits(NamedTuple):
@@ -86,7 +84,7 @@ def missing_forces(force: Force, folds: CurveFolds, at: CurveSamples) -> np.ndar
 
 def _missing(force: Force, folds: CurveFolds, at: CurveSamples, sign: int) -> np.ndarray:
     place = folds.places[sign]
-    found = along(transits(at.well, at.inside, place, _FOLD), sign)
+    found = along(transits(at.well, at.inside, place, SETTINGS.around_fold), sign)
     best = over_windows(np.maximum, sign * at.load, found.before, found.after + 1)
     pull, stiffness = _pull(force, found.well, place)
     eps = float(force.eps)
@@ -117,7 +115,7 @@ def viscosity_ratio(
     over half a period, not a squared velocity: noise enters at its two ends only.
     """
     gap = (folds.places[1] - folds.places[-1]) % 1
-    band = min(_FAST, 0.5 * gap, 0.5 - 0.5 * gap)
+    band = min(SETTINGS.around_fastest, 0.5 * gap, 0.5 - 0.5 * gap)
     impulse, moved = 0.0, 0.0
     for sign in (1, -1):
         crossed = transits(at.well, at.inside, folds.places[-sign], band)

@@ -3,9 +3,7 @@
 import numpy as np
 
 from .curve import CurveSamples, Intervals
-
-_MARGIN = 0.015  # perturbation in units of eps up to which the second order is allowed for
-_SLIDING = 0.3  # share of (rho_plus - rho_minus)/2 above which a force is a slide's
+from .settings import SETTINGS
 
 
 def distance(
@@ -20,7 +18,7 @@ def distance(
     rests; `f_z` for slides near the folds; 1/f, that is the time a well takes, where the
     motion never comes near to rest. `reach` is `(rho_plus - rho_minus)/2` in N.
     """
-    threshold = _SLIDING * reach
+    threshold = SETTINGS.sliding * reach
     slow = np.minimum(np.abs(at.force[:-1]), np.abs(at.force[1:]))
     sliding = np.minimum(slow, np.abs(on.middle)) > threshold
     sliding &= on.middle * at.force[:-1] > 0
@@ -49,7 +47,7 @@ class _Windows:
         second = np.maximum(np.abs(at.bend[:-1]), np.abs(at.bend[1:]))
         stiff = on.doubt == 0
         self.slack = np.where(stiff, rest, on.doubt)
-        self.slack += 0.5 * (_MARGIN * eps) ** 2 * second * h
+        self.slack += 0.5 * (SETTINGS.second_order * eps) ** 2 * second * h
 
     def worst(self, omega: np.ndarray, where: np.ndarray) -> float:
         """Largest distance in units of eps over windows inside `where`.

@@ -7,7 +7,6 @@ from jaxtyping import Float
 
 from ..slide_laws import NO_LAW, Law
 from .order import (
-    ABOVE_FLOOR,
     Fit,
     Verdict,
     constant_range,
@@ -15,14 +14,7 @@ from .order import (
     plain_slope,
     verdict_of,
 )
-
-_AGREES = 0.05  # of an order: a prediction whose ratio still drifts by more is none
-_USABLE = 4  # cells
-_SEEN = 1.5  # factor by which a law may miss its own power where that is seen
-# Of what the order of the ratio changes by. Of 45 intervals of the dissipation in 8 scenes
-# 42 hold without it, 45 with half or all of it, 1.2 and 1.5 times as wide on average; with
-# the hull of both slopes 42, of a t interval of the smaller half 43, 1.6 times as wide.
-_UNSETTLED = 0.5
+from .settings import SETTINGS
 
 
 class Trust(NamedTuple):
@@ -83,11 +75,13 @@ def fit_with_law(
         return LawFit(free, law._replace(name=NO_LAW.name), _line(eps, free))
     known = np.isfinite(predicted) & (predicted > 0)
     ratio = np.where(known, errors / np.where(known, predicted, 1.0), np.nan)
-    usable = known & (errors > ABOVE_FLOOR * uncertainty) & (errors > 0)
-    if usable.sum() < _USABLE or not _follows(eps[usable], ratio[usable], trust.within):
+    usable = known & (errors > SETTINGS.above_floor * uncertainty) & (errors > 0)
+    if usable.sum() < SETTINGS.usable or not _follows(
+        eps[usable], ratio[usable], trust.within
+    ):
         return LawFit(free, law._replace(name=NO_LAW.name), _line(eps, free))
     found = fit_order(eps[known], ratio[known], uncertainty[known] / predicted[known])
-    drifts = not (found.low - _AGREES <= 0.0 <= found.high + _AGREES)
+    drifts = not (found.low - SETTINGS.agrees <= 0.0 <= found.high + SETTINGS.agrees)
     if found.verdict == Verdict.TOO_FEW_POINTS or drifts:
         return LawFit(free, law._replace(name=NO_LAW.name), _line(eps, free))
     fit = _by_law(eps, errors, np.where(usable, ratio, np.nan), found, law, trust)
@@ -108,7 +102,7 @@ def _by_law(
 ) -> Fit:
     """A fit of the ratio of errors to their law, as one of the errors; NaN: not usable."""
     usable = np.isfinite(ratio)
-    widened = trust.drift + _UNSETTLED * _change(eps[usable], ratio[usable])
+    widened = trust.drift + SETTINGS.unsettled * _change(eps[usable], ratio[usable])
     low, high = found.low - widened, found.high + widened
     window = usable & (eps >= found.eps_min) & (eps <= found.eps_max)
     ends = constant_range(eps[window], ratio[window], low, high)
@@ -134,7 +128,7 @@ def _judged(fit: Fit, law: Law, eps: np.ndarray, predicted: np.ndarray) -> Fit:
     verdict = verdict_of(fit.low, fit.high, fit.misfit)
     last = int(np.argmin(np.abs(eps - fit.eps_min)))
     power = law.constant * eps[last] ** law.order
-    far = predicted[last] > _SEEN * power or predicted[last] * _SEEN < power
+    far = predicted[last] > SETTINGS.seen * power or predicted[last] * SETTINGS.seen < power
     if far and verdict in (Verdict.CONVERGES, Verdict.DIVERGES):
         verdict = Verdict.NOT_YET_SEEN
     return fit._replace(verdict=verdict)

@@ -9,16 +9,9 @@ from scipy.special import fdtr, stdtrit  # scipy.stats takes 0.2 s to import
 
 from .._checks import require
 from .regression import Asymptote, asymptote
+from .settings import SETTINGS
 
-_LEAST = 4  # points: two parameters, two left for the scatter
-_SHORTEST = 5  # points of a window where there are more
-_WINDOWS = 5  # that are tried
 _CUBIC = 4  # parameters
-_ONE_SIDED = 1.64  # sigmas, 95%
-_RARE = 0.01
-_ROUNDING = 1e-12  # of log errors that follow a power to the last digit
-_WORST = 3.0  # factor by which a line may miss its points and still be one
-ABOVE_FLOOR = 3.0  # errors below this many times their own uncertainty are left out
 
 
 class Verdict(enum.IntEnum):
@@ -86,11 +79,11 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
     require(distinct, "eps", eps, "positive, distinct values")
     failed = ~np.isfinite(errors)
     known = np.where(failed, 0.0, errors)
-    near_floor = ~failed & ~(known > ABOVE_FLOOR * uncertainty)
+    near_floor = ~failed & ~(known > SETTINGS.above_floor * uncertainty)
     usable = np.flatnonzero(~failed & ~near_floor)
     usable = usable[np.argsort(-eps[usable])]
     counts = {"floor": int(near_floor.sum()), "failed": int(failed.sum())}
-    if usable.size < _LEAST:
+    if usable.size < SETTINGS.least_points:
         return _no_fit(usable.size, **counts)
     x, y = np.log(eps[usable]), np.log(errors[usable])
     start, found = _best_window(x, y)
@@ -149,7 +142,7 @@ def constant_range(
 
 def verdict_of(low: float, high: float, misfit: float) -> Verdict:
     """What an interval of the order says, and how far the line misses its points."""
-    if misfit > _WORST:
+    if misfit > SETTINGS.worst_misfit:
         return Verdict.NO_POWER
     if low > 0:
         return Verdict.CONVERGES
@@ -162,8 +155,10 @@ def _best_window(x: np.ndarray, y: np.ndarray) -> tuple[int, Asymptote]:
     The longest that fits. (The narrowest interval of all windows: half of those of
     eps (1 + 3 eps^0.2) missed, since it is narrow where chance hides the bend.)
     """
-    shortest = max(0, x.size - max(_SHORTEST, x.size // 2))
-    starts = np.unique(np.linspace(0, shortest, _WINDOWS).round().astype(int)).tolist()
+    shortest = max(0, x.size - max(SETTINGS.shortest_window, x.size // 2))
+    starts = np.unique(
+        np.linspace(0, shortest, SETTINGS.windows).round().astype(int)
+    ).tolist()
     last = _asymptote(x, y, starts[-1])
     for start in starts[:-1]:
         found = _asymptote(x, y, start)
@@ -176,7 +171,7 @@ def _asymptote(x: np.ndarray, y: np.ndarray, start: int) -> Asymptote:
     """Of a window. It scatters as all points do, unless that is unlikely (99%)."""
     own, every = _scatter(x[start:], y[start:]), _scatter(x, y)
     freedom = x.size - start - _CUBIC, x.size - _CUBIC
-    if freedom[0] > 0 and every > 0 and fdtr(*freedom, (own / every) ** 2) < _RARE:
+    if freedom[0] > 0 and every > 0 and fdtr(*freedom, (own / every) ** 2) < SETTINGS.rare:
         every = own
     return asymptote(x[start:], y[start:], every)
 
@@ -190,7 +185,7 @@ def _scatter(x: np.ndarray, y: np.ndarray) -> float:
 
 
 def _fits(found: Asymptote, last: Asymptote) -> bool:
-    if np.abs(found.left).max() < _ROUNDING:
+    if np.abs(found.left).max() < SETTINGS.exact:
         return True
     return _agrees(found, last) and _is_random(found.left) and _is_even(found.left)
 
@@ -207,7 +202,7 @@ def _agrees(found: Asymptote, last: Asymptote) -> bool:
 def _is_random(left: np.ndarray) -> bool:
     """Whether neighbouring residuals differ as much as chance has it (von Neumann, 95%)."""
     steps = float(np.sum(np.diff(left) ** 2))
-    return steps >= (2 - 2 * _ONE_SIDED / np.sqrt(left.size)) * float(left @ left)
+    return steps >= (2 - 2 * SETTINGS.one_sided / np.sqrt(left.size)) * float(left @ left)
 
 
 def _is_even(left: np.ndarray) -> bool:
@@ -220,7 +215,7 @@ def _is_even(left: np.ndarray) -> bool:
     if half < _CUBIC - 1 or not small.any():
         return True
     ratio = np.mean(large**2) / np.mean(small**2)
-    return bool(fdtr(half - 1, left.size - half - 1, ratio) < 1 - _RARE)
+    return bool(fdtr(half - 1, left.size - half - 1, ratio) < 1 - SETTINGS.rare)
 
 
 def local_orders(

@@ -6,17 +6,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.special import stdtrit  # scipy.stats takes 0.2 s to import
 
-_LEVEL = 0.95
-_SLOWEST, _FASTEST = 0.2, 3.0  # q of a correction c e^(q x); faster ones leave two points
-_SMALLEST, _LARGEST = -0.95, 1e3  # c at the largest x
-_AT_THE_END = 0.5  # c e^(q x) at the smallest x: beyond, the data are of something else
-_HIDDEN = 0.05  # c that scatter may hide
-_EVIDENCE = 2.7  # of chi^2, 90%, beyond the interval's own: then a larger c is believed
-_CELLS_Q, _CELLS_C, _ZOOMS = 8, 45, 3
-_FINE = 1e-4  # c is spaced evenly below, by equal ratios above
-_LEAST = 4  # points: nothing but a line
-_LOGARITHMS = np.geomspace(1e-2, 30.0, 120)
-_ROUNDING = 1e-13  # of y
+from .settings import SETTINGS
+
+_LOGARITHMS = np.geomspace(*SETTINGS.logarithms)
 
 
 class Asymptote(NamedTuple):
@@ -79,22 +71,26 @@ def asymptote(
     """
     powers = _powers(x, y, np.ones(1), np.zeros(1))
     line = powers.misfit[0]
-    q, c = np.log([_SLOWEST, _FASTEST]), _to_even(np.array([_SMALLEST, _LARGEST]))
-    for _ in range(_ZOOMS):
+    q, c = (
+        np.log([SETTINGS.slowest, SETTINGS.fastest]),
+        _to_even(np.array([SETTINGS.smallest, SETTINGS.largest])),
+    )
+    for _ in range(SETTINGS.zooms):
         grid = np.meshgrid(
-            np.exp(np.linspace(q[0], q[1], _CELLS_Q)), np.linspace(c[0], c[1], _CELLS_C)
+            np.exp(np.linspace(q[0], q[1], SETTINGS.cells_q)),
+            np.linspace(c[0], c[1], SETTINGS.cells_c),
         )
         new = _powers(x, y, grid[0].ravel(), _from_even(grid[1].ravel()))
         powers = _Curves(*(np.concatenate(two) for two in zip(powers, new, strict=True)))
         judged = _judged(powers, x.size, line, scatter)
         near = judged.away <= judged.limit
-        q = _around(np.log(powers.q[near]), q, _CELLS_Q)
-        c = _around(_to_even(powers.c[near]), c, _CELLS_C)
+        q = _around(np.log(powers.q[near]), q, SETTINGS.cells_q)
+        c = _around(_to_even(powers.c[near]), c, SETTINGS.cells_c)
     best = judged.best
     low, high = _hull(powers, judged.away, judged, x)
-    if x.size > _LEAST:
+    if x.size > SETTINGS.line_only:
         logarithms = _logarithms(x, y)
-        cost = logarithms.misfit / judged.variance + judged.limit + _EVIDENCE
+        cost = logarithms.misfit / judged.variance + judged.limit + SETTINGS.evidence
         away = np.maximum(cost - _cost(powers, judged)[best], 0.0)
         further = _hull(logarithms, away, judged, x)
         low, high = min(low, further[0]), max(high, further[1])
@@ -102,11 +98,11 @@ def asymptote(
 
 
 def _to_even(c: np.ndarray) -> np.ndarray:
-    return np.arcsinh(c / _FINE)
+    return np.arcsinh(c / SETTINGS.even)
 
 
 def _from_even(c: np.ndarray) -> np.ndarray:
-    return _FINE * np.sinh(c)
+    return SETTINGS.even * np.sinh(c)
 
 
 def _around(values: np.ndarray, ends: np.ndarray, cells: int) -> np.ndarray:
@@ -118,7 +114,11 @@ def _around(values: np.ndarray, ends: np.ndarray, cells: int) -> np.ndarray:
 def _powers(x: np.ndarray, y: np.ndarray, q: np.ndarray, c: np.ndarray) -> _Curves:
     bends = c[:, None] * np.exp(q[:, None] * (x - x.max()))
     end = c * np.exp(q * (x.min() - x.max()))
-    price = np.where(np.abs(end) > _AT_THE_END, np.inf, np.minimum((c / _HIDDEN) ** 2, 1.0))
+    price = np.where(
+        np.abs(end) > SETTINGS.at_the_end,
+        np.inf,
+        np.minimum((c / SETTINGS.hidden) ** 2, 1.0),
+    )
     return _curves(x, y, np.log1p(bends), q, c, q * end / (1 + end), price)
 
 
@@ -137,17 +137,17 @@ def _curves(x, y, bends, q, c, beyond, price) -> _Curves:
     left = y - y.mean() - bends
     part = left @ unit.T
     left -= part @ unit
-    misfit = np.maximum((left**2).sum(axis=1), x.size * _ROUNDING**2)
+    misfit = np.maximum((left**2).sum(axis=1), x.size * SETTINGS.rounding**2)
     slope = part[:, 1] / np.sqrt(middle @ middle)
     return _Curves(q, c, slope, left, misfit, beyond, price)
 
 
 def _judged(curves: _Curves, n: int, line: float, scatter: float) -> _Judged:
-    freedom, few = n - 2, n <= _LEAST
+    freedom, few = n - 2, n <= SETTINGS.line_only
     variance = line / freedom if few else curves.misfit.min() / (n - 4)
     judged = _Judged(0, np.zeros(0), max(variance, scatter**2), _limit(freedom))
     best = int(np.argmin(_cost(curves, judged)))
-    if not few and abs(curves.c[best]) > _HIDDEN:
+    if not few and abs(curves.c[best]) > SETTINGS.hidden:
         freedom = n - 4
     variance = max(curves.misfit[best] / freedom, scatter**2)
     judged = judged._replace(variance=float(variance), limit=_limit(freedom))
@@ -156,12 +156,12 @@ def _judged(curves: _Curves, n: int, line: float, scatter: float) -> _Judged:
 
 
 def _cost(curves: _Curves, judged: _Judged) -> np.ndarray:
-    price = curves.price * (judged.limit + _EVIDENCE)
+    price = curves.price * (judged.limit + SETTINGS.evidence)
     return curves.misfit / judged.variance + price
 
 
 def _limit(freedom: int) -> float:
-    return float(stdtrit(freedom, 0.5 + 0.5 * _LEVEL)) ** 2
+    return float(stdtrit(freedom, 0.5 + 0.5 * SETTINGS.level)) ** 2
 
 
 def _hull(

@@ -5,15 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .orbit import Orbit, periodic_orbit
+from .settings import SETTINGS
 from .well_force import WellForce
 
 FREE, AVERAGED, SLIPS, BETWEEN = "free", "averaged", "slips", "between"
-_SAME = 1e-9  # gamma at the threshold
-_HIGH = 1e-6  # gap, of the force's range, that is none
-_SMALL = 1e-6  # drop of the force in a well, of its range: far enough down
-# Drop and drag, of the range, of a tip that rests and then leaves its fold before the force
-# has dropped: drop/drag^2 is large, drop^2/drag small.
-_REST = 1e-9, 1e-7
 
 
 class LimitOrbit(NamedTuple):
@@ -40,11 +35,11 @@ def limit_orbit(
     threshold ("between") both are of order 1, and the constant is a number.
     """
     rests = gamma - threshold(well)
-    if rests < -_SAME:
+    if rests < -SETTINGS.same_gamma:
         force = averaged_force(well, speed)
         return LimitOrbit(Orbit(force, force, force), gamma / threshold(well), AVERAGED)
-    if rests <= _SAME:
-        eps = _SMALL * well.range / stiffness
+    if rests <= SETTINGS.same_gamma:
+        eps = SETTINGS.small_drop * well.range / stiffness
         orbit = periodic_orbit(well, stiffness * eps, speed * eps**gamma)
         scaled = (values / eps + well.shift for values in orbit)
         return LimitOrbit(Orbit(*scaled), 1.0, BETWEEN)
@@ -78,14 +73,14 @@ def fold_force(
     force v eps^gamma of a tip that creeps over the steepest place.
     """
     creeps = gamma * threshold(well) - 1
-    if creeps > _SAME:
+    if creeps > SETTINGS.same_gamma:
         return speed, gamma
-    if creeps >= -_SAME:
-        eps = _SMALL * well.range / stiffness
+    if creeps >= -SETTINGS.same_gamma:
+        eps = SETTINGS.small_drop * well.range / stiffness
         orbit = periodic_orbit(well, stiffness * eps, speed * eps**gamma)
         return orbit.largest / eps**gamma, gamma
     power = 1 / (1 + threshold(well))
-    drop, drag = (np.asarray(share * well.range) for share in _REST)
+    drop, drag = (np.asarray(share * well.range) for share in SETTINGS.resting)
     found = periodic_orbit(well, drop, drag).largest
     return found * (stiffness * speed / (drop * drag)) ** power, (1 + gamma) * power
 
@@ -96,7 +91,7 @@ def _slips(well: WellForce) -> np.ndarray:
     One well, less by what is flat of it; shorter where there are two tops of one height.
     """
     places = np.concatenate([well.place[:-1], well.place[:-1] + 1.0])
-    high = np.flatnonzero(well.gap[:-1] < _HIGH * well.range)
+    high = np.flatnonzero(well.gap[:-1] < SETTINGS.high * well.range)
     following = np.append(high[1:], high[0] + well.place.size - 1)
     apart = following > high + 1
     return places[following[apart] - 1] - places[high[apart] + 1]

@@ -18,13 +18,7 @@ from ..model import (
     strips_at,
 )
 from ..numerics import slope_of
-
-_EVEN = 1024  # places of a period
-_NEAREST, _FARTHEST, _BESIDE = 1e-4, 0.06, 96  # more of them on each side of an extreme
-_TOGETHER = 2048  # places of one compiled call
-_ZOOMS, _PARTS = 4, 1024  # of the search for an extreme: 1e-11 of a period
-_MOMENTS = 512  # of [0, T], beside the turning points of the load
-_SMALL = 1e-3  # of the largest eps: there, and at half of it, is V_eps' - W' looked at
+from .settings import SETTINGS
 
 
 class SlideData(NamedTuple):
@@ -77,9 +71,9 @@ def slide_data(
     """
     turns = np.asarray(scene.turning_points())
     turns = np.unique(turns[turns < float(scene.duration)])
-    if turns.size >= CHUNK - _MOMENTS:
+    if turns.size >= CHUNK - SETTINGS.moments:
         return None
-    wells = _wells(scene.potential, _SMALL * float(np.max(eps)))
+    wells = _wells(scene.potential, SETTINGS.small_eps * float(np.max(eps)))
     return SlideData(*wells, *_moments(scene, found, turns))
 
 
@@ -112,11 +106,11 @@ def _wells(
 
     def at(places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         size = np.asarray(eps)
-        return in_chunks(_forces, _TOGETHER, (potential, size), (places,))
+        return in_chunks(_forces, SETTINGS.together, (potential, size), (places,))
 
-    even = np.arange(_EVEN) / _EVEN
+    even = np.arange(SETTINGS.even_places) / SETTINGS.even_places
     leading = at(even)[1]
-    around = np.geomspace(_NEAREST, _FARTHEST, _BESIDE)
+    around = np.geomspace(SETTINGS.nearest, SETTINGS.farthest, SETTINGS.beside_extreme)
     beside = np.concatenate([-around[::-1], [0.0], around])
     tops = [_top(at, even[int(np.argmax(sign * leading))], sign) for sign in (1, -1)]
     places = np.unique(np.concatenate([even, *((top + beside) % 1.0 for top in tops)]))
@@ -125,13 +119,13 @@ def _wells(
 
 def _top(at, place: float, sign: int) -> float:
     """Where `sign W'` is largest, from the best of the even places."""
-    width = 1 / _EVEN
-    for _ in range(_ZOOMS):
-        near = place + width * np.linspace(-1, 1, _PARTS + 1)
+    width = 1 / SETTINGS.even_places
+    for _ in range(SETTINGS.zooms):
+        near = place + width * np.linspace(-1, 1, SETTINGS.zoom_parts + 1)
         values = sign * at(near)[1]
         # Of a flat top, or where rounding says so, the middle.
         best = np.flatnonzero(values >= values.max())
-        place, width = float(near[best].mean()), 4 * width / _PARTS
+        place, width = float(near[best].mean()), 4 * width / SETTINGS.zoom_parts
     return place
 
 
@@ -144,7 +138,7 @@ def _moments(
     to move too; stiffness is that of the edges' states, found again at the limit's own.
     """
     rho = float(found.rho_plus), float(found.rho_minus)
-    ends = np.linspace(0.0, float(scene.duration), _MOMENTS)
+    ends = np.linspace(0.0, float(scene.duration), SETTINGS.moments)
     times = np.unique(np.concatenate([ends, turns]))
     load, lower, upper = strips_at(scene, *rho, times)
     length, pull = np.diff(times), np.diff(load)

@@ -4,15 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .settings import SETTINGS
 from .well_force import WellForce, gap_at
-
-# Of a period with one top; twice as many change no prediction by more than 0.3%. With two
-# of one height a fold's delay came out 4.3 times too long on 256, within 1% on 512.
-_NODES = 256
-_MOST_TOPS = 4  # that have nodes of their own
-_NEARLY = 0.01  # of the range: a top that is lower by less has
-_SWEEPS = 12  # of Newton's method for the periodic solution; 2 to 4 are enough
-_CONVERGED = 1e-5
 
 
 class Orbit(NamedTuple):
@@ -34,7 +27,7 @@ def periodic_orbit(well: WellForce, drop: np.ndarray, drag: np.ndarray) -> Orbit
     shape = np.broadcast_shapes(drop.shape, drag.shape)
     drop, drag = np.broadcast_to(drop, shape).ravel(), np.broadcast_to(drag, shape).ravel()
     scale = excess_scale(well, drop, drag)
-    place = _nodes(well, scale, _NODES * _tops(well))
+    place = _nodes(well, scale, SETTINGS.orbit_nodes * _tops(well))
     gap = gap_at(well, place)
     grids = [_cycle(place[::n], gap[::n], drop, drag, scale) for n in (1, 2, 4)]
     found = ((8 * a - 6 * b + c) / 3 for a, b, c in zip(*grids, strict=True))
@@ -62,7 +55,11 @@ def _tops(well: WellForce) -> int:
     """How many tops are about as high as the highest one, at least 1."""
     gap = well.gap[:-1]
     lowest = (gap < np.roll(gap, 1)) & (gap <= np.roll(gap, -1))
-    return int(np.clip(np.sum(lowest & (gap < _NEARLY * well.range)), 1, _MOST_TOPS))
+    return int(
+        np.clip(
+            np.sum(lowest & (gap < SETTINGS.nearly_top * well.range)), 1, SETTINGS.most_tops
+        )
+    )
 
 
 def _nodes(well: WellForce, scale: np.ndarray, count: int) -> np.ndarray:
@@ -85,13 +82,13 @@ def _cycle(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Largest, smallest and mean excess of the periodic solution on these nodes."""
     start = first.copy()
-    for _ in range(_SWEEPS):
+    for _ in range(SETTINGS.sweeps):
         states, kept = _march(place, gap, drop, drag, start)
         change = (states[-1] - start) / np.maximum(1 - kept, 1e-12)
         size = np.abs(states).max(axis=0)
         # No solution lies below the last well's fold by more than a well's drop.
         start = np.maximum(start + change, -drop)
-        if np.all(np.abs(change) <= _CONVERGED * size):
+        if np.all(np.abs(change) <= SETTINGS.converged * size):
             break
     weights = np.diff(place, axis=0)
     mean = 0.5 * np.sum(weights * (states[1:] + states[:-1]), axis=0)

@@ -9,17 +9,10 @@ from .averaged_motion import AveragedMotion, averaged_motion, steady_force
 from .exponents import AVERAGED, FREE, SLIPS, LimitOrbit, fold_force, limit_orbit
 from .ingredients import SlideData
 from .orbit import Orbit, periodic_orbit
+from .settings import SETTINGS
 from .well_force import WellForce, well_force
 
-# Speeds of slides that are solved, of the fastest; between them forces are interpolated.
-_SPEEDS = np.array([1e-3, 0.03, 0.1, 0.25, 0.45, 0.7, 1.0])
-_ALIKE = 1.02  # ratio of stiffnesses that are one
-_STIFFNESSES = 4  # that are solved where they are not
-_FEW = 4.0  # wells of the way: fewer are no slide
-_NO_SHIFT = 1e-6  # wells: the change of rho with eps is none
-_TIE = 1e-9  # of orders
 _PARABOLA = 3  # nodes
-_SMALL_DRAG = 1e-5  # viscous force, of the range of W', that is as good as none
 
 
 class Law(NamedTuple):
@@ -82,7 +75,7 @@ def predict_errors(
         for one in slides
     ]
     found = _errors(data, slides, forces, steady, motion)
-    known = moved / cell_eps >= _FEW
+    known = moved / cell_eps >= SETTINGS.few_wells
     laws = [_laws(data, slides, float(g)) for g in gamma]
     shape = gamma.size, eps.size
     return {
@@ -138,9 +131,9 @@ def _errors(
 def _forces(slide: _Slide, eps: np.ndarray, gamma: np.ndarray) -> Orbit:
     """Forces beyond rho (N) at the moments of a slide, (cells, moments)."""
     low, high = float(slide.stiffness.min()), float(slide.stiffness.max())
-    alike = high <= _ALIKE * low
-    stiffness = np.geomspace(low, high, 1 if alike else _STIFFNESSES)
-    speed = slide.speed.max() * _SPEEDS
+    alike = high <= SETTINGS.alike * low
+    stiffness = np.geomspace(low, high, 1 if alike else SETTINGS.stiffnesses)
+    speed = slide.speed.max() * np.array(SETTINGS.speeds)
     drop = stiffness[:, None] * eps[:, None, None]
     drag = speed * (eps**gamma)[:, None, None]
     nodes = periodic_orbit(slide.well, drop, drag)
@@ -182,7 +175,7 @@ def _laws(data: SlideData, slides: list[_Slide], gamma: float) -> tuple[Law, Law
     order = min(one.order for one in limits)
     leading = [_leading(one, order) for one in limits]
     found = _errors(data, slides, leading, [np.zeros(1)] * len(slides), _AT_ONCE)
-    name = next(one.law for one in limits if one.order <= order + _TIE)
+    name = next(one.law for one in limits if one.order <= order + SETTINGS.tie)
     sup, strip, spent = (Law(order, float(values[0]), name) for values in found)
     if name == AVERAGED:
         spent = spent._replace(constant=_averaged_dissipation(data, slides, gamma, order))
@@ -196,7 +189,7 @@ def _averaged_dissipation(
     kink, part of the lag stays, which is no matter of steady slides.
     """
     fastest = max(float(one.speed.max()) for one in slides)
-    drag = _SMALL_DRAG * min(one.well.range for one in slides)
+    drag = SETTINGS.small_drag * min(one.well.range for one in slides)
     eps = np.array([(drag / fastest) ** (1 / gamma)])
     steady = [steady_force(one.well, one.speed * eps[:, None] ** gamma) for one in slides]
     forces = [Orbit(force, force, force) for force in steady]
@@ -212,7 +205,7 @@ def _wells(data: SlideData, slides: list[_Slide]) -> dict[int, WellForce]:
 
 def _leading(limit: LimitOrbit, order: float) -> Orbit:
     """Of what is of higher order than the other direction nothing is left."""
-    share = 1.0 if limit.order <= order + _TIE else 0.0
+    share = 1.0 if limit.order <= order + SETTINGS.tie else 0.0
     return Orbit(*(share * values[None, :] for values in limit.force))
 
 
@@ -226,9 +219,11 @@ def _strip_law(
     if any(one.law != SLIPS for one in limits):
         return leading
     shifts = [float(np.max(s.well.shift / s.stiffness)) for s in slides]
-    if max(shifts) > _NO_SHIFT:
+    if max(shifts) > SETTINGS.no_shift:
         return leading
-    held = [s for s, shift in zip(slides, shifts, strict=True) if shift >= -_NO_SHIFT]
+    held = [
+        s for s, shift in zip(slides, shifts, strict=True) if shift >= -SETTINGS.no_shift
+    ]
     if not held:
         return NO_LAW
     folds = []

@@ -2,13 +2,7 @@
 
 import numpy as np
 
-_BESIDE = 5  # places on each side that a polynomial goes through
-_DEGREE = 6
-_WIDTH = 1e-3  # of a period: about the distance of the table's even places
-_CLOSEST, _MORE = 1e-8, 48  # places on each side, at equal ratios down to that distance
-_LOW = 0.5  # of the range: a maximum that lies deeper holds no tip
-_EQUAL = 1e-7  # of the range: heights that a sixth degree does not tell apart
-_ROUND = 1e-9  # of the range, by which it stands out from its neighbours; else it is flat
+from .settings import SETTINGS
 
 
 def with_second_tops(place: np.ndarray, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -19,7 +13,7 @@ def with_second_tops(place: np.ndarray, held: np.ndarray) -> tuple[np.ndarray, n
     even places: the error of the strip came out 30% too large at eps = 5e-6.
     """
     count, width = place.size, float(held.max() - held.min())
-    around = np.arange(-_BESIDE, _BESIDE + 1)
+    around = np.arange(-SETTINGS.beside_top, SETTINGS.beside_top + 1)
     places, values = [place], [held]
     for top in _others(held, width):
         index = top + around
@@ -36,7 +30,7 @@ def with_second_tops(place: np.ndarray, held: np.ndarray) -> tuple[np.ndarray, n
 def _others(held: np.ndarray, width: float) -> np.ndarray:
     """Where a maximum is that is not the first one, and high enough to count."""
     rising, falling = held >= np.roll(held, 1), held > np.roll(held, -1)
-    high = held > held.max() - _LOW * width
+    high = held > held.max() - SETTINGS.deep * width
     tops = np.flatnonzero(rising & falling & high)
     return tops[tops != int(np.argmax(held))]
 
@@ -50,21 +44,26 @@ def _beside(
     the polynomial's error is of its height: cut off there it would be flat, and held tips.
     """
     size = float(np.abs(near).max())
-    if values[_BESIDE] - max(values[0], values[-1]) < _ROUND * width:
+    if (
+        values[SETTINGS.beside_top] - max(values[0], values[-1])
+        < SETTINGS.stands_out * width
+    ):
         return None
-    curve = np.polynomial.Polynomial.fit(near, values, _DEGREE, domain=[-size, size])
+    curve = np.polynomial.Polynomial.fit(
+        near, values, SETTINGS.degree, domain=[-size, size]
+    )
     slope, bend = curve.deriv(), curve.deriv(2)
     top = 0.0
     for _ in range(4):
         if not bend(top) < 0:
             return None
         top = top - slope(top) / bend(top)
-    if not near[_BESIDE - 1] < top < near[_BESIDE + 1]:
+    if not near[SETTINGS.beside_top - 1] < top < near[SETTINGS.beside_top + 1]:
         return None
-    distance = np.geomspace(_CLOSEST, _WIDTH, _MORE)
+    distance = np.geomspace(SETTINGS.closest, SETTINGS.width, SETTINGS.more)
     wanted = top + np.concatenate([-distance[::-1], [0.0], distance])
     below = highest - curve(top)
-    if below < -_EQUAL * width:
+    if below < -SETTINGS.equal * width:
         return None
-    height = highest if below < _EQUAL * width else curve(top)
+    height = highest if below < SETTINGS.equal * width else curve(top)
     return wanted, height - np.maximum(curve(top) - curve(wanted), 0.0)

@@ -5,14 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .second_tops import with_second_tops
+from .settings import SETTINGS
 
-_RELIABLE = 1e-11  # of the force's range: what is smaller is rounding of W'
-_NONE = 1e-14  # of the range: no gap
-_DECADE = 10.0  # of distances from the top, over which its flatness is measured
-_WHOLE = 0.06  # flatness that is this near an even number is one
-_FLATTEST = 12.0  # beyond, a top is a straight flank
-_NEAREST, _NODES = 1e-13, 160  # nodes between the table's and that distance
-_FORCES = np.log(np.geomspace(1e-26, 1e3, 288))  # of the range, for passage times
+_FORCES = np.log(np.geomspace(*SETTINGS.passage_forces))  # of passage times
 
 
 class WellForce(NamedTuple):
@@ -50,7 +45,7 @@ def well_force(
     place, others = with_second_tops(place[order], held[order])
     gap = held[top] - others
     width = float(gap.max())
-    gap = np.maximum(gap, _NONE * width)  # of a second top of the same height
+    gap = np.maximum(gap, SETTINGS.no_gap * width)  # of a second top of the same height
     left, right = (_side(sign * place, gap, width) for sign in (-1, 1))
     flatness = _flatness(left.power, right.power)
     place = np.concatenate([-left.place[::-1], [0.0], right.place])
@@ -76,20 +71,22 @@ def _side(place: np.ndarray, gap: np.ndarray, width: float) -> _Side:
     beyond = place > 0
     order = np.argsort(place[beyond])
     place, gap = place[beyond][order], gap[beyond][order]
-    least = _RELIABLE * width
+    least = SETTINGS.reliable * width
     known = np.flatnonzero(gap > least)
     first = int(known[0])
-    near = place[first:] <= _DECADE * place[first]
+    near = place[first:] <= SETTINGS.decade * place[first]
     near[:4] = True
     near = np.flatnonzero(near) + first
-    flat = place[first] > 0.5 / _DECADE or np.any(gap[near] <= least)
+    flat = place[first] > 0.5 / SETTINGS.decade or np.any(gap[near] <= least)
     power = np.inf
     if not flat:
         power = float(np.polyfit(np.log(place[near]), np.log(gap[near]), 1)[0])
     place, gap = place[first:], gap[first:]
-    inner = np.geomspace(_NEAREST, place[0], _NODES, endpoint=False)
-    if not np.isfinite(power) or power > _FLATTEST:
-        inner_gap = np.full(_NODES, _NONE * width)
+    inner = np.geomspace(
+        SETTINGS.nearest_node, place[0], SETTINGS.gap_nodes, endpoint=False
+    )
+    if not np.isfinite(power) or power > SETTINGS.flattest:
+        inner_gap = np.full(SETTINGS.gap_nodes, SETTINGS.no_gap * width)
     else:
         inner_gap = gap[0] * (inner / place[0]) ** power
     return _Side(np.append(inner, place), np.append(inner_gap, gap), power)
@@ -98,10 +95,10 @@ def _side(place: np.ndarray, gap: np.ndarray, width: float) -> _Side:
 def _flatness(left: float, right: float) -> float:
     """p of a top whose sides have these powers: the flatter one decides."""
     power = max(left, right)
-    if not np.isfinite(power) or power > _FLATTEST:
+    if not np.isfinite(power) or power > SETTINGS.flattest:
         return np.inf
     whole = 2.0 * round(0.5 * power)
-    return whole if abs(power - whole) < _WHOLE else power
+    return whole if abs(power - whole) < SETTINGS.whole else power
 
 
 def passage_time(place: np.ndarray, gap: np.ndarray, force: np.ndarray) -> np.ndarray:

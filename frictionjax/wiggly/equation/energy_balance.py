@@ -59,7 +59,7 @@ def slopes_between(
     return slope0, slope1, rest
 
 
-def _end_slope(point: Point, step: Real) -> tuple[Real, Real]:
+def _end_slope(point: Point, step: Real) -> tuple[Real, Bool[Array, ""]]:
     """Slope for interpolating a step's end, and whether the step is a rest there.
 
     On a rest the computed velocity is the position error over a relaxation time, which

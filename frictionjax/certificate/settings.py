@@ -1,0 +1,37 @@
+"""What tells solutions from other curves: measured, with what lost.
+
+At eps 1e-3 to 0.3, gamma 0.5 to 2 and every bristle, true curves with and without noise of
+eps/100 against wrong ones: shifted by eps/10, a well skipped, another gamma.
+"""
+
+from typing import NamedTuple
+
+
+class Settings(NamedTuple):
+    """Lengths in units of eps, and places in periods, unless said otherwise."""
+
+    # Verdicts.
+    coarsest: float = 0.25  # between two samples: more, and slips are not resolved
+    # Noise 0.0105 (0.018 where rests are sampled thinly), shift 0.07.
+    farthest: float = 0.03
+    # Of Phi'' eps at a fold: noise -0.013 and less, skipped wells 0.16 to 0.8, or
+    # anything below where the load overshoots by a well while a fold is passed: there
+    # distance tells.
+    missing_force: float = 0.02
+    # Relative: noise 0.02; a gamma off by 0.1 is 0.13 at eps = 0.3 and grows below.
+    viscosity: float = 0.1
+
+    # Passages.
+    around_fold: float = 0.015  # noise of eps/100 makes no passage
+    around_fastest: float = 0.25  # of the fastest place of a slip: what counts as the slip
+
+    # Distance.
+    second_order: float = 0.015  # perturbation up to which the second order is allowed for
+    sliding: float = 0.3  # of (rho_plus - rho_minus)/2: larger forces are a slide's
+
+    # Curves between samples.
+    stiff: float = 1.5  # relaxation times an interval: beyond, velocities are not slopes
+    chunk: int = 1 << 14  # samples a compiled call: any curve runs in the same program
+
+
+SETTINGS = Settings()
