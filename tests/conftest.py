@@ -20,6 +20,27 @@ if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
     atexit.register(shutil.rmtree, _CACHE, ignore_errors=True)
 
 import jax
+from jaxtyping import install_import_hook
+
+# Shapes that functions and records of these packages are annotated with are checked at
+# every call, when compiled ones are traced. Has to stand before the library is imported.
+SHAPES_CHECKED = (
+    "frictionjax.certificate",
+    "frictionjax.convergence",
+    "frictionjax.design.common",
+    "frictionjax.limit",
+    "frictionjax.measured",
+    "frictionjax.model",
+    "frictionjax.numerics",
+    "frictionjax.profiles",
+    "frictionjax.slide_laws",
+    "frictionjax.sweeps",
+    "frictionjax.wiggly.equation",
+    "frictionjax.wiggly.limit_path",
+    "frictionjax.wiggly.rosenbrock",
+    "frictionjax.wiggly.sequential",
+)
+install_import_hook(SHAPES_CHECKED, "shape_checks.shapes_checked")
 
 jax.config.update("jax_enable_x64", True)
 

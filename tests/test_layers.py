@@ -244,6 +244,7 @@ def test_packages_that_the_library_imports_are_declared():
 CUTTING_ACROSS = {
     "test_layers",
     "test_notebooks",
+    "test_shapes",
     "_checks/test_arrays",
     "_checks/test_inside_jit",
     "_checks/test_precision",

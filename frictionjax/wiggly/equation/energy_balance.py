@@ -165,7 +165,7 @@ class Errors(NamedTuple):
     of_energies: Real
 
     @property
-    def sum_is_closer(self) -> Real:
+    def sum_is_closer(self) -> Bool[Array, ""]:
         """Whether the direct sum is to be taken."""
         return self.of_sum < self.of_energies
 

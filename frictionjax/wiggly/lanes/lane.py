@@ -103,7 +103,7 @@ def field_of_lane(scene: LaneScene, task: LaneTask) -> TipField:
     return TipField(*parts, cell.eps, cell.viscosity, well=task.well, origin=task.origin)
 
 
-def keep(condition: Real, new: Any, old: Any) -> Any:
+def keep(condition: Bool[Array, "*lanes"], new: Any, old: Any) -> Any:
     return jax.tree_util.tree_map(lambda a, b: jnp.where(condition, a, b), new, old)
 
 

@@ -6,7 +6,7 @@ import diffrax
 import jax
 import jax.numpy as jnp
 from equinox import AbstractClassVar
-from jaxtyping import Array
+from jaxtyping import Array, Float
 
 from ..._checks import Real, require
 from ..rosenbrock import RODAS4P2, RODAS5P, Linearised, Tableau, combine, rosenbrock_step
@@ -19,7 +19,7 @@ class StageInterpolation(diffrax.AbstractLocalInterpolation):
     t1: Real
     y0: Real
     y1: Real
-    bends: Real
+    bends: Float[Array, " rows"]
 
     def evaluate(self, t0: Any, t1: Any = None, left: bool = True) -> Array:
         if t1 is not None:

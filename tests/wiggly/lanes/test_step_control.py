@@ -1,6 +1,7 @@
 """Step control of lanes, on errors that change steadily as they do around a fold."""
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -20,7 +21,7 @@ def follow(octaves: float, count: int = 60) -> tuple[float, float]:
     """
     level, trend, largest, rejected, used = 0.0, 0.0, FIRST, 0, []
     for _ in range(count):
-        step = float(step_of(level, FIRST))
+        step = float(step_of(*map(jnp.asarray, (level, FIRST))))
         error = CONTROL.tolerance * (step / largest) ** ORDER
         accepted, level, trend_after = JUDGE(ORDER, CONTROL, trend, step, 0.0, error)
         level = float(level)
