@@ -82,7 +82,7 @@ _RUNS: tuple[tuple[Any, Any, str], ...] = (
     ((1e-3, 1e-4, 1e-5, 1e-6), (1.0, 2.0), "auto"),
     ((1e-3,), (1.0, 2.0), "resolved"),  # steps
     ((2.5e-3,), (0.5,), "auto"),  # one lane, which goes through all
-    ((1e-3,), (0.5,), "auto"),  # rides
+    ((1e-3,), (0.5,), "auto"),  # slip maps
 )
 
 

@@ -31,7 +31,7 @@ from .equation import WiggleFolds, plan_steps, power_series_of, pull_of
 from .lanes import LaneScene
 from .limit_path import NODES, Path, slow_ends
 from .rosenbrock import RODAS5P
-from .slip_map import lag_forces
+from .slip_map import lag_forces, none_known
 
 # Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as fast
 # for one cell, as lanes wait for the longest tile; three times: 0.7.) Of the whole sweep
@@ -106,7 +106,7 @@ def ground_of(
         start_well=well,
         start_tip=tip,
         relaxed=_relaxation(scene, path, eps, gamma),
-        rides=_no_rides(eps.size),
+        fast_slides=none_known(eps.size),
     )
 
 
@@ -115,12 +115,6 @@ def _relaxation(scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray):
     far = abs(float(scene.z0) - path.states[0])
     efolds = np.log(np.maximum(far / (_NEAR_STRIP * eps), 1.0))
     return efolds * viscosity_of(eps, gamma) / path.stiffness
-
-
-def _no_rides(count: int) -> np.ndarray:
-    rides = np.empty(count, dtype=object)
-    rides[:] = [()] * count
-    return rides
 
 
 @Program

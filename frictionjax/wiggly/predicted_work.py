@@ -21,11 +21,11 @@ from .plan import LOOSEST, WIDEST, lane_scene, planned, slides_of
 # apart: brackets there stay open at first, and steps are up to 5 times as many.
 _CONSTANT, _TOLERANCE, _LAG, _NARROW = 1.278, 0.417, -0.092, 0.41
 _SMOOTH, _BELOW_TENTH, _BELOW_ONE = -0.131, 0.505, 1.466
-# Rides, in the same cells: steps of a slide over those of one run-up, of a few thousand
+# Slip maps, in the same cells: steps of a slide over those of one run-up, of a few thousand
 # wells at most; and wells that lanes, one after the other, wait for each other. Both for a
 # thousand wells, and how they grow with wells. Steps are twice as many as measured on the
 # vertical scene, half on the angular one. (1 to 100 periods, 3 to 201 slides.)
-_RIDE_STEPS, _RIDE_CHAIN, _RIDE_GROWTH, _RUN_UP = 4.0 / 3, 4e2, 0.05, 2500.0
+_MAP_STEPS, _MAP_CHAIN, _MAP_GROWTH, _RUN_UP = 4.0 / 3, 4e2, 0.05, 2500.0
 # Drag of tips that are still on their way when a slide is over, and a rest begins.
 _BEHIND = 0.1
 # What a step costs more: for each harmonic after the first (1.2 at 4, 2.3 at 16, 5.7 at 64
@@ -73,12 +73,12 @@ def workload(
     steps = _steps_a_well(control, lag, _drag_of(path, eps, gamma))
     total = steps * cost_of(path, eps, needs, times)
     chain = steps * longest_lane(path, eps, needs)
-    growth = (path.travel[-1] / eps / 1e3) ** _RIDE_GROWTH
+    growth = (path.travel[-1] / eps / 1e3) ** _MAP_GROWTH
     slides = slides_of(path, eps) & ridden[:, None]
     maps, rounds = np.count_nonzero(slides, axis=1), _longest_chains(slides, needs.cut)
     run_ups = maps * np.minimum(needs.warm, _RUN_UP)
-    total = np.where(ridden, _RIDE_STEPS * run_ups * steps * growth, total)
-    chain = np.where(ridden, _RIDE_CHAIN * rounds * steps * growth, chain)
+    total = np.where(ridden, _MAP_STEPS * run_ups * steps * growth, total)
+    chain = np.where(ridden, _MAP_CHAIN * rounds * steps * growth, chain)
     jobs, legs = _rows(path, eps, needs, times)
     return Workload(total, chain, jobs, legs, maps, rounds, _weight_of(lanes))
 

@@ -4,8 +4,11 @@ from .close import CLOSED as CLOSED
 from .close import LONG_MEMORY as LONG_MEMORY
 from .close import MARGIN as MARGIN
 from .close import BracketContext as BracketContext
+from .close import Effort as Effort
 from .close import Report as Report
 from .close import close_brackets as close_brackets
+from .close import no_effort as no_effort
+from .finder import FoundSlides as FoundSlides
 from .finder import find_fast_slides as find_fast_slides
 from .layout import Layout as Layout
 from .layout import SampledPeriods as SampledPeriods

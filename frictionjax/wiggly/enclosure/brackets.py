@@ -46,8 +46,8 @@ class BracketPlan(NamedTuple):
 
     `behind`, `ahead` (S,): leg of each stop in either lane, -1 where the second does not
     run. `meet_behind`, `meet_ahead` (W,): legs that end where the windows begin. `known`,
-    `ridden` (W,): as in `Starts`. `brief` (J,): jobs on a ride that go through a few wells;
-    `calm` (J,): in a part of a slide where few wells are remembered.
+    `from_slide` (W,): as in `Starts`. `brief` (J,): jobs on a fast slide that go
+    through a few wells; `calm` (J,): in a part of a slide where few wells are remembered.
     """
 
     jobs: Lanes
@@ -57,7 +57,7 @@ class BracketPlan(NamedTuple):
     meet_behind: np.ndarray
     meet_ahead: np.ndarray
     known: np.ndarray
-    ridden: np.ndarray
+    from_slide: np.ndarray
     brief: np.ndarray
     calm: np.ndarray
 
@@ -145,15 +145,15 @@ def plan_brackets(
     brief = np.concatenate([inside, inside[second]])
     brief &= np.bincount(job, wells, brief.size) <= _BRIEF
     calm = _calm(path, ground, jobs, legs)
-    return BracketPlan(jobs, legs, *marks, starts.known, starts.ridden, brief, calm)
+    return BracketPlan(jobs, legs, *marks, starts.known, starts.from_slide, brief, calm)
 
 
 def _calm(path: Path, ground: CellBounds, jobs: Lanes, legs: Segments) -> np.ndarray:
     """Jobs inside a piece, on a slide that grows slower, which is slow at their start.
 
-    Of cells with rides: tolerances of others are for what they remember there anyway.
+    Of cells with fast slides: tolerances of others are for what they remember there anyway.
     """
-    rides = np.array([len(own) > 0 for own in ground.rides], dtype=bool)
+    has = np.array([len(own) > 0 for own in ground.fast_slides], dtype=bool)
     first, last = jobs.first_leg, jobs.past_leg - 1
     piece = path.piece_of(jobs.origin)
     inside = (path.direction[piece] != 0) & (jobs.origin > path.touch[piece])
@@ -163,7 +163,7 @@ def _calm(path: Path, ground: CellBounds, jobs: Lanes, legs: Segments) -> np.nda
     slower = np.maximum.reduceat(speed, first) <= start
     lag = np.maximum(ground.lag_plus, ground.lag_minus)[jobs.cell] / ground.eps[jobs.cell]
     memory = 2 * FASTER * lag * (start / (path.speed or 1.0)) ** 2
-    return rides[jobs.cell] & inside & slower & (memory <= 0.5 * _BRIEF)
+    return has[jobs.cell] & inside & slower & (memory <= 0.5 * _BRIEF)
 
 
 def legs_of(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Segments:

@@ -23,7 +23,7 @@ ROUNDS = 3
 EARLIER = 4  # times as far back in each round
 MARGIN = 3  # wells: one to fall behind, one to catch up, one to forget
 LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast slides are
-_FAST = 0.35  # steps a well on rides, where tips do not rest, of those elsewhere
+_FAST = 0.35  # steps a well on fast slides, where tips do not rest, of those elsewhere
 _LONGEST = 1.5  # times what its longest job takes: the shortest batch
 _BATCH = 1e5  # wells: a few seconds, between two reports
 # Steps beyond those for the wells of the path, of the longest lane in each march, added up,
@@ -62,20 +62,40 @@ def _of_jobs(plan: BracketPlan, of_legs: np.ndarray) -> np.ndarray:
     return so_far[plan.jobs.past_leg] - so_far[plan.jobs.first_leg]
 
 
+class Effort(NamedTuple):
+    """What lanes have taken so far, shape (cells,).
+
+    `steps`, `rejected`: of all lanes. `waited`: those of `PATIENCE`.
+    """
+
+    steps: np.ndarray
+    rejected: np.ndarray
+    waited: np.ndarray
+
+    def more(self, other: "Effort") -> "Effort":
+        """That of both."""
+        return Effort(*(a + b for a, b in zip(self, other, strict=True)))
+
+
+def no_effort(count: int) -> Effort:
+    """Of so many cells, before the first lane."""
+    return Effort(*np.zeros((3, count)))
+
+
 class BracketRound(NamedTuple):
-    """What one round of windows has found."""
+    """What one round of windows has found, and what has been taken up to then."""
 
     plan: BracketPlan
     found: SegmentEnds
+    effort: Effort
 
 
 class BracketContext(NamedTuple):
     """What all rounds of one sweep share.
 
-    `brief` (cells,): tolerances of lanes on rides through a few wells; None: those of the
-    others. `workers`: queues at once. `spent` (2, cells): steps and rejected steps so far,
-    `waited` (cells,): those of `PATIENCE`, added in place. `lanes_run` is called as
-    lanes set off.
+    `brief` (cells,): tolerances of lanes on fast slides through a few wells; None: those of
+    the others. `workers`: queues at once. `effort`: what lanes have taken before.
+    `lanes_run` is called as lanes set off.
     """
 
     scene: Scene
@@ -87,14 +107,13 @@ class BracketContext(NamedTuple):
     wanted: Sums
     accuracy: float
     report: Report
-    spent: np.ndarray
-    waited: np.ndarray
+    effort: Effort
     brief: np.ndarray | None
     workers: int = WORKERS
     lanes_run: Callable[[], None] = lambda: None
 
     def run(self, windows: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
-        """March all windows, from `wells` of the path or `back` of a ride before them."""
+        """March all windows, from `wells` of the path or `back` of a fast slide before."""
         where = windows.cell, windows.begin, wells, back
         starts = starts_of(self.scene, self.path, self.ground, *where)
         return self.march_from(windows, starts)
@@ -111,24 +130,30 @@ class BracketContext(NamedTuple):
         """March all windows of a plan."""
         able, plan = self._within_patience(plan)
         found = self._march(plan, able)
-        self._wait(plan, found)
+        return BracketRound(plan, found, self.effort.more(self._taken(plan, found)))
+
+    def _taken(self, plan: BracketPlan, found: SegmentEnds) -> Effort:
+        """What the lanes of a plan took."""
         owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
-        for total, steps in zip(self.spent, (found.steps, found.rejected), strict=True):
-            total += np.bincount(owner, np.nan_to_num(steps), total.size)
-        return BracketRound(plan, found)
+        count = self.ground.eps.size
+        steps, rejected = (
+            np.bincount(owner, np.nan_to_num(each), count)
+            for each in (found.steps, found.rejected)
+        )
+        return Effort(steps, rejected, self._waited(plan, found))
 
     def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
         """Which jobs their cells can still wait for, and the plan with what is left."""
         jobs, legs = plan.jobs, plan.legs
-        left = np.where(self._alone(plan), np.inf, PATIENCE - self.waited[jobs.cell])
+        left = np.where(self._alone(plan), np.inf, PATIENCE - self.effort.waited[jobs.cell])
         owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
         wells = np.abs(legs.guide1 - legs.guide0) / self.ground.eps[jobs.cell[owner]]
         allowed = left[owner] + _STEPS_A_WELL * wells
         legs = legs._replace(budget=np.minimum(legs.budget, allowed))
         return left > 0, plan._replace(legs=legs)
 
-    def _wait(self, plan: BracketPlan, found: SegmentEnds) -> None:
-        """Add up what the longest lane has taken beyond its share, for each cell.
+    def _waited(self, plan: BracketPlan, found: SegmentEnds) -> np.ndarray:
+        """What the longest lane has taken beyond its share, for each cell.
 
         Of one that gave up everything counts: it would take its share again in each march.
         """
@@ -136,9 +161,9 @@ class BracketContext(NamedTuple):
         beyond = np.maximum(steps - _STEPS_A_WELL * self._wells(plan), 0.0)
         gave_up = _of_jobs(plan, np.nan_to_num(found.code)) > 0
         beyond = np.where(gave_up, steps, beyond)
-        longest = np.zeros(self.waited.size)
+        longest = np.zeros(self.ground.eps.size)
         np.maximum.at(longest, cell, np.where(self._alone(plan), 0.0, beyond))
-        self.waited[:] += longest
+        return longest
 
     def _alone(self, plan: BracketPlan) -> np.ndarray:
         """Jobs from a known start, in cells that one lane can go through, (jobs,)."""
@@ -224,7 +249,8 @@ def close_brackets(
         some = windows.chosen(open_)
         place = np.flatnonzero(np.isin(windows.owner, open_))
         place = place[np.argsort(windows.owner[place], kind="stable")]
-        plan, found = rounds.run(some, wells[open_], back[open_])
+        plan, found, effort = rounds.run(some, wells[open_], back[open_])
+        rounds = rounds._replace(effort=effort)
         speed = rounds.path.speed
         gaps = gaps_of(found, plan.legs, plan.behind, plan.ahead, speed)
         begins = plan.meet_behind, plan.meet_ahead
@@ -235,14 +261,14 @@ def close_brackets(
         values[:, place] = np.stack([v[plan.behind] for v in found])
         legs[:, place] = np.stack([v[plan.behind] for v in plan.legs])
         gap[place] = gaps
-        how[place] = np.where(plan.known, 0, 1 + plan.ridden)[some.owner]
+        how[place] = np.where(plan.known, 0, 1 + plan.from_slide)[some.owner]
         worst = np.zeros(some.cell.size)
         np.maximum.at(worst, some.owner, np.nan_to_num(gaps, nan=np.inf))
         # Lanes that met before a stop part again for a moment where it is at a slip: the
         # start is forgotten all the same, and the gap is reported as it is. Lanes from
         # close by have had steps of their own, which part them further: they go back once,
-        # and so do those that set off from a ride where their window begins.
-        far = (wells[open_] > MARGIN) & ~(plan.ridden & (back[open_] < 1))
+        # and so do those that set off from a fast slide where their window begins.
+        far = (wells[open_] > MARGIN) & ~(plan.from_slide & (back[open_] < 1))
         met = np.maximum(meets, shifts_of(found, plan.legs, *begins, speed))
         met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
         worst = np.minimum(worst, met)
@@ -251,8 +277,9 @@ def close_brackets(
             break
         wells[open_] = np.maximum(EARLIER * wells[open_], MARGIN + 1)
         back[open_] = EARLIER * np.maximum(back[open_], 1)
-    result = BracketValues(SegmentEnds(*values), Segments(*legs), gap, how, *rounds.spent)
-    return result, open_
+    steps, rejected, _ = rounds.effort
+    ends = SegmentEnds(*values), Segments(*legs)
+    return BracketValues(*ends, gap, how, steps, rejected), open_
 
 
 def run_ups(rounds: BracketContext, windows: Brackets, warm: np.ndarray) -> np.ndarray:
@@ -270,6 +297,6 @@ def run_ups(rounds: BracketContext, windows: Brackets, warm: np.ndarray) -> np.n
     starts = starts_of(scene, path, rounds.ground, *where, measured=False)
     states = states_at(scene, path, starts.time)
     share = slow_share(scene, path, starts.time, states)
-    share = np.where(starts.ridden | starts.lagging, 1.0, share)
+    share = np.where(starts.from_slide | starts.lagging, 1.0, share)
     # Others keep theirs: what they find must not depend on their neighbours.
     return np.where(long, np.ceil(MARGIN + share * (wells - MARGIN)), wells)

@@ -1,7 +1,11 @@
-"""Rides of a sweep: the slip map between looks through lanes, and measured by lanes."""
+"""Fast slides of a sweep: what slip maps ask of lanes, answered by lanes.
+
+What they want to know is said by `slip_map.asking_for_slides`; here it is found out."""
 
 import functools
 from collections.abc import Callable
+from concurrent.futures import Future
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,11 +17,21 @@ from ..slip_map import (
     FastSlide,
     FastSlideFinder,
     FoundTips,
+    LookAt,
     ManyTransitTimes,
-    fast_slide_through,
+    Measure,
+    asking_for_slides,
 )
 from .brackets import BracketPlan, Brackets
-from .close import EARLIER, ROUNDS, BracketContext, run_ups
+from .close import (
+    EARLIER,
+    ROUNDS,
+    BracketContext,
+    BracketRound,
+    Effort,
+    no_effort,
+    run_ups,
+)
 from .closeness import wells_between
 from .requirements import Requirements
 from .starts import Starts
@@ -26,9 +40,9 @@ from .starts import Starts
 # tightest that is of use. (gamma = 1/2, eps 1e-3 to 1e-4, accuracy 1e-3: the same errors of
 # maps from 1e-11 to 3e-8, in a third of the steps; others add up to as much as 0.02. At
 # accuracy 1e-6 brackets of eps = 1.3e-5 stay open with 1e-10 at least.)
-_TIGHT_RIDE, _TIGHTEST_RIDE = 0.05, 1e-12
+_TIGHT_MEASURE, _TIGHTEST_MEASURE = 0.05, 1e-12
 # Errors of a map at its start, as lanes leave it, and at least, of the accuracy. (At 0.1
-# brackets of times in the first wells of a ride stayed open where the tip was nearly in a
+# brackets of times in the first wells of a slide stayed open where the tip was nearly in a
 # slip.)
 _SET_OFF, _LEAST_ERROR = 0.02, 0.01
 _TIGHT_LOOK = 0.2  # of the tolerance: lanes that lead to the start of a slip map
@@ -40,62 +54,91 @@ _TIGHT_LOOK = 0.2  # of the tolerance: lanes that lead to the start of a slip ma
 _NOISE, _MOST_CHECKED, _OF_LOADS = 0.03, 400.0, 0.05
 
 
-def find_fast_slides(rounds: BracketContext, needs: Requirements) -> Callable[[], None]:
-    """Put the rides of all cells into the ground of the rounds.
+class FoundSlides(NamedTuple):
+    """Fast slides of all cells, tuples in time of shape (cells,).
 
-    Returns what waits for the lanes that measure them, and adds up their steps.
+    `looks`: what lanes took that led to them. `measuring`: lanes that may still be under
+    way, of which slides wait for their errors.
     """
+
+    slides: np.ndarray
+    looks: Effort
+    measuring: tuple[Future[BracketRound], ...]
+
+    def effort(self) -> Effort:
+        """What all lanes took, once those that measure have arrived."""
+        whole = self.looks
+        for lanes in self.measuring:
+            whole = whole.more(lanes.result().effort)
+        return whole
+
+
+def find_fast_slides(rounds: BracketContext, needs: Requirements) -> FoundSlides:
+    """The fast slides of all cells, whose errors are still being measured."""
+    looks = rounds
+    measuring: tuple[Future[BracketRound], ...] = ()
+    asking = asking_for_slides(_finder_of(rounds, needs))
+    try:
+        wanted = next(asking)
+        while True:
+            if isinstance(wanted, LookAt):
+                tips, effort = _seen(looks, needs, wanted)
+                looks = looks._replace(effort=effort)
+                wanted = asking.send(tips)
+            else:
+                lanes, waiting = _measuring(rounds, wanted)
+                measuring = (*measuring, lanes)
+                wanted = asking.send(waiting)
+    except StopIteration as end:
+        return FoundSlides(end.value, looks.effort, measuring)
+
+
+def _finder_of(rounds: BracketContext, needs: Requirements) -> FastSlideFinder:
+    """What slip maps need to know of the cells."""
     ground, folds = rounds.ground, rounds.ground.folds
-    sides = {
-        1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
-        -1.0: (np.asarray(folds.place_minus), np.asarray(folds.force_minus)),
-    }
-    cells_ = rounds.cells
-    fixed = {name: _TIGHT_LOOK * getattr(cells_, name) for name in ("tolerance", "loosest")}
-    closer = rounds._replace(cells=cells_._replace(**fixed), brief=None)
-    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
-    of_cells = ground.eps, cells_.viscosity, lag, sides
-    tail = (TAIL if any(rounds.wanted) else BARE_TAIL) * rounds.accuracy
-    rider = FastSlideFinder(
-        rounds.scene, rounds.path, *of_cells, needs.cut, tail, rounds.accuracy
+    return FastSlideFinder(
+        scene=rounds.scene,
+        path=rounds.path,
+        eps=ground.eps,
+        viscosity=rounds.cells.viscosity,
+        lag=np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps,
+        folds={
+            1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
+            -1.0: (np.asarray(folds.place_minus), np.asarray(folds.force_minus)),
+        },
+        slow=needs.cut,
+        tail=(TAIL if any(rounds.wanted) else BARE_TAIL) * rounds.accuracy,
+        accuracy=rounds.accuracy,
     )
 
-    def look(cell: np.ndarray, begin: np.ndarray, stop: np.ndarray) -> FoundTips:
-        paired, one = np.ones(cell.size, dtype=bool), np.arange(cell.size)
-        windows = Brackets(cell, np.minimum(begin, stop), paired, one, stop)
-        wells, back = run_ups(rounds, windows, needs.warm), np.ones(cell.size)
-        found, open_ = FoundTips(*np.empty((3, cell.size))), one
-        for _ in range(ROUNDS):
-            some = windows.chosen(open_)
-            plan, arrived = closer.run(some, wells[open_], back[open_])
-            for column, part in zip(found, _at_stops(rounds, plan, arrived), strict=True):
-                column[open_] = part
-            open_ = np.flatnonzero(~(found.gap <= _SET_OFF * rounds.accuracy))
-            if open_.size == 0:
-                break
-            wells[open_], back[open_] = wells[open_] * EARLIER, back[open_] * EARLIER
-        return found
 
-    def keep(cell: int, ride: FastSlide) -> None:
-        ground.rides[cell] = (*ground.rides[cell], ride)
-
-    spent: list[np.ndarray] = []
-
-    def check(cells: list[int], rides: list[FastSlide], gaps: list[float]) -> list:
-        blank = np.zeros_like(rounds.spent), np.zeros_like(rounds.waited)
-        own = rounds._replace(spent=blank[0], waited=blank[1])
-        spent.append(own.spent)
-        errors = _errors(own, cells, rides, gaps)
-        return [lambda k=k: errors()[k] for k in range(len(rides))]
-
-    def wait() -> None:
-        for rides in ground.rides:
-            for ride in rides:
-                ride.measured()
-        rounds.spent[:] += sum(spent)
-
-    fast_slide_through(rider, np.arange(ground.eps.size), look, check, keep)
-    return wait
+def _seen(
+    rounds: BracketContext, needs: Requirements, wanted: LookAt
+) -> tuple[FoundTips, Effort]:
+    """Where lanes find the tips that are asked for, and what has been taken up to then."""
+    cells = rounds.cells
+    closer = cells._replace(
+        tolerance=_TIGHT_LOOK * cells.tolerance, loosest=_TIGHT_LOOK * cells.loosest
+    )
+    ground = rounds.ground._replace(fast_slides=wanted.known)
+    looks = rounds._replace(ground=ground, cells=closer, brief=None)
+    count = wanted.cells.size
+    paired, one = np.ones(count, dtype=bool), np.arange(count)
+    begins = np.minimum(wanted.begins, wanted.stops)
+    windows = Brackets(wanted.cells, begins, paired, one, wanted.stops)
+    wells, back = run_ups(looks, windows, needs.warm), np.ones(count)
+    found, open_ = FoundTips(*np.empty((3, count))), one
+    for _ in range(ROUNDS):
+        some = windows.chosen(open_)
+        plan, arrived, effort = looks.run(some, wells[open_], back[open_])
+        looks = looks._replace(effort=effort)
+        for column, part in zip(found, _at_stops(looks, plan, arrived), strict=True):
+            column[open_] = part
+        open_ = np.flatnonzero(~(found.gap <= _SET_OFF * rounds.accuracy))
+        if open_.size == 0:
+            break
+        wells[open_], back[open_] = wells[open_] * EARLIER, back[open_] * EARLIER
+    return found, looks.effort
 
 
 def _at_stops(rounds: BracketContext, plan: BracketPlan, found: SegmentEnds):
@@ -108,9 +151,9 @@ def _at_stops(rounds: BracketContext, plan: BracketPlan, found: SegmentEnds):
     return found.well[a], found.tip[a], gap
 
 
-def _wells_checked(rounds: BracketContext, cell: int, ride: FastSlide) -> np.ndarray:
+def _wells_checked(rounds: BracketContext, cell: int, slide: FastSlide) -> np.ndarray:
     """Wells that lanes go through on each panel: more where rounding adds up."""
-    curve = ride.curve
+    curve = slide.curve
     length = np.diff(curve.starts) / np.diff(curve.edges)
     noise = _OF_LOADS * np.finfo(float).eps * curve.starts[1:] / length
     memory = 1 / np.maximum(np.abs(1 - curve.kept), 1e-12)
@@ -118,30 +161,28 @@ def _wells_checked(rounds: BracketContext, cell: int, ride: FastSlide) -> np.nda
     return np.minimum(np.clip(np.ceil(wanted), 2, _MOST_CHECKED), np.diff(curve.edges))
 
 
-def _errors(
-    rounds: BracketContext, cells: list[int], rides: list[FastSlide], gaps: list[float]
-) -> Callable[[], list[np.ndarray]]:
-    """Errors in the tip on the panels of rides: what lanes find in some wells, summed up.
+def _measuring(
+    rounds: BracketContext, wanted: Measure
+) -> tuple[Future[BracketRound], list[Callable[[], np.ndarray]]]:
+    """Lanes that have set off, and what waits for the errors that they find of each slide.
 
+    Errors in the tip on the slide's panels: what lanes find in some wells, summed up.
     Counted in wells of time, which are as many periods of the tip as it is slow there.
-    `gaps`: of each ride's start, in wells of time. Lanes set off at once; what is returned
-    waits for them.
     """
-    wells = [_wells_checked(rounds, c, r) for c, r in zip(cells, rides, strict=True)]
+    known_slides, cells, slides, gaps = wanted
+    wells = [_wells_checked(rounds, c, s) for c, s in zip(cells, slides, strict=True)]
     sizes = [own.size for own in wells]
-    count, who = np.concatenate(wells), np.repeat(np.arange(len(rides)), sizes)
-    number = np.concatenate([ride.curve.edges[:-1] for ride in rides])
-    curves = ManyTransitTimes([ride.curve for ride in rides])
+    count, who = np.concatenate(wells), np.repeat(np.arange(len(slides)), sizes)
+    number = np.concatenate([slide.curve.edges[:-1] for slide in slides])
+    curves = ManyTransitTimes([slide.curve for slide in slides])
     both, late = curves.rounded_times(np.tile(who, 2), np.append(number, number + count))
     begin, stop = np.split(both, 2)
-    sign, first, tip = np.array([(r.sign, r.well, r.tip) for r in rides])[who].T
+    sign, first, tip = np.array([(s.sign, s.well, s.tip) for s in slides])[who].T
     well, aim = first + sign * number, first + sign * (number + count)
     whose, known = np.array(cells)[who], np.ones(tip.size, dtype=bool)
     never = np.full(tip.size, -np.inf)
     starts = Starts(begin, known, ~known, known, never, well, tip, well, tip)
-    usual = np.asarray(rounds.cells.tolerance)
-    tight = np.minimum(np.maximum(_TIGHT_RIDE * usual, _TIGHTEST_RIDE), usual)
-    exact = rounds._replace(cells=rounds.cells._replace(tolerance=tight, loosest=tight))
+    exact = _exact(rounds, known_slides)
     windows = Brackets(whose, begin, known, np.arange(tip.size), stop)
     # Planned here: two threads that plan wait for each other.
     plan = exact.planned(windows, starts)
@@ -158,15 +199,26 @@ def _errors(
         off = np.diff(np.split(late, 2), axis=0)[0] * count / (stop - begin)
         drift = np.abs(sign * place / np.maximum(pace, 1e-300) - off) / count
         ends = np.cumsum(sizes)[:-1]
-        parts = zip(rides, np.split(drift, ends), np.split(pace, ends), gaps, strict=True)
+        parts = zip(slides, np.split(drift, ends), np.split(pace, ends), gaps, strict=True)
         return [_summed(rounds, *part) for part in parts]
 
-    return summed
+    return lanes, [lambda k=k: summed()[k] for k in range(len(slides))]
 
 
-def _summed(rounds: BracketContext, ride: FastSlide, drift, pace, gap: float) -> np.ndarray:
+def _exact(rounds: BracketContext, known: np.ndarray) -> BracketContext:
+    """For lanes that measure, whatever others of their cells have taken."""
+    usual = np.asarray(rounds.cells.tolerance)
+    tight = np.minimum(np.maximum(_TIGHT_MEASURE * usual, _TIGHTEST_MEASURE), usual)
+    cells = rounds.cells._replace(tolerance=tight, loosest=tight)
+    ground = rounds.ground._replace(fast_slides=known)
+    return rounds._replace(ground=ground, cells=cells, effort=no_effort(usual.size))
+
+
+def _summed(
+    rounds: BracketContext, slide: FastSlide, drift, pace, gap: float
+) -> np.ndarray:
     """Errors that grow by `drift` a well and are forgotten as shifts in time are."""
-    curve = ride.curve
+    curve = slide.curve
     error, errors = max(gap, _SET_OFF * rounds.accuracy), []
     for k, wells in enumerate(np.diff(curve.edges)):
         left = curve.kept[k] ** wells

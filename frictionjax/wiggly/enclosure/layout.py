@@ -109,16 +109,16 @@ def _tiles(segment: np.ndarray, tile: np.ndarray) -> list[np.ndarray]:
     return np.split(np.arange(segment.size), np.flatnonzero(cut) + 1)
 
 
-def _on_rides(rides: tuple, times: np.ndarray) -> np.ndarray:
-    """Blocks of wells on rides that are passed before each time.
+def _on_slides(slides: tuple, times: np.ndarray) -> np.ndarray:
+    """Blocks of wells on fast slides that are passed before each time.
 
-    Tiles end there: lanes set off from rides anywhere, and what waits for the longest tile
-    at gamma = 1/4, eps = 1e-8 took 7 s of 9.
+    Tiles end there: lanes set off from fast slides anywhere, and what waits for the longest
+    tile at gamma = 1/4, eps = 1e-8 took 7 s of 9.
     """
     passed = np.zeros(times.size)
-    for ride in rides:
-        held = np.clip(times, ride.begin, ride.end)
-        passed += np.floor(ride.curve.number_at(held) / WELLS_A_LEG)
+    for slide in slides:
+        held = np.clip(times, slide.begin, slide.end)
+        passed += np.floor(slide.curve.number_at(held) / WELLS_A_LEG)
     return passed
 
 
@@ -163,7 +163,7 @@ def lay_out(
     eps: np.ndarray,
     ts: np.ndarray,
     needs: Requirements,
-    rides: np.ndarray,
+    fast_slides: np.ndarray,
     accuracy: float,
     summed: bool = True,
 ) -> Layout:
@@ -176,9 +176,9 @@ def lay_out(
     `summed`, only windows with requested times are left.
     """
     summed = summed or not np.any(ts > 0)
-    parts = inner_parts(scene, path, eps, needs, rides)
+    parts = inner_parts(scene, path, eps, needs, fast_slides)
     rows, output = _Rows(), np.full((eps.size, ts.size), -1)
-    cells = scene, path, eps, needs, rides
+    cells = scene, path, eps, needs, fast_slides
     chain = _chains(*cells, accuracy, parts, ts, summed, rows, output)
     measured = parts if summed else Parts(*(column[:0] for column in parts))
     slides = _slides(*cells, measured, rows)
@@ -191,7 +191,7 @@ def _chains(
     path: Path,
     eps,
     needs: Requirements,
-    rides,
+    fast_slides,
     accuracy,
     parts: Parts,
     ts,
@@ -201,8 +201,8 @@ def _chains(
 ) -> list[np.ndarray]:
     """Tiles outside the inner parts of slides: the stops of each cell that follow each
     other. Requested times among them are put into `output`."""
-    # Beside rides windows of a few wells each lead to the times.
-    chained = [c for c in range(eps.size) if summed or not rides[c]]
+    # Beside fast slides windows of a few wells each lead to the times.
+    chained = [c for c in range(eps.size) if summed or not fast_slides[c]]
     # Guides of long legs are coarse, which counts in sums only: long lanes need no stops.
     stopped = [c for c in chained if summed or np.isfinite(needs.tile[c])]
     lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts, stopped)
@@ -223,7 +223,9 @@ def _chains(
     for k, (cell, (opening, own)) in enumerate(zip(chained, cuts, strict=True)):
         segment = segments_of(opening, own)
         since = (ways[2 * k + 1] - ways[2 * k][segment]) / eps[cell]
-        tile = np.floor(since / needs.tile[cell] - 1e-9) + _on_rides(rides[cell], own)
+        tile = np.floor(since / needs.tile[cell] - 1e-9) + _on_slides(
+            fast_slides[cell], own
+        )
         tile += np.searchsorted(path.edges[1:][needs.cut[cell]], own)
         begins = own > opening[segment]
         own, segment, tile = own[begins], segment[begins], tile[begins]
@@ -246,10 +248,10 @@ def _chains(
 
 
 def _slides(
-    scene, path: Path, eps, needs: Requirements, rides, parts: Parts, rows: _Rows
+    scene, path: Path, eps, needs: Requirements, fast_slides, parts: Parts, rows: _Rows
 ) -> list[SampledPeriods]:
     """A window for each period that is measured inside a slide."""
-    who, starts, ends = sampled(scene, path, eps, needs, parts, rides)
+    who, starts, ends = sampled(scene, path, eps, needs, parts, fast_slides)
     lows, highs = (states_at(scene, path, t) for t in (parts.low, parts.high))
     slides = []
     for i in range(parts.cell.size):
@@ -263,12 +265,12 @@ def _slides(
 
 
 def _show(
-    scene, path: Path, eps, needs: Requirements, rides, ts, rows: _Rows, output
+    scene, path: Path, eps, needs: Requirements, fast_slides, ts, rows: _Rows, output
 ) -> None:
     """A window for each requested time that no other window holds."""
     cell, shown = np.nonzero((output < 0) & (ts > 0))
     begin = _period_before(scene, path, eps, needs, cell, ts[shown])
-    begin = _ridden_before(rides, cell, ts[shown], begin)
+    begin = _fast_period_before(fast_slides, cell, ts[shown], begin)
     order, sizes = _rests_together(path, cell, ts[shown])
     cell, shown, begin = cell[order], shown[order], begin[order]
     first = np.cumsum(sizes) - sizes
@@ -304,15 +306,15 @@ def _period_before(scene, path, eps, needs, cell, times) -> np.ndarray:
     return np.minimum(begin, times)
 
 
-def _ridden_before(rides: np.ndarray, cell, times, begin) -> np.ndarray:
-    """Start of the ride's slip period that holds each time; as it was where none does."""
-    every, which = last_begun(rides, cell, times)
+def _fast_period_before(fast_slides: np.ndarray, cell, times, begin) -> np.ndarray:
+    """Start of the fast slide's period that holds each time; as it was where none does."""
+    every, which = last_begun(fast_slides, cell, times)
     mine = np.flatnonzero(which >= 0)
     if mine.size == 0:
         return begin
-    ends = np.array([ride.end for ride in every])
+    ends = np.array([slide.end for slide in every])
     mine = mine[times[mine] < ends[which[mine]]]
-    curves = ManyTransitTimes([ride.curve for ride in every])
+    curves = ManyTransitTimes([slide.curve for slide in every])
     number = np.floor(curves.number_at(which[mine], times[mine]))
     begin = begin.copy()
     begin[mine] = np.minimum(curves.time_of(which[mine], number), times[mine])

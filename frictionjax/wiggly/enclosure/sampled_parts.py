@@ -20,7 +20,7 @@ from ..limit_path import (
 from .requirements import TAIL, Requirements, inner_wells
 
 # Wells of a part for each node that is measured in it. On fewer, nodes moved to whole wells
-# are no Chebyshev points any more; and behind rides periods still change in shape.
+# are no Chebyshev points any more; and behind fast slides periods still change in shape.
 _SPARSE, _FEW = 6, 20
 # Most nodes of a part, over the square root of its wells, and how many there may always be.
 _DENSE, _LEAST = 1.2, 17
@@ -32,8 +32,8 @@ _STEADY = 2.0  # largest speed over the smallest in such a part
 class Parts(NamedTuple):
     """Inner parts of slides: cell, piece, first and last well of the slide, times.
 
-    `ride`: which of the cell's, with wells counted from its start; -1 where wells are those
-    of the path. `nodes`: periods to be measured.
+    `fast`: which of the cell's fast slides, with wells counted from its start; -1 where
+    wells are those of the path. `nodes`: periods to be measured.
     """
 
     cell: np.ndarray
@@ -42,7 +42,7 @@ class Parts(NamedTuple):
     last: np.ndarray
     low: np.ndarray
     high: np.ndarray
-    ride: np.ndarray
+    fast: np.ndarray
     nodes: np.ndarray
 
 
@@ -54,12 +54,12 @@ def level_at(
     return path.states[piece] + path.direction[piece] * way
 
 
-def _path_parts(scene: Scene, path: Path, eps, needs: Requirements, rides) -> Parts:
-    """Inner parts of slides that are known from brackets: all but those with rides."""
+def _path_parts(scene: Scene, path: Path, eps, needs: Requirements, fast_slides) -> Parts:
+    """Inner parts of slides that are known from brackets: all but the fast ones."""
     ways = np.abs(np.diff(path.states))[None, :] / eps[:, None]
     inner = inner_wells(ways, needs)
     for c in range(eps.size):
-        inner[c, [ride.piece for ride in rides[c]]] = 0.0
+        inner[c, [slide.piece for slide in fast_slides[c]]] = 0.0
     cell, piece = np.nonzero(inner)
     first = np.ceil(needs.settle)[cell]
     last = first + inner[cell, piece]
@@ -78,34 +78,34 @@ def _between(
     return Parts(cell, piece, first, last, low, high, none, nodes)
 
 
-def _ridden_parts(needs: Requirements, rides: np.ndarray) -> list[tuple]:
-    """Each panel of a ride that is long enough to be known from some of its wells."""
+def _fast_parts(needs: Requirements, fast_slides: np.ndarray) -> list[tuple]:
+    """Each panel of a fast slide that is long enough to be known from some of its wells."""
     rows = []
     for c in range(needs.nodes.size):
         # Panels hold times that are polynomials already: half the nodes do.
         count = needs.nodes[c] // 2 + 1
-        for index, ride in enumerate(rides[c] if needs.nodes[c] > 0 else ()):
-            edges, starts = ride.curve.edges, ride.curve.starts
+        for index, slide in enumerate(fast_slides[c] if needs.nodes[c] > 0 else ()):
+            edges, starts = slide.curve.edges, slide.curve.starts
             for k in np.flatnonzero(np.diff(edges) > _SPARSE * count):
                 span = edges[k], edges[k + 1], starts[k], starts[k + 1]
-                rows.append((c, ride.piece, *span, index, count))
+                rows.append((c, slide.piece, *span, index, count))
     return rows
 
 
 def _rests_of_slides(
-    scene: Scene, path: Path, eps, needs: Requirements, rides
+    scene: Scene, path: Path, eps, needs: Requirements, fast_slides
 ) -> list[tuple]:
-    """Where rides end because slides turn slow: the path's wells from there on."""
+    """Where fast slides turn slow: the path's wells from there on."""
     cells = [c for c in range(eps.size) if needs.nodes[c] > 0]
-    last = [(c, ride) for c in cells for ride in _last_of_pieces(path, rides[c])]
-    ends = np.array([ride.end for _, ride in last])
+    last = [(c, slide) for c in cells for slide in _last_of_pieces(path, fast_slides[c])]
+    ends = np.array([slide.end for _, slide in last])
     rows = []
-    for (c, ride), at in zip(last, states_at(scene, path, ends), strict=True):
-        piece = ride.piece
+    for (c, slide), at in zip(last, states_at(scene, path, ends), strict=True):
+        piece = slide.piece
         way = abs(path.states[piece + 1] - path.states[piece]) / eps[c]
         first = np.ceil(abs(at - path.states[piece]) / eps[c]) + TAIL
         past = np.floor(way - needs.offset[c, piece]) - TAIL
-        if ride.end > path.touch[piece] and past - first > _FEW * needs.nodes[c]:
+        if slide.end > path.touch[piece] and past - first > _FEW * needs.nodes[c]:
             # Slides turn from fast to slow there: 17 nodes leave 6e-4 eps. Chebyshev's
             # points less than a well apart mean nothing: 129 in 3800 wells left 6e3 m.
             most = max(_DENSE * np.sqrt(past - first), 2 * _LEAST)
@@ -113,29 +113,29 @@ def _rests_of_slides(
     return rows
 
 
-def _last_of_pieces(path: Path, rides: tuple) -> list:
-    """The last ride of each piece, where it goes the piece's way."""
-    last = {ride.piece: ride for ride in rides}
+def _last_of_pieces(path: Path, fast_slides: tuple) -> list:
+    """The last fast slide of each piece, where it goes the piece's way."""
+    last = {slide.piece: slide for slide in fast_slides}
     return [r for r in last.values() if path.direction[r.piece] == r.sign]
 
 
 def inner_parts(
-    scene: Scene, path: Path, eps, needs: Requirements, rides: np.ndarray
+    scene: Scene, path: Path, eps, needs: Requirements, fast_slides: np.ndarray
 ) -> Parts:
-    """All inner parts; on slides without rides none hides a fast stretch between nodes.
+    """All inner parts; on other slides none hides a fast stretch between nodes.
 
-    (Rides are known from panels that follow the slide wherever they are fast.)
+    (Fast slides are known from panels that follow the slide wherever they are fast.)
     """
-    parts = [_path_parts(scene, path, eps, needs, rides)]
-    ridden = _ridden_parts(needs, rides)
-    if ridden:
-        parts.append(Parts(*(np.array(column) for column in zip(*ridden, strict=True))))
-    rest = _rests_of_slides(scene, path, eps, needs, rides)
+    parts = [_path_parts(scene, path, eps, needs, fast_slides)]
+    fast = _fast_parts(needs, fast_slides)
+    if fast:
+        parts.append(Parts(*(np.array(column) for column in zip(*fast, strict=True))))
+    rest = _rests_of_slides(scene, path, eps, needs, fast_slides)
     if rest:
         columns = (np.array(column) for column in zip(*rest, strict=True))
         parts.append(_between(scene, path, eps, needs, *columns))
     every = _joined(parts)
-    uneven = uneven_pieces(path)[every.piece] & (every.ride < 0)
+    uneven = uneven_pieces(path)[every.piece] & (every.fast < 0)
     if not uneven.any():
         return every
     even = [_chosen(every, ~uneven)]
@@ -194,7 +194,12 @@ def _is_known(scene: Scene, path: Path, some: Parts) -> np.ndarray:
 
 
 def sampled(
-    scene: Scene, path: Path, eps, needs: Requirements, parts: Parts, rides: np.ndarray
+    scene: Scene,
+    path: Path,
+    eps,
+    needs: Requirements,
+    parts: Parts,
+    fast_slides: np.ndarray,
 ):
     """Wells whose passage is measured in each inner part, and times before and after."""
     wells, owner = [], []
@@ -205,8 +210,8 @@ def sampled(
     states = states_at(scene, path, np.concatenate([*nodes, np.zeros(0)]))
     cuts = np.cumsum([times.size for times in nodes])
     for i, here in enumerate(np.split(states, cuts)[:-1] if nodes else []):
-        if parts.ride[i] >= 0:
-            at = rides[parts.cell[i]][parts.ride[i]].curve.number_at(nodes[i])
+        if parts.fast[i] >= 0:
+            at = fast_slides[parts.cell[i]][parts.fast[i]].curve.number_at(nodes[i])
         else:
             way = np.abs(here - path.states[parts.piece[i]])
             at = way / eps[parts.cell[i]] - needs.offset[parts.cell[i], parts.piece[i]]
@@ -218,13 +223,13 @@ def sampled(
         return empty.astype(int), empty, empty
     at, who = np.concatenate(wells), np.concatenate(owner)
     start, end = np.empty(at.size), np.empty(at.size)
-    plain = np.flatnonzero(parts.ride[who] < 0)
+    plain = np.flatnonzero(parts.fast[who] < 0)
     cell, piece = parts.cell[who[plain]], parts.piece[who[plain]]
     levels = [level_at(path, eps, needs, cell, piece, at[plain] + k) for k in (0, 1)]
     both = times_at(scene, path, np.tile(piece, 2), np.concatenate(levels))
     start[plain], end[plain] = np.split(both, 2)
-    for i in np.flatnonzero(parts.ride >= 0).tolist():
+    for i in np.flatnonzero(parts.fast >= 0).tolist():
         mine = np.flatnonzero(who == i)
-        curve = rides[parts.cell[i]][parts.ride[i]].curve
+        curve = fast_slides[parts.cell[i]][parts.fast[i]].curve
         start[mine], end[mine] = curve.time_of(at[mine]), curve.time_of(at[mine] + 1)
     return who, start, end

@@ -1,4 +1,4 @@
-"""Where lanes set off: provably below and above the tip, from z0, or from a ride."""
+"""Where lanes set off: provably below and above the tip, from z0, or from a fast slide."""
 
 from typing import NamedTuple
 
@@ -24,7 +24,7 @@ class CellBounds(NamedTuple):
     `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
     most. `shift_plus`, `shift_minus`: by how much in m folds at this eps differ from rho.
     `relaxed`: time in s from which on a start outside the strip is forgotten, by Lemma 7.
-    `rides`: tuples of `FastSlide`, in time.
+    `fast_slides`: tuples of `FastSlide`, in time.
     """
 
     eps: np.ndarray
@@ -36,20 +36,21 @@ class CellBounds(NamedTuple):
     start_well: np.ndarray
     start_tip: np.ndarray
     relaxed: np.ndarray
-    rides: np.ndarray
+    fast_slides: np.ndarray
 
 
 class Starts(NamedTuple):
     """Where lanes of windows set off, shape (W,).
 
-    `time` in s. `known`: from the known z0; `ridden`: from a ride, as closely as its error
-    says, which ends at `until` (s); `lagging`: behind one, with the largest lag there is.
+    `time` in s. `known`: from the known z0; `from_slide`: from a fast slide, as closely as
+    its error says, which ends at `until` (s); `lagging`: behind one, with the largest lag
+    there is.
     `behind_*` and `ahead_*`: well and tip of the two lanes of the bracket.
     """
 
     time: np.ndarray
     known: np.ndarray
-    ridden: np.ndarray
+    from_slide: np.ndarray
     lagging: np.ndarray
     until: np.ndarray
     behind_well: np.ndarray
@@ -90,14 +91,14 @@ def starts_of(
     back,
     measured: bool = True,
 ) -> Starts:
-    """Starts at least `wells` of the path's way before each window, or `back` of a ride's.
+    """Starts at least `wells` of the path's way before each window, or `back` of a slide.
 
     On a slide the tip cannot be past the first fold beyond the strip's edge: it would have
     had to climb it against a force. Nor can it be further behind than a steady slide at
     the largest speed of the scene; where that is many wells, of the moment. Both hold once
     the path has come further than the lag of the slide before in the other direction.
-    Where no such place is left, lanes start from z0; from a ride where one is nearer.
-    Where not `measured`, errors of rides are not waited for: both lanes start on them.
+    Where no such place is left, lanes start from z0; from a fast slide where one is nearer.
+    Where not `measured`, errors of fast slides are not waited for: both lanes start there.
     """
     eps = ground.eps[cell]
     lag = np.maximum(ground.lag_plus, ground.lag_minus)[cell]
@@ -123,63 +124,65 @@ def starts_of(
     share = np.ones(begin.size)
     share[slide] = slow_share(scene, path, time[slide], level[slide])
     share = np.where(lag > _LONG_LAG * eps, share, 1.0)
-    before = rides, which = last_begun(ground.rides, cell, begin)
-    lagging = _still_lagging(path, rides, which, time)
+    before = slides, which = last_begun(ground.fast_slides, cell, begin)
+    lagging = _still_lagging(path, slides, which, time)
     share = np.where(lagging, 1.0, share)
     lanes = _brackets(ground, cell, direction, level, known, share)
     none = np.zeros(begin.size, dtype=bool)
     plain = Starts(time, known, none, lagging, np.full(begin.size, -np.inf), *lanes)
     reach = wells * eps + 2 * share * lag
-    return _ridden(scene, path, before, begin, plain, back, reach, measured)
+    return _from_slides(scene, path, before, begin, plain, back, reach, measured)
 
 
-def _still_lagging(path: Path, rides: list[FastSlide], which: np.ndarray, time: np.ndarray):
-    """Whether a slide that its ride left at full speed may still lag as that did, (W,).
+def _still_lagging(
+    path: Path, slides: list[FastSlide], which: np.ndarray, time: np.ndarray
+):
+    """Whether tips still lag as at the end of a fast slide that ended at full speed, (W,).
 
     Lags are not those of the moment there. (Brackets of these left the tip out: 6e-2 eps,
-    16 wells behind a ride.)
+    16 wells behind a fast slide.)
     """
     some = np.flatnonzero(which >= 0)
     lagging = np.zeros(which.size, dtype=bool)
     if some.size:
-        fast = np.array([ride.lags for ride in rides])[which[some]]
-        turns = np.array([path.edges[ride.piece + 1] for ride in rides])[which[some]]
+        fast = np.array([slide.lags for slide in slides])[which[some]]
+        turns = np.array([path.edges[slide.piece + 1] for slide in slides])[which[some]]
         lagging[some] = fast & (time[some] <= turns)
     return lagging
 
 
-def _ridden(
+def _from_slides(
     scene: Scene, path: Path, before: tuple, begin, plain: Starts, back, way, measured: bool
 ) -> Starts:
-    """The same starts, from the last ride where it holds the window or ends nearer to it.
+    """The same starts, from the last fast slide where it holds the window or ends nearer.
 
     `before`: as `last_begun` says. `way` (W,): m that a lane of the bracket goes until the
     window begins, its lag included.
     """
-    rides, which = before
+    slides, which = before
     some = np.flatnonzero(which >= 0)
     if some.size == 0:
         return plain
-    ridden, inside = _on_rides(rides, which[some], begin[some], back[some], measured)
-    late, early = np.split(way_at(scene, path, np.append(begin[some], ridden.time)), 2)
+    near, inside = _on_slides(slides, which[some], begin[some], back[some], measured)
+    late, early = np.split(way_at(scene, path, np.append(begin[some], near.time)), 2)
     nearer = plain.known[some] | inside | (late - early <= way[some])
     starts = Starts(*(column.copy() for column in plain))
-    for column, row in zip(starts, ridden, strict=True):
+    for column, row in zip(starts, near, strict=True):
         column[some[nearer]] = row[nearer]
     return starts
 
 
-def _on_rides(rides: list[FastSlide], which: np.ndarray, begin, back, measured: bool):
-    """Starts at lattice points of rides, their errors behind and ahead; and what holds
-    `begin`."""
-    curves = ManyTransitTimes([ride.curve for ride in rides])
-    rows = [(r.sign, r.well, r.tip, r.curve.edges[0], r.end) for r in rides]
+def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured: bool):
+    """Starts at lattice points of fast slides, their errors behind and ahead; and which
+    hold `begin`."""
+    curves = ManyTransitTimes([slide.curve for slide in slides])
+    rows = [(r.sign, r.well, r.tip, r.curve.edges[0], r.end) for r in slides]
     sign, well, tip, first, end = np.array(rows)[which].T
     number = np.floor(curves.number_at(which, np.minimum(begin, end)) + _WHOLE) - back
     number = np.maximum(number, first)
     error = np.zeros(which.size)
     if measured:
-        errors = np.concatenate([ride.error for ride in rides])
+        errors = np.concatenate([slide.error for slide in slides])
         error = sign * errors[curves.panel_of(which, number)]
     time = np.minimum(curves.time_of(which, number), begin)
     none, well = np.zeros(which.size, dtype=bool), well + sign * number

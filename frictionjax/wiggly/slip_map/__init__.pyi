@@ -3,7 +3,10 @@ from .fast_slides import FastSlide as FastSlide
 from .fast_slides import FastSlideFinder as FastSlideFinder
 from .fast_slides import FoundTips as FoundTips
 from .fast_slides import last_begun as last_begun
+from .fast_slides import none_known as none_known
 from .map import BARE_TAIL as BARE_TAIL
 from .map import TAIL as TAIL
-from .onsets import fast_slide_through as fast_slide_through
+from .onsets import LookAt as LookAt
+from .onsets import Measure as Measure
+from .onsets import asking_for_slides as asking_for_slides
 from .transit_times import ManyTransitTimes as ManyTransitTimes

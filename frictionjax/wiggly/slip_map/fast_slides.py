@@ -65,23 +65,30 @@ class FastSlide(NamedTuple):
 
     @property
     def lags(self) -> bool:
-        """Whether the tip is behind the path where the ride ends, by more than a slip."""
+        """Whether the tip is behind the path where the slide ends, by more than a slip."""
         return bool(self.curve.last > RESTS)
 
 
 def _not_measured() -> np.ndarray:
-    raise RuntimeError("a ride is used before its errors are measured")
+    raise RuntimeError("a fast slide is used before its errors are measured")
 
 
-def last_begun(rides: np.ndarray, cell: np.ndarray, time: np.ndarray):
-    """Rides of the cells, and which of them each cell began last before a time; else -1."""
+def none_known(count: int) -> np.ndarray:
+    """Of so many cells: no fast slides, an empty tuple for each."""
+    known = np.empty(count, dtype=object)
+    known[:] = [()] * count
+    return known
+
+
+def last_begun(slides: np.ndarray, cell: np.ndarray, time: np.ndarray):
+    """Slides of the cells, and which of them each began last before a time; else -1."""
     every: list[FastSlide] = []
     which = np.full(cell.size, -1)
     for c in np.unique(cell):
         mine = cell == c
-        for ride in rides[c]:
-            which[mine & (time >= ride.begin)] = len(every)
-            every.append(ride)
+        for slide in slides[c]:
+            which[mine & (time >= slide.begin)] = len(every)
+            every.append(slide)
     return every, which
 
 
@@ -95,11 +102,6 @@ class FoundTips(NamedTuple):
     well: np.ndarray
     tip: np.ndarray
     gap: np.ndarray
-
-
-# Cells, begins and stops in s -> tips at the stops, by lanes that set off from the last
-# ride or from brackets.
-Look = Callable[[np.ndarray, np.ndarray, np.ndarray], FoundTips]
 
 
 class Candidates(NamedTuple):
@@ -125,7 +127,7 @@ class Candidates(NamedTuple):
 
 
 class FastSlideFinder(NamedTuple):
-    """What rides of a sweep are made from.
+    """What fast slides of a sweep are made from.
 
     `eps`, `viscosity`, `lag` (wells, of the fastest slide): shape (cells,). `folds`: tip
     coordinates and forces of the extreme folds of each cell by direction, as
@@ -198,7 +200,7 @@ class FastSlideFinder(NamedTuple):
         well = np.round(some.well + some.tip + some.sign * way - place)
         return some.time + length, well
 
-    def rides(self, some: Candidates) -> list[FastSlide | None]:
+    def fast_slides(self, some: Candidates) -> list[FastSlide | None]:
         """Follow the candidates; None where a slide is slow or short."""
         beyond = self.beyond(some)
         least = np.where(some.least > 0, some.least, _NARROW * beyond)

@@ -174,12 +174,12 @@ def test_values_alone_are_the_same_and_leave_slips_out(gamma):
     every = cells(*wanted, balanced=False)
     alone = cells(*wanted, balanced=False, suprema=False)
     gaps = np.abs(alone.z - every.z) / np.array(eps)[:, None]
-    # Windows on rides set off from other wells, and lanes that remember hundreds of wells
-    # stop at fewer places (1.01e-6 eps apart), as those through few do (1.5e-6).
-    ridden = (alone.how == 2) | (every.how == 2)
+    # Windows on fast slides set off from other wells, and lanes that remember hundreds of
+    # wells stop at fewer places (1.01e-6 eps apart), as those through few do (1.5e-6).
+    by_map = (alone.how == 2) | (every.how == 2)
     many = 2e-3 if gamma < 0.75 else 1e-3
     known = np.array([[2e-3], [many], [many]])
-    assert np.all(gaps < 1e-3 * np.where(ridden, 3e-2, known))
+    assert np.all(gaps < 1e-3 * np.where(by_map, 3e-2, known))
     assert np.all(alone.status == fx.Status.OK)
     assert alone.steps.sum() < 0.75 * every.steps.sum()
     assert np.all(np.isnan(alone.sup_error))

@@ -5,7 +5,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.wiggly.enclosure.brackets import BracketPlan
-from frictionjax.wiggly.enclosure.close import PATIENCE, BracketContext
+from frictionjax.wiggly.enclosure.close import PATIENCE, BracketContext, no_effort
 from frictionjax.wiggly.enclosure.starts import CellBounds
 from frictionjax.wiggly.lanes.queue import Lanes, SegmentEnds, Segments
 from frictionjax.wiggly.limit_path.find_path import path_of
@@ -50,7 +50,7 @@ def test_cells_wait_for_lanes_that_go_astray_so_long_only():
     scene = scene_under([0.0, 1.0], [0.0, 1.1])  # one way of 1 m
     eps, none = np.array([1e-4, 1e-5, 1e-6]), np.zeros(6)
     every = dict.fromkeys(CellBounds._fields, None) | {"eps": eps}
-    blank = BracketContext(*[None] * 12)._replace(waited=np.zeros(3), path=path_of(scene))
+    blank = BracketContext(*[None] * 11)._replace(effort=no_effort(3), path=path_of(scene))
     rounds = blank._replace(ground=CellBounds(**every))
     legs = Segments(*np.zeros((len(Segments._fields), 6)))._replace(budget=np.full(6, 1e9))
     legs = legs._replace(guide1=np.array([0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]))
@@ -63,12 +63,10 @@ def test_cells_wait_for_lanes_that_go_astray_so_long_only():
     assert beyond == pytest.approx([1e9 - PATIENCE, 0, 0, 200 * 10, 0, 0], abs=1e-6)
     steps = PATIENCE * np.array([5.0, 0.6, 0.2, 0.3, 0.4, np.nan])
     found = SegmentEnds(*np.tile(steps, (len(SegmentEnds._fields), 1)))._replace(code=none)
-    rounds._wait(plan, found)
-    assert rounds.waited == pytest.approx(PATIENCE * np.array([0.3, 0.6, 0.2]), abs=2000.1)
-    rounds._wait(plan, found)
+    waited = rounds._waited(plan, found)
+    assert waited == pytest.approx(PATIENCE * np.array([0.3, 0.6, 0.2]), abs=2000.1)
     gave_up = found._replace(code=np.array([0, 0, 0, 1.0, 0, 0]))
-    whole = BracketContext(*rounds)._replace(waited=np.zeros(3))
-    whole._wait(plan, gave_up)
-    assert whole.waited[0] == 0.3 * PATIENCE
-    able = rounds._within_patience(plan)[0]
+    assert rounds._waited(plan, gave_up)[0] == 0.3 * PATIENCE
+    twice = rounds.effort._replace(waited=2 * waited)
+    able = rounds._replace(effort=twice)._within_patience(plan)[0]
     assert able.tolist() == [True, False, True, True, False, True]

@@ -9,39 +9,37 @@ from fast_slides import BRISTLES, PROFILES, SCENES, SINE, TIMES
 import frictionjax as fx
 from frictionjax.wiggly import batch as engine
 from frictionjax.wiggly.enclosure import close as rounds
-from frictionjax.wiggly.enclosure import finder as riding
-from frictionjax.wiggly.enclosure import layout
+from frictionjax.wiggly.enclosure import finder, layout
 from frictionjax.wiggly.limit_path.find_path import path_of
 from frictionjax.wiggly.slip_map.fast_slides import FastSlide
 from frictionjax.wiggly.slip_map.transit_times import TransitTimes
 
 
-def test_a_ride_reaches_the_end_of_a_slide_of_a_hundred_million_wells(monkeypatch):
+def test_a_slide_of_a_hundred_million_wells_is_followed_to_its_end(monkeypatch):
     """The averaged equation says where: it ended after two percent where steps of T failed.
 
     Nor is there any lag of the moment behind it, as it ends slow.
     """
-    rides = []
+    slides = []
 
-    def only_rides(rounds, warm):
-        riding.find_fast_slides(rounds, warm)
-        rides.extend(rounds.ground.rides[0])
+    def only_slides(rounds, needs):
+        slides.extend(finder.find_fast_slides(rounds, needs).slides[0])
         raise InterruptedError
 
-    monkeypatch.setattr(engine, "find_fast_slides", only_rides)
+    monkeypatch.setattr(engine, "find_fast_slides", only_slides)
     cell = np.array([1.3e-8]), np.array([0.5]), TIMES, 1e-3
     with pytest.raises(InterruptedError):
         engine.integrate_cells(SCENES["sine"], *cell, "windowed")
     path = path_of(SCENES["sine"])
     ways = np.abs(np.diff(path.states)) / 1.3e-8
-    for ride in rides[:2]:
-        assert ride.curve.edges[-1] > 0.98 * ways[ride.piece]
-        assert ride.curve.edges.size < 50
-        assert ride.curve.last < 0.5
-    assert rides[2].end > 3.0 - 1e-6  # with the load's last instant, at full speed
+    for slide in slides[:2]:
+        assert slide.curve.edges[-1] > 0.98 * ways[slide.piece]
+        assert slide.curve.edges.size < 50
+        assert slide.curve.last < 0.5
+    assert slides[2].end > 3.0 - 1e-6  # with the load's last instant, at full speed
 
 
-def test_lanes_on_rides_have_tolerances_of_their_own(monkeypatch):
+def test_lanes_on_fast_slides_have_tolerances_of_their_own(monkeypatch):
     """Errors of two wells hardly add up; those of a long lane do."""
     marched = []
     march = rounds.march
@@ -73,18 +71,18 @@ def test_lanes_on_rides_have_tolerances_of_their_own(monkeypatch):
     assert np.all(tolerance[many & quick] == found.tolerance[0])
 
 
-def test_tiles_end_on_rides():
-    """Every sixteen wells of a ride: lanes set off there at no cost."""
+def test_tiles_end_on_fast_slides():
+    """Every sixteen wells of a slide: lanes set off there at no cost."""
     edges, none = np.array([0.0, 100.0]), np.zeros((1, 13))
     series = none + np.eye(13)[1] * 0.5  # a second for a hundred wells
     series[0, 0] = 0.5
     curve = TransitTimes(
         edges, np.array([1.0, 2.0]), series, none[:, 0], none[:, 0] + 0.9, 0.9
     )
-    ride = FastSlide(curve, 1.0, 0.0, 0.0, 0, lambda: none[:, 0])
+    slide = FastSlide(curve, 1.0, 0.0, 0.0, 0, lambda: none[:, 0])
     times = np.array([0.0, 1.0, 1.15, 1.17, 1.33, 1.9, 2.0, 5.0])
-    assert layout._on_rides((ride,), times).tolist() == [0, 0, 0, 1, 2, 5, 6, 6]
-    assert layout._on_rides((), times).tolist() == [0] * 8
+    assert layout._on_slides((slide,), times).tolist() == [0, 0, 0, 1, 2, 5, 6, 6]
+    assert layout._on_slides((), times).tolist() == [0] * 8
 
 
 @pytest.mark.slow
@@ -103,7 +101,7 @@ def test_lag_follows_the_averaged_equation():
 
 
 @pytest.mark.slow
-def test_a_ride_alone_equals_the_batch():
+def test_a_fast_slide_alone_equals_the_batch():
     scene, times = SCENES["sine"], TIMES
     eps = np.array([1e-2, 2e-4, 3e-5])
     both = fx.sweep(scene, eps, [0.5, 1.0], times)
@@ -113,7 +111,7 @@ def test_a_ride_alone_equals_the_batch():
 
 
 @pytest.mark.slow
-def test_starts_behind_a_ride_that_ends_fast():
+def test_starts_behind_a_fast_slide_that_ends_fast():
     """A slide that ends while it lags: what follows must not trust lags of the moment.
 
     Sixteen wells before t = 1.2, a bracket made from them left the tip out: 6e-2 eps off.
@@ -138,14 +136,14 @@ def test_starts_behind_a_ride_that_ends_fast():
 @pytest.mark.slow
 def test_surveys_with_many_nodes_do_not_run_away(monkeypatch):
     """Chebyshev's points less than a well apart: 129 in 3800 wells made a sup of 6e3."""
-    monkeypatch.setattr(riding, "TAIL", riding.BARE_TAIL)
+    monkeypatch.setattr(finder, "TAIL", finder.BARE_TAIL)
     cell = np.array([1.3e-7]), np.array([0.4]), TIMES, 1e-3
     found = engine.integrate_cells(SCENES["sine"], *cell, "windowed", balanced=False)
     assert abs(found.sup_error[0] / 7.47784e-5 - 1) < 1e-2
 
 
 @pytest.mark.slow
-def test_brackets_that_stay_open_from_rides_end_in_one_lane():
+def test_brackets_that_stay_open_from_fast_slides_end_in_one_lane():
     """A tip that forgets in a second: brackets 0.05 eps wide had a good status."""
     scene = fx.Scene(
         fx.profiles.Fourier([-1.99e-3, -1.7e-4, -6.2e-4], [1.48e-3, 4.3e-4, -8.1e-4]),

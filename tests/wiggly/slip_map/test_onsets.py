@@ -5,9 +5,10 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.wiggly import batch as engine
+from frictionjax.wiggly.limit_path import path_of, states_at
 from frictionjax.wiggly.limit_path import resting_ends as slow_ends
-from frictionjax.wiggly.slip_map import fast_slides as rides
-from frictionjax.wiggly.slip_map import onsets as ride_starts
+from frictionjax.wiggly.plan import lane_scene, planned
+from frictionjax.wiggly.slip_map import fast_slides, onsets
 
 SCENE = fx.Scene(
     fx.profiles.Sine(0.1),
@@ -22,7 +23,7 @@ TIMES = np.linspace(0.0, 3.0, 41)
 def solved(eps, method="windowed"):
     """Answers at gamma = 1/2, values only, and how often slides were followed."""
     followed = []
-    follow = rides.follow
+    follow = fast_slides.follow
 
     def spy(scene, slides, tail):
         followed.append(slides.eps)
@@ -30,9 +31,15 @@ def solved(eps, method="windowed"):
 
     cell = np.array([eps]), np.array([0.5]), TIMES, 1e-3
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(rides, "follow", spy)
+        patch.setattr(fast_slides, "follow", spy)
         found = engine.integrate_cells(SCENE, *cell, method, False, suprema=False)
     return found, followed
+
+
+def none_at_once(finder):
+    """A generator as `onsets._at_once`, which asks for nothing."""
+    yield from ()
+    return {}
 
 
 @pytest.mark.parametrize(("eps", "calls"), [(2e-4, [3]), (6e-3, [1, 1, 1])])
@@ -40,7 +47,7 @@ def test_at_once_is_as_one_after_the_other(monkeypatch, eps, calls):
     """At 6e-3 slides end while they lag, and the next one waits for what they leave."""
     together, followed = solved(eps)
     assert [slides.size for slides in followed] == calls
-    monkeypatch.setattr(ride_starts, "_at_once", lambda *args: {})
+    monkeypatch.setattr(onsets, "_at_once", none_at_once)
     ordered, followed = solved(eps)
     assert [slides.size for slides in followed] == [1, 1, 1]
     assert together.status == ordered.status == fx.Status.OK
@@ -48,7 +55,7 @@ def test_at_once_is_as_one_after_the_other(monkeypatch, eps, calls):
 
 
 def test_what_was_foreseen_is_found_again_where_the_slide_before_lags(monkeypatch):
-    """A ride that ends fast: those found without it are not believed."""
+    """A slide that ends fast: those found without it are not believed."""
     expected, _ = solved(6e-3)
     monkeypatch.setattr(slow_ends, "_END", 0.0)  # all slides are slow at their turn
     found, followed = solved(6e-3)
@@ -64,7 +71,7 @@ def test_few_slips_are_gone_through_by_one_lane():
     assert np.all(found.gap == 0.0)
 
 
-def test_cells_without_rides_run_beside_those_with():
+def test_cells_without_fast_slides_run_beside_those_with():
     """Their values are as alone, in the order that was asked for."""
     eps, gamma = np.array([2e-4, 1e-2, 5e-4, 2e-2]), np.full(4, 0.5)
     both = engine.integrate_cells(SCENE, eps, gamma, TIMES, 1e-3, "auto", False)
@@ -76,3 +83,56 @@ def test_cells_without_rides_run_beside_those_with():
         assert np.max(np.abs(both.z[i] - alone.z[0])) < 1e-6 * one
         assert both.steps[i] == pytest.approx(alone.steps[0], rel=1e-2)
         assert both.tolerance[i] == pytest.approx(alone.tolerance[0])
+
+
+def answered(asking, answer):
+    """What a generator returns whose questions are answered."""
+    try:
+        wanted = next(asking)
+        while True:
+            wanted = asking.send(answer(wanted))
+    except StopIteration as end:
+        return end.value
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1.0])
+def test_slides_are_found_from_answers_alone(gap):
+    """Without any lane: tips where the path is, brackets that have closed or not."""
+    eps = np.array([2e-4, 5e-4])
+    lanes = lane_scene(SCENE, float(eps.max()))
+    path = path_of(SCENE)
+    parts = eps, np.full(2, 0.5), TIMES.size, 1e-3, "windowed"
+    ground = planned(SCENE, lanes, path, *parts).ground
+    folds = ground.folds
+    finder = fast_slides.FastSlideFinder(
+        scene=SCENE,
+        path=path,
+        eps=eps,
+        viscosity=eps**0.5,
+        lag=ground.lag_plus / eps,
+        folds={
+            1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
+            -1.0: (np.asarray(folds.place_minus), np.asarray(folds.force_minus)),
+        },
+        slow=np.zeros((2, path.direction.size), dtype=bool),
+        tail=1e-4,
+        accuracy=1e-3,
+    )
+    asked = []
+
+    def answer(wanted):
+        asked.append(wanted)
+        if isinstance(wanted, onsets.Measure):
+            return [lambda: np.zeros(1)] * len(wanted.slides)
+        states = states_at(SCENE, path, wanted.stops)
+        # Behind the edge, where the pull is a little beyond the fold.
+        wells = (states - 2e-2 * np.sign(states)) / eps[wanted.cells]
+        tips = np.floor(wells), np.mod(wells, 1.0)
+        return fast_slides.FoundTips(*tips, np.full(wells.size, gap))
+
+    found = answered(onsets.asking_for_slides(finder), answer)
+    measured = [one for one in asked if isinstance(one, onsets.Measure)]
+    assert sum(len(one.slides) for one in measured) == sum(map(len, found))
+    assert any(found) == (gap < 0.1)
+    # What is asked with is what was known then: nothing is written into it later.
+    assert not any(asked[0].known)

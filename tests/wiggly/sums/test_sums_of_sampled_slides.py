@@ -187,7 +187,7 @@ def test_surveys_decide_which_sum_is_the_dissipation(errors, pulled, summed):
 
 
 def test_times_in_a_rest_of_the_path_share_a_window():
-    """On a ride such times are inside a survey: 4% of the dissipation was lost."""
+    """On a fast slide such times are inside a survey: 4% of the dissipation was lost."""
     windows = SimpleNamespace(owner=np.array([0, 1, 1, 1, 2]))
     sums = np.arange(15.0).reshape(3, 5)
     stops = SimpleNamespace(sums=sums)
