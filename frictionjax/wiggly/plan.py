@@ -18,12 +18,9 @@ from ..model import (
 )
 from ..profiles import AbstractProfile
 from .enclosure import (
-    AFFORDABLE,
-    LONG_MEMORY,
     MARGIN,
     CellBounds,
     Requirements,
-    cost_of,
     wells_of,
 )
 from .equation import StepPlan as StepPlan
@@ -32,6 +29,7 @@ from .lanes import LaneScene
 from .limit_path import NODES, Path, slow_ends
 from .rosenbrock import RODAS5P
 from .slip_map import lag_forces, none_known
+from .ways import Way, by_brackets, ends_before_tips_follow, ways_of
 
 # Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as fast
 # for one cell, as lanes wait for the longest tile; three times: 0.7.) Of the whole sweep
@@ -48,16 +46,6 @@ _AFTER_SLIP, _SHORT_REST = 0.05, 0.2
 # Lanes set off in the middle of a slip or two, and forget less in their first wells. (1:
 # brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the first.)
 _SLIPS_FORGET = 1.5
-# Wells of a slide that are worth a slip map, where windows set off far back.
-_LONG_SLIDE = 60.0
-# Wells that one lane from z0 goes through in about the time of the slip maps of three
-# slides, for a sine. (16 eps to 1e-4, gamma = 1/2, seconds with maps from 1100, 1800, 2500
-# and 4000 on: 0.35, 0.26, 0.25, 0.39. Whatever the number of slides: 14 s for 200 of 190
-# wells each, which one lane goes through in 3.)
-_MAP = 2200.0 / 3
-# Of the speed: what panels of a slip map might step over.
-_BURST = 0.1
-WIDEST = 0.125  # reach of a sine, periods
 # Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2, 16
 # eps to 1e-4, seconds at 1, 1.5, 2, 3 and 5: vertical 0.74, 0.57, 0.62, 0.52, 0.45, angular
 # 2.1, 2.0, 1.9, 1.4, 1.6.)
@@ -144,11 +132,16 @@ def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     forgets = 2 * lag * np.log((lag + 2) / (0.1 * accuracy))
     slow = np.ceil(MARGIN + forgets)
-    warm = np.minimum(slow, _resting(ground, lag, forgets))
-    settle = np.ceil(lag + warm + 2)
-    offset, none = _offsets(ground, path), np.zeros(lag.size)
-    cut = np.zeros(offset.shape, dtype=bool)
-    return Requirements(warm, settle, _TILE * slow, none, offset, cut)
+    run_up = np.minimum(slow, _resting(ground, lag, forgets))
+    offset = _lattice_offsets(ground, path)
+    return Requirements(
+        run_up=run_up,
+        transient=np.ceil(lag + run_up + 2),
+        tile=_TILE * slow,
+        samples=np.zeros(lag.size),
+        lattice_offset=offset,
+        restarts=np.zeros(offset.shape, dtype=bool),
+    )
 
 
 def _resting(ground: CellBounds, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
@@ -165,7 +158,7 @@ def _resting(ground: CellBounds, lag: np.ndarray, forgets: np.ndarray) -> np.nda
     return np.where(rest > _SHORT_REST, wells, np.inf)
 
 
-def _offsets(ground: CellBounds, path: Path) -> np.ndarray:
+def _lattice_offsets(ground: CellBounds, path: Path) -> np.ndarray:
     """From each slide's start to half a period behind a fold, in wells, (cells, pieces)."""
     folds, up = ground.folds, path.direction > 0
     fold = np.where(up, folds.state_plus[:, None], folds.state_minus[:, None])
@@ -173,85 +166,51 @@ def _offsets(ground: CellBounds, path: Path) -> np.ndarray:
     return np.mod(0.5 - past, 1.0)
 
 
-def _choose(
-    path: Path, eps: np.ndarray, needs: Requirements, times: int, method: str
+def _with_brackets(
+    path: Path, eps: np.ndarray, needs: Requirements, brackets: np.ndarray
 ) -> Requirements:
-    """Per cell, the way that passes through fewer wells."""
-    nodes = np.full(eps.size, NODES)
-    if method == "resolved":
-        nodes = np.zeros(eps.size, dtype=int)
-    if method == "auto":
-        sampled = cost_of(path, eps, needs._replace(nodes=nodes), times)
-        every = cost_of(path, eps, needs._replace(nodes=0 * nodes), times)
-        nodes = np.where(sampled < every, nodes, 0)
-    needs = needs._replace(nodes=nodes)
+    """What cells need that go by brackets: how many slips are sampled, and longer tiles."""
+    samples = np.where(brackets == Way.SAMPLED, NODES, 0)
+    needs = needs._replace(samples=samples)
     outer, _ = wells_of(path, eps, needs)
     return needs._replace(tile=np.maximum(needs.tile, outer / TILES))
 
 
-def slides_of(path: Path, eps: np.ndarray) -> np.ndarray:
-    """Pieces of the path that are long enough for slip maps, (cells, pieces)."""
-    return np.abs(np.diff(path.states)) > _LONG_SLIDE * eps[:, None]
-
-
-def _long_memories(
+def _along(
     scene: Scene,
-    control: StepPlan,
     path: Path,
     ground: CellBounds,
     needs: Requirements,
     follows: np.ndarray,
-    method: str,
-) -> tuple[np.ndarray, Requirements]:
-    """Which cells follow slip maps: where windows would remember too many slips.
+    way: np.ndarray,
+) -> Requirements:
+    """What cells need on their way: one lane, and slip maps, set off where slides end slow.
 
-    With few slips altogether one lane goes through all from z0, needing no bracket; others
-    set off where a slide ends slow. So it does where slides are over before tips follow: no
-    bracket closes across them, and no slip map ends. (Jumps within 3e-4 s, gamma = 0.3,
-    eps = 1e-3: 3.7 s, after 18 s for maps and brackets in vain.) `follows`: the time in s
-    that tips take to, e-fold.
+    One lane does not where slides are over before tips follow.
     """
-    eps = ground.eps
-    if method == "resolved":
-        return np.zeros(eps.size, dtype=bool), needs
-    long = needs.warm > LONG_MEMORY
-    slides = slides_of(path, eps)
-    long_slides = np.count_nonzero(slides, axis=1)
-    bursts = np.any(slides & (path.probes.unseen > _BURST), axis=1)
-    ridden = long & np.any(slides, axis=1) & ~bursts
-    if not long.any():
-        return ridden, needs
-    lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
-    slow = slow_ends(scene, path, eps, lag)
-    if method == "auto":
-        # Steps are the shorter, the narrower the branches.
-        narrow = (WIDEST / np.asarray(control.reach)) ** 0.6
-        wells = path.travel[-1] / eps
-        way = wells * narrow
-        brief = slides & (follows[:, None] > path.edges[1:] - path.touch)
-        never = np.any(brief, axis=1) & (wells <= AFFORDABLE)
-        few = way <= np.minimum(_MAP * np.maximum(long_slides, 3), AFFORDABLE)
-        alone = long & (few | never)
-        ridden &= ~alone
-        slow &= ~never[:, None]
-        needs = needs._replace(
-            nodes=np.where(alone, 0, needs.nodes),
-            tile=np.where(alone, np.inf, needs.tile),
-            cut=alone[:, None] & slow,
-        )
-    return ridden, needs._replace(cut=needs.cut | (ridden[:, None] & slow))
+    alone, by_map = way == Way.ONE_LANE, way == Way.SLIP_MAP
+    if not np.any(alone | by_map):
+        return needs
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
+    late = ends_before_tips_follow(path, ground.eps, follows)
+    restarts = slow_ends(scene, path, ground.eps, lag)
+    return needs._replace(
+        samples=np.where(alone, 0, needs.samples),
+        tile=np.where(alone, np.inf, needs.tile),
+        restarts=restarts & (by_map | (alone & ~late))[:, None],
+    )
 
 
 class Planned(NamedTuple):
     """Cells before anything has run: step control, what windows know and need.
 
-    `ridden`: cells of which slip maps are made.
+    `way`: of each cell, as `Way`.
     """
 
     control: StepPlan
     ground: CellBounds
     needs: Requirements
-    ridden: np.ndarray
+    way: np.ndarray
 
 
 def planned(
@@ -271,8 +230,17 @@ def planned(
     control = _controls(scene, eps, gamma, accuracy, rho)
     ground = ground_of(scene, path, eps, gamma, control.folds)
     needs = _needs(ground, path, accuracy)
-    needs = _choose(path, eps, needs, times, method)
+    brackets = by_brackets(path, eps, needs, times, method)
+    needs = _with_brackets(path, eps, needs, brackets)
     follows = viscosity_of(eps, gamma) / path.stiffness
-    known = scene, control, path, ground, needs, follows
-    ridden, needs = _long_memories(*known, method)
-    return Planned(control, ground, needs, ridden)
+    way = ways_of(
+        path=path,
+        eps=eps,
+        needs=needs,
+        reach=np.asarray(control.reach),
+        follows=follows,
+        brackets=brackets,
+        method=method,
+    )
+    needs = _along(scene, path, ground, needs, follows, way)
+    return Planned(control, ground, needs, way)

@@ -12,7 +12,8 @@ from .equation import SeriesBristle
 from .equation import StepPlan as StepPlan
 from .lanes import LaneScene
 from .limit_path import Path, path_of
-from .plan import LOOSEST, WIDEST, lane_scene, planned, slides_of
+from .plan import LOOSEST, lane_scene, planned
+from .ways import WIDEST, Way, slides_of
 
 # Steps a well: exp of a polynomial in the orders of magnitude of tolerance, drag and reach,
 # and in the lag, with knees at drags of 0.1 and 1. 280 cells of two scenes (vertical and
@@ -68,17 +69,18 @@ def workload(
     accuracy = min(accuracy, LOOSEST)
     lanes = lane_scene(scene, float(eps.max()))
     plan = planned(scene, lanes, path, eps, gamma, times, accuracy, method)
-    control, ground, needs, ridden = plan
+    control, ground, needs, way = plan
+    by_map = way == Way.SLIP_MAP
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
     steps = _steps_a_well(control, lag, _drag_of(path, eps, gamma))
     total = steps * cost_of(path, eps, needs, times)
     chain = steps * longest_lane(path, eps, needs)
     growth = (path.travel[-1] / eps / 1e3) ** _MAP_GROWTH
-    slides = slides_of(path, eps) & ridden[:, None]
-    maps, rounds = np.count_nonzero(slides, axis=1), _longest_chains(slides, needs.cut)
-    run_ups = maps * np.minimum(needs.warm, _RUN_UP)
-    total = np.where(ridden, _MAP_STEPS * run_ups * steps * growth, total)
-    chain = np.where(ridden, _MAP_CHAIN * rounds * steps * growth, chain)
+    slides = slides_of(path, eps) & by_map[:, None]
+    maps, rounds = np.count_nonzero(slides, axis=1), _longest_chains(slides, needs.restarts)
+    run_ups = maps * np.minimum(needs.run_up, _RUN_UP)
+    total = np.where(by_map, _MAP_STEPS * run_ups * steps * growth, total)
+    chain = np.where(by_map, _MAP_CHAIN * rounds * steps * growth, chain)
     jobs, legs = _rows(path, eps, needs, times)
     return Workload(total, chain, jobs, legs, maps, rounds, _weight_of(lanes))
 
@@ -124,7 +126,7 @@ def _rows(
     outer, inner = wells_of(path, eps, needs)
     shown = times * inner / np.maximum(inner + outer, 1e-9)
     slides = np.count_nonzero(path.direction)
-    tiles, sampled = 1 + outer / needs.tile, needs.nodes * slides * (inner > 0) + shown
+    tiles, sampled = 1 + outer / needs.tile, needs.samples * slides * (inner > 0) + shown
     stops = outer / wells_a_leg(path, eps) + times - shown + 2 * path.edges.size
     return 2 * (tiles + sampled), stops + 2 * tiles + 4 * sampled
 

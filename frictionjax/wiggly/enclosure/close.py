@@ -114,8 +114,15 @@ class BracketContext(NamedTuple):
 
     def run(self, windows: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
         """March all windows, from `wells` of the path or `back` of a fast slide before."""
-        where = windows.cell, windows.begin, wells, back
-        starts = starts_of(self.scene, self.path, self.ground, *where)
+        starts = starts_of(
+            scene=self.scene,
+            path=self.path,
+            ground=self.ground,
+            cell=windows.cell,
+            begin=windows.begin,
+            wells=wells,
+            back=back,
+        )
         return self.march_from(windows, starts)
 
     def march_from(self, windows: Brackets, starts: Starts) -> BracketRound:
@@ -243,7 +250,7 @@ def close_brackets(
     legs = np.full((len(Segments._fields), size), np.nan)
     gap, how = np.full(size, np.inf), np.zeros(size, dtype=int)
     open_ = np.arange(windows.cell.size)
-    wells = run_ups(rounds, windows, needs.warm)
+    wells = run_ups(rounds, windows, needs.run_up)
     back = np.zeros(wells.size)
     for _ in range(ROUNDS):
         some = windows.chosen(open_)
@@ -277,24 +284,38 @@ def close_brackets(
             break
         wells[open_] = np.maximum(EARLIER * wells[open_], MARGIN + 1)
         back[open_] = EARLIER * np.maximum(back[open_], 1)
-    steps, rejected, _ = rounds.effort
-    ends = SegmentEnds(*values), Segments(*legs)
-    return BracketValues(*ends, gap, how, steps, rejected), open_
+    result = BracketValues(
+        arrivals=SegmentEnds(*values),
+        legs=Segments(*legs),
+        gap=gap,
+        how=how,
+        steps=rounds.effort.steps,
+        rejected=rounds.effort.rejected,
+    )
+    return result, open_
 
 
-def run_ups(rounds: BracketContext, windows: Brackets, warm: np.ndarray) -> np.ndarray:
+def run_ups(rounds: BracketContext, windows: Brackets, needed: np.ndarray) -> np.ndarray:
     """Wells that each window starts earlier: fewer where its slide is slow, (W,).
 
     Slides remember in proportion to the square of their speed.
     """
-    wells = warm[windows.cell].astype(float)
+    wells = needed[windows.cell].astype(float)
     long = (wells > LONG_MEMORY) & np.isfinite(wells)
     if not long.any():
         return wells
     near = np.full(wells.size, MARGIN + 1.0)
-    where = windows.cell, windows.begin, near, near
     scene, path = rounds.scene, rounds.path
-    starts = starts_of(scene, path, rounds.ground, *where, measured=False)
+    starts = starts_of(
+        scene=scene,
+        path=path,
+        ground=rounds.ground,
+        cell=windows.cell,
+        begin=windows.begin,
+        wells=near,
+        back=near,
+        measured=False,
+    )
     states = states_at(scene, path, starts.time)
     share = slow_share(scene, path, starts.time, states)
     share = np.where(starts.from_slide | starts.lagging, 1.0, share)

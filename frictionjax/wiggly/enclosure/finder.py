@@ -106,7 +106,7 @@ def _finder_of(rounds: BracketContext, needs: Requirements) -> FastSlideFinder:
             1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
             -1.0: (np.asarray(folds.place_minus), np.asarray(folds.force_minus)),
         },
-        slow=needs.cut,
+        slow=needs.restarts,
         tail=(TAIL if any(rounds.wanted) else BARE_TAIL) * rounds.accuracy,
         accuracy=rounds.accuracy,
     )
@@ -126,7 +126,7 @@ def _seen(
     paired, one = np.ones(count, dtype=bool), np.arange(count)
     begins = np.minimum(wanted.begins, wanted.stops)
     windows = Brackets(wanted.cells, begins, paired, one, wanted.stops)
-    wells, back = run_ups(looks, windows, needs.warm), np.ones(count)
+    wells, back = run_ups(looks, windows, needs.run_up), np.ones(count)
     found, open_ = FoundTips(*np.empty((3, count))), one
     for _ in range(ROUNDS):
         some = windows.chosen(open_)

@@ -58,7 +58,7 @@ def _lattice(scene: Scene, path: Path, eps, needs: Requirements, parts: Parts, c
         own = parts.cell == cell
         for slide in np.flatnonzero(path.direction).tolist():
             way = abs(path.states[slide + 1] - path.states[slide]) / eps[cell]
-            way -= needs.offset[cell, slide]
+            way -= needs.lattice_offset[cell, slide]
             mine = own & (parts.low < path.edges[slide + 1])
             mine &= parts.high > path.touch[slide]
             at = _outside(path, slide, eps[cell], leg, way, lows[mine], highs[mine])
@@ -177,30 +177,32 @@ def lay_out(
     """
     summed = summed or not np.any(ts > 0)
     parts = inner_parts(scene, path, eps, needs, fast_slides)
-    rows, output = _Rows(), np.full((eps.size, ts.size), -1)
-    cells = scene, path, eps, needs, fast_slides
-    chain = _chains(*cells, accuracy, parts, ts, summed, rows, output)
+    rows = _Rows()
+    cells = _Cells(scene, path, eps, needs, fast_slides)
+    chain, hit = _chains(cells, accuracy, parts, ts, summed, rows)
     measured = parts if summed else Parts(*(column[:0] for column in parts))
-    slides = _slides(*cells, measured, rows)
-    _show(*cells, ts, rows, output)
-    return Layout(rows.windows(), chain, slides, output, summed)
+    slides = _slides(cells, measured, rows)
+    shown = _shown(cells, ts, hit, rows)
+    return Layout(rows.windows(), chain, slides, shown, summed)
+
+
+class _Cells(NamedTuple):
+    """What is to be laid out, as in `lay_out`."""
+
+    scene: Scene
+    path: Path
+    eps: np.ndarray
+    needs: Requirements
+    fast_slides: np.ndarray
 
 
 def _chains(
-    scene,
-    path: Path,
-    eps,
-    needs: Requirements,
-    fast_slides,
-    accuracy,
-    parts: Parts,
-    ts,
-    summed,
-    rows,
-    output,
-) -> list[np.ndarray]:
+    cells: _Cells, accuracy: float, parts: Parts, ts: np.ndarray, summed: bool, rows: _Rows
+) -> tuple[list[np.ndarray], np.ndarray]:
     """Tiles outside the inner parts of slides: the stops of each cell that follow each
-    other. Requested times among them are put into `output`."""
+    other, and at which of them each requested time is, -1 at none."""
+    scene, path, eps, needs, fast_slides = cells
+    output = np.full((eps.size, ts.size), -1)
     # Beside fast slides windows of a few wells each lead to the times.
     chained = [c for c in range(eps.size) if summed or not fast_slides[c]]
     # Guides of long legs are coarse, which counts in sums only: long lanes need no stops.
@@ -226,7 +228,7 @@ def _chains(
         tile = np.floor(since / needs.tile[cell] - 1e-9) + _on_slides(
             fast_slides[cell], own
         )
-        tile += np.searchsorted(path.edges[1:][needs.cut[cell]], own)
+        tile += np.searchsorted(path.edges[1:][needs.restarts[cell]], own)
         begins = own > opening[segment]
         own, segment, tile = own[begins], segment[begins], tile[begins]
         tiles = _tiles(segment, tile)
@@ -244,13 +246,12 @@ def _chains(
         which = np.searchsorted(own, ts)
         hit = np.append(own, np.nan)[which] == ts
         output[cell, hit] = chain[cell][which[hit]]
-    return chain
+    return chain, output
 
 
-def _slides(
-    scene, path: Path, eps, needs: Requirements, fast_slides, parts: Parts, rows: _Rows
-) -> list[SampledPeriods]:
+def _slides(cells: _Cells, parts: Parts, rows: _Rows) -> list[SampledPeriods]:
     """A window for each period that is measured inside a slide."""
+    scene, path, eps, needs, fast_slides = cells
     who, starts, ends = sampled(scene, path, eps, needs, parts, fast_slides)
     lows, highs = (states_at(scene, path, t) for t in (parts.low, parts.high))
     slides = []
@@ -258,23 +259,32 @@ def _slides(
         own = np.flatnonzero(who == i)
         one = np.ones(own.size, dtype=int)
         stops = rows.add(parts.cell[i] * one, starts[own], True, ends[own], one)
-        where = parts.cell[i], parts.piece[i], parts.low[i], parts.high[i]
-        periods = starts[own], ends[own], stops
-        slides.append(SampledPeriods(*where, highs[i] - lows[i], *periods))
+        slide = SampledPeriods(
+            cell=parts.cell[i],
+            piece=parts.piece[i],
+            low=parts.low[i],
+            high=parts.high[i],
+            way=highs[i] - lows[i],
+            starts=starts[own],
+            ends=ends[own],
+            stops=stops,
+        )
+        slides.append(slide)
     return slides
 
 
-def _show(
-    scene, path: Path, eps, needs: Requirements, fast_slides, ts, rows: _Rows, output
-) -> None:
-    """A window for each requested time that no other window holds."""
-    cell, shown = np.nonzero((output < 0) & (ts > 0))
+def _shown(cells: _Cells, ts: np.ndarray, hit: np.ndarray, rows: _Rows) -> np.ndarray:
+    """The stop at each requested time: one of `hit`, or in a window of its own."""
+    scene, path, eps, needs, fast_slides = cells
+    cell, shown = np.nonzero((hit < 0) & (ts > 0))
     begin = _period_before(scene, path, eps, needs, cell, ts[shown])
     begin = _fast_period_before(fast_slides, cell, ts[shown], begin)
     order, sizes = _rests_together(path, cell, ts[shown])
     cell, shown, begin = cell[order], shown[order], begin[order]
     first = np.cumsum(sizes) - sizes
+    output = hit.copy()
     output[cell, shown] = rows.add(cell[first], begin[first], True, ts[shown], sizes)
+    return output
 
 
 def _rests_together(
@@ -297,7 +307,7 @@ def _period_before(scene, path, eps, needs, cell, times) -> np.ndarray:
     """Start of the slip period of the path that holds each time."""
     piece = path.piece_of(times)
     way = np.abs(states_at(scene, path, times) - path.states[piece])
-    well = np.maximum(np.ceil(way / eps[cell] - needs.offset[cell, piece]) - 1, 0)
+    well = np.maximum(np.ceil(way / eps[cell] - needs.lattice_offset[cell, piece]) - 1, 0)
     inside = (path.direction[piece] != 0) & (times > path.touch[piece])
     begin = times.copy()
     slide = np.flatnonzero(inside)

@@ -16,20 +16,21 @@ TAIL = 4  # wells before a turning point that are always measured
 class Requirements(NamedTuple):
     """What a cell's windows need, in wells, shape (cells,).
 
-    `warm`: from a start to where it is forgotten. `settle`: from the start of a slide to
-    where the slide before is forgotten. `tile`: between two cuts of the chain, infinite
-    where it is not cut. `nodes`: periods measured in a slide, 0 for all. `offset` (cells,
-    pieces): from the start of a slide to its first lattice point, which is half a period
-    from the slips of a slow slide: what is measured should not begin in a slip. `cut`
-    (cells, pieces): where the chain is cut however long its tiles are, at a piece's end.
+    `run_up`: from a start to where it is forgotten. `transient`: from the start of a slide
+    to where the slide before is forgotten. `tile`: between two cuts of the chain, infinite
+    where it is not cut. `samples`: periods measured in a slide, 0 for all. `lattice_offset`
+    (cells, pieces): from the start of a slide to its first lattice point, which is half a
+    period from the slips of a slow slide: what is measured should not begin in a slip.
+    `restarts` (cells, pieces): where the chain is cut however long its tiles are, at a
+    piece's end.
     """
 
-    warm: np.ndarray
-    settle: np.ndarray
+    run_up: np.ndarray
+    transient: np.ndarray
     tile: np.ndarray
-    nodes: np.ndarray
-    offset: np.ndarray
-    cut: np.ndarray
+    samples: np.ndarray
+    lattice_offset: np.ndarray
+    restarts: np.ndarray
 
 
 def wells_of(
@@ -47,18 +48,18 @@ def cost_of(path: Path, eps: np.ndarray, needs: Requirements, times: int) -> np.
     slides = np.sum(inner_wells(np.abs(np.diff(path.states)) / eps[:, None], needs) > 0, 1)
     shown = times * inner / np.maximum(inner + outer, 1e-9)
     tiles = outer / needs.tile
-    windows = slides * needs.nodes + shown
+    windows = slides * needs.samples + shown
     # The first tile sets off from the known z0.
-    run_ups = 2 * needs.warm * np.maximum(tiles - 1, 0.0)
-    return outer + run_ups + 2 * (needs.warm + 2) * windows
+    run_ups = 2 * needs.run_up * np.maximum(tiles - 1, 0.0)
+    return outer + run_ups + 2 * (needs.run_up + 2) * windows
 
 
 def longest_lane(path: Path, eps: np.ndarray, needs: Requirements) -> np.ndarray:
     """Wells of a tile and its run-up, at most all of them between two cuts."""
-    ends = np.where(needs.cut, path.travel[1:], 0.0)
+    ends = np.where(needs.restarts, path.travel[1:], 0.0)
     begins = np.maximum.accumulate(np.pad(ends, ((0, 0), (1, 0)))[:, :-1], axis=1)
     between = np.max(path.travel[1:] - begins, axis=1)
-    return np.minimum(between / eps, needs.tile + needs.warm)
+    return np.minimum(between / eps, needs.tile + needs.run_up)
 
 
 def wells_a_leg(path: Path, eps: np.ndarray) -> np.ndarray:
@@ -69,6 +70,6 @@ def wells_a_leg(path: Path, eps: np.ndarray) -> np.ndarray:
 
 def inner_wells(ways: np.ndarray, needs: Requirements) -> np.ndarray:
     """Wells of each slide of which only some are measured, (cells, pieces)."""
-    inner = np.floor(ways) - np.ceil(needs.settle)[:, None] - TAIL - 1
-    nodes = needs.nodes[:, None]
-    return np.where((nodes > 0) & (inner > 2 * nodes), inner, 0.0)
+    inner = np.floor(ways) - np.ceil(needs.transient)[:, None] - TAIL - 1
+    samples = needs.samples[:, None]
+    return np.where((samples > 0) & (inner > 2 * samples), inner, 0.0)

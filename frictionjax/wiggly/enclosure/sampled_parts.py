@@ -50,7 +50,7 @@ def level_at(
     path: Path, eps: np.ndarray, needs: Requirements, cell, piece, well
 ) -> np.ndarray:
     """The path's state in m at a lattice point of a slide."""
-    way = (well + needs.offset[cell, piece]) * eps[cell]
+    way = (well + needs.lattice_offset[cell, piece]) * eps[cell]
     return path.states[piece] + path.direction[piece] * way
 
 
@@ -61,9 +61,9 @@ def _path_parts(scene: Scene, path: Path, eps, needs: Requirements, fast_slides)
     for c in range(eps.size):
         inner[c, [slide.piece for slide in fast_slides[c]]] = 0.0
     cell, piece = np.nonzero(inner)
-    first = np.ceil(needs.settle)[cell]
+    first = np.ceil(needs.transient)[cell]
     last = first + inner[cell, piece]
-    nodes = needs.nodes[cell]
+    nodes = needs.samples[cell]
     return _between(scene, path, eps, needs, cell, piece, first, last, nodes)
 
 
@@ -81,10 +81,10 @@ def _between(
 def _fast_parts(needs: Requirements, fast_slides: np.ndarray) -> list[tuple]:
     """Each panel of a fast slide that is long enough to be known from some of its wells."""
     rows = []
-    for c in range(needs.nodes.size):
+    for c in range(needs.samples.size):
         # Panels hold times that are polynomials already: half the nodes do.
-        count = needs.nodes[c] // 2 + 1
-        for index, slide in enumerate(fast_slides[c] if needs.nodes[c] > 0 else ()):
+        count = needs.samples[c] // 2 + 1
+        for index, slide in enumerate(fast_slides[c] if needs.samples[c] > 0 else ()):
             edges, starts = slide.curve.edges, slide.curve.starts
             for k in np.flatnonzero(np.diff(edges) > _SPARSE * count):
                 span = edges[k], edges[k + 1], starts[k], starts[k + 1]
@@ -96,7 +96,7 @@ def _rests_of_slides(
     scene: Scene, path: Path, eps, needs: Requirements, fast_slides
 ) -> list[tuple]:
     """Where fast slides turn slow: the path's wells from there on."""
-    cells = [c for c in range(eps.size) if needs.nodes[c] > 0]
+    cells = [c for c in range(eps.size) if needs.samples[c] > 0]
     last = [(c, slide) for c in cells for slide in _last_of_pieces(path, fast_slides[c])]
     ends = np.array([slide.end for _, slide in last])
     rows = []
@@ -104,12 +104,12 @@ def _rests_of_slides(
         piece = slide.piece
         way = abs(path.states[piece + 1] - path.states[piece]) / eps[c]
         first = np.ceil(abs(at - path.states[piece]) / eps[c]) + TAIL
-        past = np.floor(way - needs.offset[c, piece]) - TAIL
-        if slide.end > path.touch[piece] and past - first > _FEW * needs.nodes[c]:
+        past = np.floor(way - needs.lattice_offset[c, piece]) - TAIL
+        if slide.end > path.touch[piece] and past - first > _FEW * needs.samples[c]:
             # Slides turn from fast to slow there: 17 nodes leave 6e-4 eps. Chebyshev's
             # points less than a well apart mean nothing: 129 in 3800 wells left 6e3 m.
             most = max(_DENSE * np.sqrt(past - first), 2 * _LEAST)
-            rows.append((c, piece, first, past, int(min(2 * needs.nodes[c], most))))
+            rows.append((c, piece, first, past, int(min(2 * needs.samples[c], most))))
     return rows
 
 
@@ -213,8 +213,9 @@ def sampled(
         if parts.fast[i] >= 0:
             at = fast_slides[parts.cell[i]][parts.fast[i]].curve.number_at(nodes[i])
         else:
-            way = np.abs(here - path.states[parts.piece[i]])
-            at = way / eps[parts.cell[i]] - needs.offset[parts.cell[i], parts.piece[i]]
+            own, slide = parts.cell[i], parts.piece[i]
+            way = np.abs(here - path.states[slide])
+            at = way / eps[own] - needs.lattice_offset[own, slide]
         at = np.clip(np.round(at), parts.first[i], parts.last[i] - 1)
         wells.append(np.unique(at))
         owner.append(np.full(wells[-1].size, i))

@@ -72,11 +72,16 @@ def _set_off(finder: FastSlideFinder, cell: np.ndarray, piece: np.ndarray) -> np
     stiffness = pull_at(scene, inside, state).support[which, 1]
     moves = speed > 0
     cell, sign = cell[moves], path.direction[piece[moves]]
-    where = finder.eps[cell], finder.fold(cell, sign)[0], sign
-    pull = (speed * stiffness)[moves], stiffness[moves]
     times = np.full(moves.size, np.inf)
     times[moves] = first_wells(
-        scene.potential, *where, finder.viscosity[cell], *pull, _FIRST
+        potential=scene.potential,
+        eps=finder.eps[cell],
+        fold=finder.fold(cell, sign)[0],
+        side=sign,
+        viscosity=finder.viscosity[cell],
+        rate=(speed * stiffness)[moves],
+        stiffness=stiffness[moves],
+        wells=_FIRST,
     )
     return times
 
@@ -120,10 +125,19 @@ def _starting(
     cell, piece, late = cell[able], piece[able], late[able]
     stops = (touch + wait)[able]
     seen = yield from _look(known, cell, touch[able], stops)
-    none = np.zeros(able.size)
-    where = cell, path.direction[piece], stops, seen.well, seen.tip, late, piece
+    candidates = Candidates(
+        cell=cell,
+        sign=path.direction[piece],
+        time=stops,
+        well=seen.well,
+        tip=seen.tip,
+        late=late,
+        piece=piece,
+        least=np.zeros(able.size),
+        gap=seen.gap,
+    )
     closed = seen.gap < _CLOSED
-    return Candidates(*where, none, seen.gap).chosen(closed), able[closed]
+    return candidates.chosen(closed), able[closed]
 
 
 def _overshooting(
@@ -152,10 +166,17 @@ def _overshooting(
     moved = sign * (place[:, 1] - place[:, 0])
     on = np.all(seen.gap.reshape(-1, 2) < _CLOSED, axis=1)
     on &= (moved > _STILL) & (stops < late)
-    none = np.zeros(cell.size)
-    well, tip = seen.well[1::2], seen.tip[1::2]
-    ends, pieces = none + late, np.full(cell.size, piece)
-    every = Candidates(cell, sign, stops, well, tip, ends, pieces, none, seen.gap[1::2])
+    every = Candidates(
+        cell=cell,
+        sign=sign,
+        time=stops,
+        well=seen.well[1::2],
+        tip=seen.tip[1::2],
+        late=np.full(cell.size, late),
+        piece=np.full(cell.size, piece),
+        least=np.zeros(cell.size),
+        gap=seen.gap[1::2],
+    )
     # After a turn the force falls until the tip is held again.
     beyond = finder.beyond(every)
     soft = finder.path.stiffness * finder.eps[cell]
@@ -247,8 +268,9 @@ def _on_piece(
     left = np.array([c for c in new if c not in found], dtype=int)
     if left.size == 0:
         return known
-    where = left, np.full(left.size, piece), np.array(lags)[left]
-    some, _ = yield from _starting(finder, known, *where)
+    some, _ = yield from _starting(
+        finder, known, left, np.full(left.size, piece), np.array(lags)[left]
+    )
     if some is None or not some.cell.size:
         return known
     slides = yield from _followed(finder, known, some)

@@ -86,12 +86,25 @@ def evaluate(
     for c in range(count):
         mine = [i for i, slide in enumerate(layout.slides) if slide.cell == c]
         mine.sort(key=lambda i: layout.slides[i].low)
-        own = [layout.slides[i] for i in mine], [surveys[i] for i in mine]
-        cell = way_of(layout.chain[c], *own, stops)
+        cell = way_of(
+            chain=layout.chain[c],
+            slides=[layout.slides[i] for i in mine],
+            surveys=[surveys[i] for i in mine],
+            stops=stops,
+        )
         *energies, lost = no_energetics(ts.size)
         if wanted.energies:
-            of = layout, layout.output[c], energy0[c], of_path, path
-            *energies, lost = energetics(cell, stops, *of, accuracy * eps[c], eps[c])
+            *energies, lost = energetics(
+                cell=cell,
+                stops=stops,
+                layout=layout,
+                output=layout.output[c],
+                energy0=energy0[c],
+                of_path=of_path,
+                path=path,
+                unit=accuracy * eps[c],
+                eps=eps[c],
+            )
         output = layout.output[c]
         z = np.where(output >= 0, stops.z[output], z_start[c])
         off = deviations(cell, stops) if wanted.extremes else NOT_ASKED

@@ -10,6 +10,7 @@ from frictionjax.wiggly.enclosure.starts import CellBounds
 from frictionjax.wiggly.lanes.queue import Lanes, SegmentEnds, Segments
 from frictionjax.wiggly.limit_path.find_path import path_of
 from frictionjax.wiggly.plan import lane_scene, planned
+from frictionjax.wiggly.ways import Way
 
 
 def scene_under(times, values):
@@ -41,7 +42,7 @@ def test_one_lane_goes_through_where_slides_are_brief(rise, alone):
     cells = np.array([1e-4]), np.array([0.5])
     lanes = lane_scene(scene, 1e-4)
     plan = planned(scene, lanes, path_of(scene), *cells, 2, 1e-3, "auto")
-    assert plan.ridden.tolist() == [not alone]
+    assert plan.way == (Way.ONE_LANE if alone else Way.SLIP_MAP)
     assert np.isinf(plan.needs.tile).tolist() == [alone]
 
 

@@ -28,6 +28,7 @@ from frictionjax.wiggly.slip_map.transit_times import (
     ManyTransitTimes,
     TransitTimes,
 )
+from frictionjax.wiggly.ways import Way
 
 
 def ground_of(scene, eps) -> Landscape:
@@ -227,15 +228,15 @@ def test_maps_are_made_where_they_are_cheaper():
     scene, eps = SCENES["sine"], np.array([3e-2, 1e-6])
     path, lanes = path_of(scene), lane_scene(scene, 3e-2)
 
-    def ridden(gamma, method):
+    def by_map(gamma, method):
         gammas = np.full(eps.size, gamma)
         plan = planned(scene, lanes, path, eps, gammas, TIMES.size, 1e-3, method)
-        return plan.ridden.tolist()
+        return (plan.way == Way.SLIP_MAP).tolist()
 
-    assert ridden(0.5, "auto") == [False, True]
-    assert ridden(0.5, "windowed") == [True, True]
-    assert ridden(0.5, "resolved") == [False, False]
-    assert ridden(1.0, "windowed") == [False, False]
+    assert by_map(0.5, "auto") == [False, True]
+    assert by_map(0.5, "windowed") == [True, True]
+    assert by_map(0.5, "resolved") == [False, False]
+    assert by_map(1.0, "windowed") == [False, False]
 
 
 def test_rounded_times_say_by_how_much():
