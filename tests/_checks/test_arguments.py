@@ -129,8 +129,8 @@ def test_wrong_solutions_do_not_balance_at_the_smallest_eps(monkeypatch, gamma):
     """Steps that err by a hundredth of a well, by a third in slips."""
     plans = engine.planned
 
-    def carelessly(*parts):
-        plan = plans(*parts)
+    def carelessly(**parts):
+        plan = plans(**parts)
         loose = {"tolerance": 1e-2, "loosest": 0.3, "reach": 0.25}
         size = plan.control.tolerance.shape
         control = {name: np.full(size, value) for name, value in loose.items()}
