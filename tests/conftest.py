@@ -22,8 +22,9 @@ if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
 import jax
 from jaxtyping import install_import_hook
 
-# Shapes that functions and records of these packages are annotated with are checked at
-# every call, when compiled ones are traced. Has to stand before the library is imported.
+# With SHAPES_CHECKED=1 shapes that functions and records of these packages are annotated
+# with are checked at every call. A sixth more of CPU: tests/test_shapes.py does so for a
+# few files. Has to stand before the library is imported.
 SHAPES_CHECKED = (
     "frictionjax.certificate",
     "frictionjax.convergence",
@@ -40,7 +41,8 @@ SHAPES_CHECKED = (
     "frictionjax.wiggly.rosenbrock",
     "frictionjax.wiggly.sequential",
 )
-install_import_hook(SHAPES_CHECKED, "shape_checks.shapes_checked")
+if os.environ.get("SHAPES_CHECKED"):
+    install_import_hook(SHAPES_CHECKED, "shape_checks.shapes_checked")
 
 jax.config.update("jax_enable_x64", True)
 

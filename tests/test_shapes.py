@@ -1,5 +1,10 @@
 """Arrays of another shape than annotated are refused in tests, and none else."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from jaxtyping import Float, TypeCheckError, jaxtyped
@@ -11,6 +16,26 @@ from frictionjax.numerics import smallest
 EPS = np.array([1e-1, 1e-2, 1e-3])
 
 
+HERE = Path(__file__).parent
+FILES = ("test_shapes.py", "limit/test_play.py", "convergence")
+
+
+def test_shapes_are_those_annotated():
+    """In a process of its own: the library of this one is imported as it is."""
+    if os.environ.get("SHAPES_CHECKED"):
+        pytest.skip("they are checked everywhere")
+    command = sys.executable, "-m", "pytest", "-n", "0", *(str(HERE / f) for f in FILES)
+    done = subprocess.run(
+        command,
+        cwd=HERE.parent,
+        env=os.environ | {"SHAPES_CHECKED": "1"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.skipif("SHAPES_CHECKED" not in os.environ, reason="in the process above")
 def test_faces_of_packages_are_checked():
     assert local_orders(EPS, EPS).shape == (2,)
     with pytest.raises(TypeCheckError, match="errors"):
