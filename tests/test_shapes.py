@@ -17,7 +17,7 @@ EPS = np.array([1e-1, 1e-2, 1e-3])
 
 
 HERE = Path(__file__).parent
-FILES = ("test_shapes.py", "limit/test_play.py", "convergence")
+FILES = ("test_shapes.py", "limit/test_play.py")
 
 
 def test_shapes_are_those_annotated():
