@@ -77,7 +77,6 @@ def test_no_dissipation_no_balance(monkeypatch):
         raise AssertionError("the balance was traced")
 
     monkeypatch.setattr(observed, "advance", forbidden)
-    monkeypatch.setattr(TipField, "energy", forbidden)
     traced(lambda scene: trajectory_of(scene, balanced=False), SCENE)
     with pytest.raises(AssertionError, match="balance"):
         traced(lambda scene: trajectory_of(scene, balanced=True), SCENE)
