@@ -13,7 +13,8 @@ from .enclosure import AFFORDABLE, Report, Requirements, find_fast_slides
 from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, Sums, prepare
 from .limit_path import NODES, Path, path_of
-from .plan import LOOSEST, TABLEAU, TILES, Planned, lane_scene, planned
+from .plan import LOOSEST, TABLEAU, TILES, Planned, lane_scene
+from .plans_ahead import plan_of_cells
 from .rosenbrock import Tableau
 from .slip_map import none_known
 from .sums import CellResults
@@ -55,7 +56,7 @@ def integrate_cells(
     lanes = lane_scene(scene, float(eps.max()))
     wanted = _sums(balanced, suprema)
     _prepare(lanes, eps.size, ts.size, wanted, tableau)
-    plan = planned(
+    plan = plan_of_cells(
         scene=scene,
         lanes=lanes,
         path=path,

@@ -12,7 +12,8 @@ from .equation import SeriesBristle
 from .equation import StepPlan as StepPlan
 from .lanes import LaneScene
 from .limit_path import Path, path_of
-from .plan import LOOSEST, lane_scene, planned
+from .plan import LOOSEST, lane_scene
+from .plans_ahead import plan_ahead
 from .ways import WIDEST, Way, slides_of
 
 # Steps a well: exp of a polynomial in the orders of magnitude of tolerance, drag and reach,
@@ -68,7 +69,7 @@ def workload(
         return None
     accuracy = min(accuracy, LOOSEST)
     lanes = lane_scene(scene, float(eps.max()))
-    plan = planned(scene, lanes, path, eps, gamma, times, accuracy, method)
+    plan = plan_ahead(scene, lanes, path, eps, gamma, times, accuracy, method)
     control, ground, needs, way = plan
     by_map = way == Way.SLIP_MAP
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
