@@ -163,6 +163,11 @@ def test_other_source_and_other_packages_mean_other_folders(tmp_path, monkeypatc
     assert len({first, second, kept_programs._stamp()}) == 3
 
 
+def test_the_whole_library_is_the_source():
+    home = Path(kept_programs.__file__).parents[1]
+    assert home == Path(fx.__file__).parent
+
+
 def test_the_oldest_go_first(tmp_path, monkeypatch, traced):
     monkeypatch.setattr(kept_programs, "_MOST", 2)
     for size in (3, 4, 5):
