@@ -1,5 +1,7 @@
 """Programs in a folder: the same answers, fetched only where they are the same program."""
 
+from pathlib import Path
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
