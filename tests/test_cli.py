@@ -39,7 +39,7 @@ def test_a_budget_is_told_before_anything_runs(tmp_path, monkeypatch):
     def stop(job, place, method, progress):
         raise ValueError("stopped before it ran")
 
-    monkeypatch.setattr("frictionjax.report.study.run_study", stop)
+    monkeypatch.setattr("frictionjax.report.run_study", stop)
     machine = MachineCost(0.02, 0.01, 1e-4, 1e-7, 1e-6, 10.0, 5e8)
     for name in ("machine_cost", "known_machine"):
         monkeypatch.setattr(f"frictionjax.cost.prediction.{name}", lambda *_: machine)
