@@ -24,8 +24,9 @@ from scenes import AMPLITUDE, EDGES, PERIOD, SLOPE, TWO_PI, scene
 import frictionjax as fx
 from frictionjax.wiggly.equation.field import TipField
 from frictionjax.wiggly.lanes.lane import LaneCells, LaneScene, Sums
-from frictionjax.wiggly.lanes.loops import WIDTH, march
+from frictionjax.wiggly.lanes.loops import march
 from frictionjax.wiggly.lanes.queue import Lanes, Segments
+from frictionjax.wiggly.lanes.settings import SETTINGS
 from frictionjax.wiggly.rosenbrock.rodas4p2 import RODAS4P2
 from frictionjax.wiggly.rosenbrock.step import Linearised, rosenbrock_step
 
@@ -110,12 +111,14 @@ def lanes_bare(field: TipField, t, y):
 def bare() -> None:
     one = scene("vertical")
     field = TipField(one.potential, one.support, one.load, EPS, EPS**GAMMA)
-    t, _, y = lanes(EPS, WIDTH)
+    t, _, y = lanes(EPS, SETTINGS.width)
     times, tips = jnp.asarray(t), jnp.asarray(y)
     wide, seconds = best(lambda: np.asarray(lanes_bare(field, times, tips)))
     _, scalar = best(lambda: scalar_bare(t[0], y[0], COUNT))
     every = np.array([scalar_bare(a, b, COUNT) for a, b in zip(t, y, strict=True)])
-    show("bare", seconds / COUNT / WIDTH, scalar / COUNT, np.abs(wide - every).max())
+    show(
+        "bare", seconds / COUNT / SETTINGS.width, scalar / COUNT, np.abs(wide - every).max()
+    )
 
 
 def whole() -> None:

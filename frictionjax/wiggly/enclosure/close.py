@@ -8,7 +8,8 @@ import numpy as np
 from ..._compile import WORKERS, crew
 from ...model import Scene
 from ..equation import Status
-from ..lanes import WIDTH, LaneCells, Lanes, LaneScene, SegmentEnds, Segments, Sums, march
+from ..lanes import SETTINGS as LANE_SETTINGS
+from ..lanes import LaneCells, Lanes, LaneScene, SegmentEnds, Segments, Sums, march
 from ..limit_path import Path, states_at
 from ..rosenbrock import Tableau
 from .bracket_values import BracketValues
@@ -50,7 +51,7 @@ def _batches(work: np.ndarray, workers: int) -> int:
     1.2 to 1.5 times as long. Fewer than need be: larger tables, and another loop to
     compile.)
     """
-    lanes = workers * WIDTH
+    lanes = workers * LANE_SETTINGS.width
     longest = _LONGEST * work.max(initial=1.0)
     most = min(work.size // (2 * lanes), int(work.sum() / (lanes * longest)))
     return max(min(int(np.ceil(work.sum() / _BATCH)), most), 1)

@@ -1,7 +1,6 @@
 from .lane import LaneCells as LaneCells
 from .lane import LaneScene as LaneScene
 from .lane import Sums as Sums
-from .loops import WIDTH as WIDTH
 from .loops import Room as Room
 from .loops import march as march
 from .loops import prepare as prepare
@@ -9,3 +8,4 @@ from .queue import Lanes as Lanes
 from .queue import SegmentEnds as SegmentEnds
 from .queue import Segments as Segments
 from .queue import guide_of as guide_of
+from .settings import SETTINGS as SETTINGS

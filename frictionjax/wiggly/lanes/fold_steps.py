@@ -16,14 +16,7 @@ from jaxtyping import Array, Bool
 
 from ..._checks import Real
 from ..equation import Point
-
-# Folds of e that a tip may leave an unstable branch by in one step. Steps through slips
-# have 0.6, and up to 1.5; beyond 1/gamma = 4.7 the method's linear equations change sign.
-_MOST = 3.0
-_LEFT = 1e-4  # of a slip's energy: residual of a step that ends in one
-_SPACING = 2.0**-52  # of floats, at most, over their size
-_LONGEST_PAUSE = 2.0**-36  # of t: where the load turns it has no slope, but in 1e-8 again
-_ROUNDING = 2.0**-51  # of forces that cancel and of times: four of each
+from .settings import SETTINGS
 
 
 class Foothold(NamedTuple):
@@ -45,7 +38,7 @@ class Foothold(NamedTuple):
         A tip that nothing moves off such a branch, not even the load, stays.
         """
         moves = (self.point.velocity != 0) | (self.point.by_time != 0)
-        return jnp.where(moves, self.step / _MOST * self.point.by_state, 0.0)
+        return jnp.where(moves, self.step / SETTINGS.most_folds * self.point.by_state, 0.0)
 
     def resolves(self, end: Point) -> Bool[Array, ""]:
         """Whether the step shows a slip that it ends in, or leaves little of its energy.
@@ -53,7 +46,9 @@ class Foothold(NamedTuple):
         Steps into slips that are over in 1e-6 of them left 18 slips' energy as residual.
         """
         left = 0.5 * self.drag * end.velocity**2 * self.step
-        return (self.step * end.by_state < _MOST) | (left < _LEFT * self.width)
+        return (self.step * end.by_state < SETTINGS.most_folds) | (
+            left < SETTINGS.left * self.width
+        )
 
     def velocity(self) -> Real:
         """That of the point, on unstable branches not 0 by rounding.
@@ -84,7 +79,7 @@ def foothold(step: Real, point: Point, time: Real, drag: Real, width: Real) -> F
     The wiggly force, the load and the support's cancel, and times round too.
     """
     forces = jnp.abs(point.load) + width + jnp.abs(point.by_time * time) * drag
-    return Foothold(step, point, drag, width, _ROUNDING * forces / drag)
+    return Foothold(step, point, drag, width, SETTINGS.rounding * forces / drag)
 
 
 def pause_of(point: Point, time: Real, drag: Real) -> Real:
@@ -96,7 +91,7 @@ def pause_of(point: Point, time: Real, drag: Real) -> Real:
     """
     rests = (point.velocity == 0) & (point.by_state <= 0)
     rate = jnp.maximum(jnp.abs(point.by_time) * drag, 1e-300)
-    of_load = 0.5 * _SPACING * jnp.abs(point.load) / rate
+    of_load = 0.5 * SETTINGS.spacing * jnp.abs(point.load) / rate
     since = jnp.abs(time)
-    pause = jnp.clip(of_load, _SPACING * since, _LONGEST_PAUSE * since)
+    pause = jnp.clip(of_load, SETTINGS.spacing * since, SETTINGS.longest_pause * since)
     return jnp.where(rests, pause, 0.0)

@@ -26,9 +26,10 @@ from ..rosenbrock import Linearised, Tableau, rosenbrock_step
 from .fold_steps import Foothold, foothold, pause_of
 from .materialise import materialise
 from .running_extrema import Extent, Guide, leave, spend, widen
+from .settings import SETTINGS
 from .step_control import Control, StepVerdict, judge
 
-_LOWEST_LEVEL = -900 * PER_OCTAVE
+_LOWEST_LEVEL = SETTINGS.lowest_octave * PER_OCTAVE
 
 
 class LaneCells(NamedTuple):

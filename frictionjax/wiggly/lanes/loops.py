@@ -12,16 +12,8 @@ from ..._compile import flattened, in_background
 from ..rosenbrock import Tableau
 from .lane import LaneCells, LaneScene, Sums
 from .queue import Lanes, SegmentEnds, Segments, Tables, run_queue
+from .settings import SETTINGS
 
-# Lanes side by side. Microseconds of a step of the loop: 0.72 at 4, 0.92 at 8, 1.43 at 16,
-# 2.49 at 32, 4.23 at 64, 8.65 at 128. A few jobs, or a few long ones, go through the narrow
-# loop, whose steps take less time. (Between 0.15 and 0.33 sweeps take the same.)
-WIDTH, NARROW = 64, 8
-NARROW_STEP = 0.22  # seconds of a narrow loop's step, of a wide one's
-# Wells that few jobs go through in a wide loop that is there before the narrow one is
-# compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load, 2 s
-# to compile. For more at once they wait for it.
-_PATIENCE, _AT_ONCE = 500, 20_000
 LOADER = "loader"  # threads that compile loops in the background
 
 
@@ -35,12 +27,10 @@ class Room(NamedTuple):
     def holds(self, needed: "Room") -> bool:
         """Whether that many rows fit, and not into a sixteenth of the legs."""
         fits = all(a >= b for a, b in zip(self, needed, strict=True))
-        return fits and self.legs <= _SPARE * max(needed.legs, _ROOM.legs)
+        return fits and self.legs <= SETTINGS.spare * max(needed.legs, _ROOM.legs)
 
 
-# Each size of the tables costs 0.4 s to trace and load, 2 s to compile, an empty row
-# nothing: so few sizes, and a loop that is there already is taken where it is larger.
-_ROOM, _SPARE = Room(64, 2048, 4096), 16
+_ROOM = Room(*SETTINGS.room)
 
 
 def room_for(needed: Room) -> Room:
@@ -62,8 +52,8 @@ def loop_times(longest: Any, together: Any) -> tuple[Any, Any]:
 
     `longest`, `together`: work of its longest job, and of all, in steps.
     """
-    narrow = NARROW_STEP * np.maximum(longest, together / NARROW)
-    return narrow, np.maximum(longest, together / WIDTH)
+    narrow = SETTINGS.narrow_step * np.maximum(longest, together / SETTINGS.narrow)
+    return narrow, np.maximum(longest, together / SETTINGS.width)
 
 
 class _Loops:
@@ -93,18 +83,18 @@ class _Loops:
 
     def width_for(self, program: tuple, needed: Room, wells: float) -> int:
         """Which of the two loops takes few jobs; `program` without its width."""
-        narrow, wide = _kind((*program, NARROW)), _kind((*program, WIDTH))
+        narrow, wide = _kind((*program, SETTINGS.narrow)), _kind((*program, SETTINGS.width))
         with self._lock:
             there = any(k == narrow and room.holds(needed) for k, room in self._done)
             ready = any(k == wide and room.holds(needed) for k, room in self._done)
-            if there or not ready or wells > _AT_ONCE:
-                return NARROW
+            if there or not ready or wells > SETTINGS.at_once:
+                return SETTINGS.narrow
             waiting = narrow, room_for(needed)
             before = self._waited.get(waiting, 0.0)
             self._waited[waiting] = before + wells
-        if before <= _PATIENCE < before + wells:
-            self.load((*program, NARROW), needed)
-        return WIDTH
+        if before <= SETTINGS.patience < before + wells:
+            self.load((*program, SETTINGS.narrow), needed)
+        return SETTINGS.width
 
     def load(self, program: tuple, needed: Room) -> None:
         """Compile the loop in the background, where none is there that does."""
@@ -134,7 +124,7 @@ _LOOPS = _Loops()
 
 def prepare(scene: LaneScene, tableau: Tableau, needed: Room, wanted: Sums) -> None:
     """Compile the loop that `march` will want, in the background; a guess may be wrong."""
-    _LOOPS.load((scene, tableau, wanted, WIDTH), needed)
+    _LOOPS.load((scene, tableau, wanted, SETTINGS.width), needed)
 
 
 def march(
@@ -159,11 +149,13 @@ def march(
         return Tables(*rows, waiting=np.asarray(needed.jobs))
 
     program = scene, tableau, wanted
-    width, wells = WIDTH, _wells(cells, jobs, legs)
+    width, wells = SETTINGS.width, _wells(cells, jobs, legs)
     of_jobs = wells if work is None else work
     narrow, wide = loop_times(of_jobs.max(), of_jobs.sum())
     if narrow < wide:
-        width = _LOOPS.width_for(program, needed, max(wells.max(), wells.sum() / NARROW))
+        width = _LOOPS.width_for(
+            program, needed, max(wells.max(), wells.sum() / SETTINGS.narrow)
+        )
     found = _LOOPS.run((*program, width), needed, fill)
     return SegmentEnds(*np.asarray(found)[: needed.legs].T)
 

@@ -20,10 +20,7 @@ from .lane import (
     step_of_lane,
 )
 from .running_extrema import Extent, Guide
-
-# Steps between two looks at which lanes are done: a look costs about two steps, and a
-# lane that is done idles for half of this.
-_CHUNK = 16
+from .settings import SETTINGS
 
 
 class Lanes(NamedTuple):
@@ -226,7 +223,7 @@ def run_queue(
         task, motion, next_job = _refill(tables, work)
         # From the right of a kink on which the last leg ended.
         motion = motion._replace(point=point(task, motion.time, motion.tip))
-        motion = jax.lax.fori_loop(0, _CHUNK, lambda _, m: step(task, m), motion)
+        motion = jax.lax.fori_loop(0, SETTINGS.chunk, lambda _, m: step(task, m), motion)
         through = (motion.time >= task.stop) | (motion.code != 0)
         through &= task.job < tables.waiting
         found = _written(work.found, task.leg, through, _report(task, motion))

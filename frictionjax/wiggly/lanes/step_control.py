@@ -11,19 +11,12 @@ grow faster than it lets them), I control 8.3 and 4.5 (a third of them rejected)
 from typing import Any, NamedTuple
 
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Bool
 
 from ..._checks import Real
 from ..equation import PER_OCTAVE, log2
 from .materialise import materialise
-
-_SAFE = np.log2(0.9)
-_GAIN = 0.8  # of the error itself (1: a third more of the steps are rejected)
-_AHEAD = 0.2  # octaves by which the trend may exceed what the error allows
-_LEAST, _MOST, _REJECTED = np.log2(0.1), np.log2(8.0), -0.125  # octaves of one change
-_TINY = 1e-5  # of the tolerance: errors are counted as that at least
-_FAR = 20.0  # reaches: whatever is further counts as that
+from .settings import SETTINGS
 
 
 class Control(NamedTuple):
@@ -75,20 +68,24 @@ def judge(
     branches. `shifts`: whether an error in a slip is one in time.
     """
     excess = jnp.maximum(moved / control.reach, overgrown)
-    finite = (excess < _FAR) & (error < 1e300)
-    excess = jnp.where(finite, excess, _FAR)
+    finite = (excess < SETTINGS.far) & (error < 1e300)
+    excess = jnp.where(finite, excess, SETTINGS.far)
     pace = jnp.where(finite, moved, 0.0) / (step * control.pace)
     tolerance = control.tolerance * jnp.where(shifts, jnp.maximum(pace, 1.0), 1.0)
     tolerance = jnp.minimum(tolerance, control.loosest)
-    share = jnp.where(finite, jnp.maximum(error / tolerance, _TINY), 1.0)
+    share = jnp.where(finite, jnp.maximum(error / tolerance, SETTINGS.tiny), 1.0)
     # One logarithm of both: each costs as much as a stage's sine.
     share = log2(jnp.maximum(share, _power(excess, order))) / order
     share = materialise(share, control.tolerance)
     size = log2(step / control.first_step)
     accepted = share <= 0
-    allowed = _SAFE - _GAIN * share
+    allowed = SETTINGS.safe - SETTINGS.gain * share
     foreseen = allowed - share + trend + size
-    change = jnp.where(accepted, jnp.minimum(allowed + _AHEAD, foreseen), allowed)
-    change = jnp.clip(change, _LEAST, jnp.where(accepted, _MOST, _REJECTED))
+    change = jnp.where(accepted, jnp.minimum(allowed + SETTINGS.ahead, foreseen), allowed)
+    change = jnp.clip(
+        change,
+        SETTINGS.least_change,
+        jnp.where(accepted, SETTINGS.most_change, SETTINGS.rejected),
+    )
     level = jnp.floor(PER_OCTAVE * (size + change) + 1e-4)
     return StepVerdict(accepted, level, share - size)

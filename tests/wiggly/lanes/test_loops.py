@@ -8,8 +8,6 @@ import frictionjax as fx
 from frictionjax.wiggly.enclosure.close import _batches, _seats
 from frictionjax.wiggly.lanes.lane import LaneCells, Sums
 from frictionjax.wiggly.lanes.loops import (
-    NARROW,
-    WIDTH,
     Room,
     _kind,
     _Loops,
@@ -17,6 +15,7 @@ from frictionjax.wiggly.lanes.loops import (
     loop_times,
 )
 from frictionjax.wiggly.lanes.queue import Lanes, Segments, Tables, run_queue
+from frictionjax.wiggly.lanes.settings import SETTINGS
 from frictionjax.wiggly.plan import TABLEAU, lane_scene
 
 PROGRAM = np.ones(3), "scheme", True
@@ -32,21 +31,23 @@ def loops(width, room=LARGE):
 
 
 def test_few_jobs_take_the_narrow_loop_where_none_is_there():
-    assert _Loops().width_for(PROGRAM, FEW, 1.0) == NARROW
-    assert loops(NARROW).width_for(PROGRAM, FEW, 1.0) == NARROW
-    assert loops(WIDTH, Room(1, 2, 4)).width_for(PROGRAM, FEW, 1.0) == NARROW
+    assert _Loops().width_for(PROGRAM, FEW, 1.0) == SETTINGS.narrow
+    assert loops(SETTINGS.narrow).width_for(PROGRAM, FEW, 1.0) == SETTINGS.narrow
+    assert (
+        loops(SETTINGS.width, Room(1, 2, 4)).width_for(PROGRAM, FEW, 1.0) == SETTINGS.narrow
+    )
 
 
 def test_few_jobs_take_a_wide_loop_that_is_there_until_it_costs_more(monkeypatch):
-    known, loaded = loops(WIDTH), []
+    known, loaded = loops(SETTINGS.width), []
     monkeypatch.setattr(known, "load", lambda program, room: loaded.append((program, room)))
     for asked in range(1, 6):
-        assert known.width_for(PROGRAM, FEW, 400.0) == WIDTH  # nobody waits for it
+        assert known.width_for(PROGRAM, FEW, 400.0) == SETTINGS.width  # nobody waits for it
         assert len(loaded) == (asked > 1)
-    assert loaded == [((*PROGRAM, NARROW), FEW)]
-    known._done.add((_kind((*PROGRAM, NARROW)), LARGE))
-    assert known.width_for(PROGRAM, FEW, 100.0) == NARROW
-    assert loops(WIDTH).width_for(PROGRAM, FEW, 2e5) == NARROW
+    assert loaded == [((*PROGRAM, SETTINGS.narrow), FEW)]
+    known._done.add((_kind((*PROGRAM, SETTINGS.narrow)), LARGE))
+    assert known.width_for(PROGRAM, FEW, 100.0) == SETTINGS.narrow
+    assert loops(SETTINGS.width).width_for(PROGRAM, FEW, 2e5) == SETTINGS.narrow
 
 
 def test_wells_one_after_the_other_are_counted_in_each_cells_own_periods():
@@ -70,7 +71,7 @@ def test_work_and_not_the_number_of_jobs_decides_on_the_loop():
     assert narrow < 0.5 * wide
 
 
-@pytest.mark.parametrize("width", [NARROW, WIDTH])
+@pytest.mark.parametrize("width", [SETTINGS.narrow, SETTINGS.width])
 def test_loops_are_compiled_as_one_function(width):
     """XLA makes a list of kernels of a loop with a scatter, for two threads at once."""
     scene = fx.Scene(
@@ -95,8 +96,8 @@ def idle(work, batches, workers=2):
     """Share of the time that lanes idle, at best: as the longest job of a batch goes on."""
     seat = _seats(work.size, batches)
     rows = [np.sort(work)[::-1][seat == batch] for batch in range(batches)]
-    wall = sum(max(row.sum() / (workers * WIDTH), row.max()) for row in rows)
-    return 1 - work.sum() / (workers * WIDTH * wall)
+    wall = sum(max(row.sum() / (workers * SETTINGS.width), row.max()) for row in rows)
+    return 1 - work.sum() / (workers * SETTINGS.width * wall)
 
 
 @pytest.mark.parametrize("longest", [1e3, 3e3, 1e5])

@@ -1,0 +1,59 @@
+"""How lanes step, which loop they go through, and where they wait: with what lost."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Settings(NamedTuple):
+    """Of compiled loops, of the control of steps, of steps at folds."""
+
+    # Loops (`loops.py`).
+    # Lanes side by side. Microseconds of a step of the loop: 0.72 at 4, 0.92 at 8, 1.43 at
+    # 16, 2.49 at 32, 4.23 at 64, 8.65 at 128.
+    width: int = 64
+    narrow: int = (
+        8  # of the loop of few jobs, or of few long ones: its steps take less time
+    )
+    # Seconds of a narrow loop's step, of a wide one's. (Between 0.15 and 0.33 sweeps take
+    # the same.)
+    narrow_step: float = 0.22
+    # Wells that few jobs go through in a wide loop that is there before the narrow one is
+    # compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load,
+    # 2 s to compile.
+    patience: int = 500
+    at_once: int = 20_000  # wells: for more they wait for the narrow loop
+    # Rows of the smallest tables: cells, jobs, legs. Each size costs 0.4 s to trace and
+    # load, 2 s to compile, an empty row nothing: so few sizes.
+    room: tuple[int, int, int] = (64, 2048, 4096)
+    spare: int = 16  # times the legs needed: a loop that is there is taken up to there
+
+    # Queues (`queue.py`).
+    # Steps between two looks at which lanes are done: a look costs about two steps, and a
+    # lane that is done idles for half of this.
+    chunk: int = 16
+
+    # Step sizes (`step_control.py`), in octaves unless said otherwise.
+    safe: float = np.log2(0.9)  # of what an error allows
+    gain: float = 0.8  # of the error itself (1: a third more of the steps are rejected)
+    ahead: float = 0.2  # by which the trend may exceed what the error allows
+    least_change: float = np.log2(0.1)
+    most_change: float = np.log2(8.0)
+    rejected: float = -0.125  # most change after a step that is rejected
+    tiny: float = 1e-5  # of the tolerance: errors are counted as that at least
+    far: float = 20.0  # reaches: whatever is further counts as that
+    lowest_octave: int = -900  # of the first step: lanes that get there are lost
+
+    # Folds (`fold_steps.py`).
+    # Folds of e that a tip may leave an unstable branch by in one step. Steps through slips
+    # have 0.6, and up to 1.5; beyond 1/gamma = 4.7 the method's linear equations change
+    # sign.
+    most_folds: float = 3.0
+    left: float = 1e-4  # of a slip's energy: residual of a step that ends in one
+    spacing: float = 2.0**-52  # of floats, at most, over their size
+    # Of t: where the load turns it has no slope, but in 1e-8 again.
+    longest_pause: float = 2.0**-36
+    rounding: float = 2.0**-51  # of forces that cancel and of times: four of each
+
+
+SETTINGS = Settings()
