@@ -11,9 +11,8 @@ import numpy as np
 
 from ..._compile import crew
 from ..lanes import SegmentEnds
+from ..slip_map import SETTINGS as MAP_SETTINGS
 from ..slip_map import (
-    BARE_TAIL,
-    TAIL,
     FastSlide,
     FastSlideFinder,
     FoundTips,
@@ -96,6 +95,7 @@ def find_fast_slides(rounds: BracketContext, needs: Requirements) -> FoundSlides
 def _finder_of(rounds: BracketContext, needs: Requirements) -> FastSlideFinder:
     """What slip maps need to know of the cells."""
     ground, folds = rounds.ground, rounds.ground.folds
+    tail = MAP_SETTINGS.tail if any(rounds.wanted) else MAP_SETTINGS.bare_tail
     return FastSlideFinder(
         scene=rounds.scene,
         path=rounds.path,
@@ -107,7 +107,7 @@ def _finder_of(rounds: BracketContext, needs: Requirements) -> FastSlideFinder:
             -1.0: (np.asarray(folds.place_minus), np.asarray(folds.force_minus)),
         },
         slow=needs.restarts,
-        tail=(TAIL if any(rounds.wanted) else BARE_TAIL) * rounds.accuracy,
+        tail=tail * rounds.accuracy,
         accuracy=rounds.accuracy,
     )
 

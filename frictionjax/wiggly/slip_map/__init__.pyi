@@ -4,9 +4,8 @@ from .fast_slides import FastSlideFinder as FastSlideFinder
 from .fast_slides import FoundTips as FoundTips
 from .fast_slides import last_begun as last_begun
 from .fast_slides import none_known as none_known
-from .map import BARE_TAIL as BARE_TAIL
-from .map import TAIL as TAIL
 from .onsets import LookAt as LookAt
 from .onsets import Measure as Measure
 from .onsets import asking_for_slides as asking_for_slides
+from .settings import SETTINGS as SETTINGS
 from .transit_times import ManyTransitTimes as ManyTransitTimes

@@ -14,19 +14,14 @@ from jaxtyping import Array
 
 from ..._compile import Program, in_chunks
 from ...model import Scene
+from .settings import SETTINGS
 from .transit import WellPull, steady_transit_times
 
-_STEPS = 96  # of a slide, from its start to its end
-_SHORT = 4.0  # wells of the first step and the last
-# Forces of the table, over the one at the start, and how many.
-_RANGE, _ROWS = np.log([1e-3, 1e4]), 48
-_SWEEPS = 8  # of Newton's method in a step
-_FARTHEST, _CONVERGED = 2.0, 0.01  # change of log X in a sweep, and in the last one
-_SLIDES = 4  # in a compiled call
+_RANGE = np.log(SETTINGS.table_forces)
 
 
 class Lags(NamedTuple):
-    """A slide on a grid of numbers of wells since its start, shape (_STEPS + 1,).
+    """A slide on a grid of numbers of wells since its start, shape (steps + 1,).
 
     `force`: N beyond the fold, NaN from where slides end. `time`: s. `kept`: share of a
     shift that a well leaves.
@@ -39,15 +34,17 @@ class Lags(NamedTuple):
 
 
 def _grid(wells: np.ndarray) -> np.ndarray:
-    """Numbers from 0 to `wells`, graded towards both ends; (C, _STEPS + 1)."""
-    many = np.log(np.maximum(wells / (2 * _SHORT), 1.1))[:, None]
-    half = 0.5 * np.expm1(many * np.linspace(0, 1, _STEPS // 2 + 1)) / np.expm1(many)
+    """Numbers from 0 to `wells`, graded towards both ends; (C, steps + 1)."""
+    many = np.log(np.maximum(wells / (2 * SETTINGS.short), 1.1))[:, None]
+    half = (
+        0.5 * np.expm1(many * np.linspace(0, 1, SETTINGS.steps // 2 + 1)) / np.expm1(many)
+    )
     return wells[:, None] * np.concatenate([half, 1 - half[:, -2::-1]], axis=1)
 
 
 @Program
 def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, number):
-    pitch = (_RANGE[1] - _RANGE[0]) / (_ROWS - 1)
+    pitch = (_RANGE[1] - _RANGE[0]) / (SETTINGS.table_rows - 1)
 
     def one(
         table: Array,
@@ -63,7 +60,7 @@ def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, numbe
         def law(force: Array) -> tuple[Array, Array]:
             """P in s, and its derivative."""
             place = (jnp.log(force) - low) / pitch
-            row = jnp.clip(jnp.floor(place).astype(int), 0, _ROWS - 2)
+            row = jnp.clip(jnp.floor(place).astype(int), 0, SETTINGS.table_rows - 2)
             rise = table[row + 1] - table[row]
             length = jnp.exp(table[row] + rise * (place - row))
             return length, length * rise / (pitch * force)
@@ -85,11 +82,11 @@ def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, numbe
                 rate = sign * scene.load.slope(later)
                 left = force - force_at(later, at)
                 change = left / (force * (1 - wells * slope * rate))
-                return log - jnp.clip(change, -_FARTHEST, _FARTHEST), change
+                return log - jnp.clip(change, -SETTINGS.farthest, SETTINGS.farthest), change
 
             begin = jnp.log(force), jnp.zeros_like(force)
-            log, change = jax.lax.fori_loop(0, _SWEEPS, sweep, begin)
-            here = jnp.where(jnp.abs(change) < _CONVERGED, jnp.exp(log), jnp.nan)
+            log, change = jax.lax.fori_loop(0, SETTINGS.step_sweeps, sweep, begin)
+            here = jnp.where(jnp.abs(change) < SETTINGS.last_change, jnp.exp(log), jnp.nan)
             length, slope = law(here)
             later = time + wells * length
             kept = jnp.exp(slope * sign * scene.load.slope(later))
@@ -112,9 +109,9 @@ def lags_of(
     `force`: beyond the fold there.
     """
     low = np.log(force) + _RANGE[0]
-    logs = low[:, None] + np.linspace(0.0, _RANGE[1] - _RANGE[0], _ROWS)
+    logs = low[:, None] + np.linspace(0.0, _RANGE[1] - _RANGE[0], SETTINGS.table_rows)
     table = np.log(steady_transit_times(track, viscosity, np.exp(logs)))
     number = _grid(wells)
     columns = table, low, track.fold, track.sign, eps, origin, first, time, number
-    found = in_chunks(_march, _SLIDES, (scene,), columns)
+    found = in_chunks(_march, SETTINGS.slides, (scene,), columns)
     return Lags(number, *found)

@@ -9,16 +9,15 @@ from jaxtyping import Array, Float
 from ..._compile import Program, in_chunks
 from ...model import AbstractPotential
 from ..equation import WiggleFolds
+from .settings import SETTINGS
 
-# Half of the grid over a well, graded towards the fold by e-folds that resolve folds down
-# to 1e-13 of a period.
-_GRADED = np.expm1(30.0 * np.linspace(0.0, 1.0, 1024)) / np.expm1(30.0)
+# Half of the grid over a well, graded towards the fold.
+_EVEN = np.linspace(0.0, 1.0, SETTINGS.half_grid)
+_GRADED = np.expm1(SETTINGS.e_folds * _EVEN) / np.expm1(SETTINGS.e_folds)
 _GRID = 0.5 * np.concatenate([-_GRADED[:0:-1], _GRADED])
 _STEPS = np.diff(_GRID)
-_THIN = 11  # 1023 is a multiple, so that the fold stays on the grid
-_THIN_STEPS = np.diff(_GRID[::_THIN])
-LAG_FORCES = np.logspace(-24, 4, 85)
-_ROWS = 8  # wells in a compiled call
+_THIN_STEPS = np.diff(_GRID[:: SETTINGS.thin])
+LAG_FORCES = np.logspace(*SETTINGS.lag_forces)
 
 
 @Program
@@ -40,7 +39,7 @@ class Wells(NamedTuple):
 
     def thinned(self) -> "Wells":
         """Every eleventh point: integrals to about a percent."""
-        every = slice(None, None, _THIN)
+        every = slice(None, None, SETTINGS.thin)
         return Wells(self.gaps[:, every], self.stretch[:, every], self.folds)
 
     def passages(self, forces: np.ndarray) -> np.ndarray:
@@ -63,7 +62,9 @@ def from_fold_to_fold(
     count = eps.size
     scan = np.arange(potential.points) / potential.points
     around = np.concatenate([place[:, None] + _GRID, np.tile(scan, (count, 1))], axis=1)
-    force, stretch = in_chunks(_forces, _ROWS, (potential,), (eps, around))
+    force, stretch = in_chunks(
+        _forces, SETTINGS.wells_together, (potential,), (eps, around)
+    )
     force = side[:, None] * force
     heights, top = force[:, _GRID.size :], force[:, _GRID.size // 2, None]
     bump = (heights >= np.roll(heights, 1, 1)) & (heights > np.roll(heights, -1, 1))

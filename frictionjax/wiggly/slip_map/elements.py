@@ -7,23 +7,14 @@ panel may be the longer, the further away these are.
 import numpy as np
 
 from .averaged_equation import Lags
-from .transit import TOGETHER as DEGREE
-
-SMALLEST = 8.0  # wells of a panel
-_BEFORE = 12.0  # wells since the set-off where a slide begins, about: it is singular there
-_END = 3.0  # wells left before the end of a slide
-_GROWTH = 1.5  # of the way so far, at most: times may bend for other reasons
-# Of a panel: what is left at the end is no panel of its own, but near where the force would
-# vanish, where six of 21 stretched ones did not hold: there it is cut in two.
-_STRETCH, _FIRST_OF_TWO = 1.3, 0.6
-_RECOVERS = 0.7  # power of a panel's share for the next (1: twice as many panels)
-# As the averaged equation has it: a little less than what the recursion may show.
-_SLOWER = 0.4
+from .settings import SETTINGS
 
 
 def _ends_of(lags: Lags, late: float) -> tuple[float, float]:
     """Wells until a slide ends or turns slow, and until its force would be nothing."""
-    calm = (lags.force > 0) & (lags.kept > _SLOWER) & (lags.kept < 1 / _SLOWER)
+    calm = (
+        (lags.force > 0) & (lags.kept > SETTINGS.slower) & (lags.kept < 1 / SETTINGS.slower)
+    )
     on = np.append(calm & (lags.time < late), False)
     k = max(int(np.argmin(on)) - 1, 1)
     fall = (lags.force[k - 1] - lags.force[k]) / (lags.number[k] - lags.number[k - 1])
@@ -31,7 +22,7 @@ def _ends_of(lags: Lags, late: float) -> tuple[float, float]:
     if k + 1 == on.size - 1 or not calm[k + 1]:
         return float(lags.number[k]), nothing
     ends = lags.number[k : k + 2]
-    return float(np.interp(late, lags.time[k : k + 2], ends)) - _END, nothing
+    return float(np.interp(late, lags.time[k : k + 2], ends)) - SETTINGS.end, nothing
 
 
 def _spans(wells: float, tail: float, side: float, left: float = 1.0) -> float:
@@ -41,8 +32,8 @@ def _spans(wells: float, tail: float, side: float, left: float = 1.0) -> float:
     the panel's middle over half its span, from about the wells that the panel spans, of
     which `left` is not yet forgotten.
     """
-    rho = max(2 * wells * left / tail, 1.0) ** (1 / DEGREE)
-    return 2 * wells / max(0.5 * (rho + 1 / rho) - side, 2 / _GROWTH)
+    rho = max(2 * wells * left / tail, 1.0) ** (1 / SETTINGS.degree)
+    return 2 * wells / max(0.5 * (rho + 1 / rho) - side, 2 / SETTINGS.growth)
 
 
 def edges_of(
@@ -58,19 +49,19 @@ def edges_of(
     not be so further on.
     """
     (end, nothing), edges = _ends_of(lags, late), [0.0]
-    end = min(end, left - _END)
-    while end - edges[-1] >= SMALLEST:
-        begun = _BEFORE + since + edges[-1]
+    end = min(end, left - SETTINGS.end)
+    while end - edges[-1] >= SETTINGS.smallest:
+        begun = SETTINGS.before + since + edges[-1]
         kept = np.interp(edges[-1], lags.number, lags.kept)
         span = _spans(begun, tail, 1.0, min(kept, 1.0) ** begun)
         if np.isfinite(nothing):
             span = min(span, _spans(max(nothing - edges[-1], 1.0), tail, -1.0))
-        span = np.floor(max(share * span, SMALLEST))
-        share = share**_RECOVERS
+        span = np.floor(max(share * span, SETTINGS.smallest))
+        share = share**SETTINGS.recovers
         rest = np.floor(end - edges[-1])
-        if span < rest < _STRETCH * span and np.isfinite(nothing):
-            span = max(np.ceil(_FIRST_OF_TWO * rest), SMALLEST)
-        elif rest < _STRETCH * span:
+        if span < rest < SETTINGS.stretch * span and np.isfinite(nothing):
+            span = max(np.ceil(SETTINGS.first_of_two * rest), SETTINGS.smallest)
+        elif rest < SETTINGS.stretch * span:
             span = rest
         edges.append(edges[-1] + span)
     return np.array(edges)

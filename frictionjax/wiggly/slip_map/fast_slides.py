@@ -13,24 +13,9 @@ import numpy as np
 from ...model import Scene
 from ..limit_path import RESTS, Path
 from .map import Slides, follow
-from .transit import (
-    ROUGH,
-    WellArc,
-    WellPull,
-    one_transit_time,
-    pull_at,
-    well_pull_of,
-    wiggles_at,
-)
+from .settings import SETTINGS
+from .transit import WellArc, WellPull, one_transit_time, pull_at, well_pull_of, wiggles_at
 from .transit_times import TransitTimes
-
-_NARROW = 0.2  # of the force beyond the fold at the start: the smallest one on the way
-
-
-# Of the accuracy: what errors of passages may add up to, about; and the roughest passages.
-# (gamma = 1/2, accuracy 1e-3: errors of slip maps as with 1e-4, in 40 nodes for 60. gamma =
-# 1/4, eps = 1e-8: brackets of 1.4e-3 eps with more than 2e-4, of 2.3e-4 with less.)
-_OF_ACCURACY, _ROUGHEST = 0.3, 1e-3
 
 
 class FastSlide(NamedTuple):
@@ -188,8 +173,8 @@ class FastSlideFinder(NamedTuple):
     def _rough(self, cell: np.ndarray) -> float:
         """How roughly passages may be resolved, so that errors that add up stay small."""
         memory = 2 * np.max(self.lag[cell])
-        allowed = np.sqrt(_OF_ACCURACY * self.accuracy / max(memory, 1.0))
-        return float(np.clip(allowed, ROUGH, _ROUGHEST))
+        allowed = np.sqrt(SETTINGS.of_accuracy * self.accuracy / max(memory, 1.0))
+        return float(np.clip(allowed, SETTINGS.rough, SETTINGS.roughest))
 
     def _to_fold(self, some: Candidates, track: WellPull):
         """Time of the next passage of a fold, and the well of that fold."""
@@ -203,7 +188,7 @@ class FastSlideFinder(NamedTuple):
     def fast_slides(self, some: Candidates) -> list[FastSlide | None]:
         """Follow the candidates; None where a slide is slow or short."""
         beyond = self.beyond(some)
-        least = np.where(some.least > 0, some.least, _NARROW * beyond)
+        least = np.where(some.least > 0, some.least, SETTINGS.narrow * beyond)
         able = np.flatnonzero((beyond > 0) & (least > 0))
         found: list[FastSlide | None] = [None] * some.cell.size
         if able.size == 0:

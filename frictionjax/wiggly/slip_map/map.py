@@ -18,44 +18,22 @@ from numpy.polynomial import chebyshev
 from ...model import Scene
 from ..limit_path import arrivals_at, state_under
 from .averaged_equation import Lags, lags_of
-from .elements import SMALLEST, edges_of
-from .transit import (
-    TOGETHER,
-    SupportPull,
-    WellPull,
-    pull_at,
-    steady_transit_times,
-    transit_times,
-)
+from .elements import edges_of
+from .settings import SETTINGS
+from .transit import SupportPull, WellPull, pull_at, steady_transit_times, transit_times
 from .transit_times import TransitTimes
 
-DEGREE = TOGETHER
-_X = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
-_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_X, DEGREE))
-_NEWTON = 6
-_CONVERGED = 1e-4  # wells: what Newton's method leaves, by how its corrections shrink
-# A slide is slow where a passage forgets more than this of a shift: tips nearly rest at
-# folds, and windows started a few slips earlier do as well.
-_SLOW = 0.3
-_ON = 0.5  # at the end of the last panel: the slide may go on
-_AGAIN = 0.6  # of a panel that does not hold, and of those behind it
-# Of the accuracy: last coefficients of a panel; where slides are surveyed, and where not.
-# (Errors of times as lanes measure them are the same with either, at gamma = 1/4 up to 17
-# times larger at 0.03. Surveys through longer panels are rougher: at gamma = 1/4, eps =
-# 1.3e-4 with 1e-2 in both made twice, in 1.7 times the steps; with 1e-3 too many panels at
-# eps = 1.3e-8 of the angular scene, whose brackets stayed open.)
-TAIL, BARE_TAIL = 3e-3, 1e-2
-_SPACING = 1e-14  # of T: rounding of times, in the last coefficients
-_WORTH = 0.2  # of the panel before: the smallest one worth trying where slides turn slow
-_SLOWING = 0.7  # of the wells that the pace at a panel's start would pass before the end
-_ROUNDS = 40
+_X = -np.cos(np.pi * np.arange(SETTINGS.degree + 1) / SETTINGS.degree)
+_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_X, SETTINGS.degree))
 
 
 def _shifts() -> np.ndarray:
     """`D^k/k!`, k from 1: a step of h takes values at the nodes to `sum h^k D^k/k!`."""
-    derivative = chebyshev.chebvander(_X, DEGREE - 1) @ chebyshev.chebder(_TO_SERIES)
-    powers, term = [], np.eye(DEGREE + 1)
-    for k in range(1, DEGREE + 1):
+    derivative = chebyshev.chebvander(_X, SETTINGS.degree - 1) @ chebyshev.chebder(
+        _TO_SERIES
+    )
+    powers, term = [], np.eye(SETTINGS.degree + 1)
+    for k in range(1, SETTINGS.degree + 1):
         term = derivative @ term / k
         powers.append(term)
     return np.stack(powers)
@@ -83,7 +61,7 @@ class Slides(NamedTuple):
 class _Panels(NamedTuple):
     """Panels of slides, P of them in order: those of a slide follow each other.
 
-    `slide`: index. `number` (P, DEGREE+1): of lattice points at the nodes.
+    `slide`: index. `number` (P, degree + 1): of lattice points at the nodes.
     """
 
     slide: np.ndarray
@@ -101,7 +79,7 @@ class _Panels(NamedTuple):
 
 
 class _Solved(NamedTuple):
-    """Times at the nodes (P, DEGREE+1), s, and whether the recursion holds there.
+    """Times at the nodes (P, degree + 1), s, and whether the recursion holds there.
 
     `kept`: at the nodes from the second on. `tail`: last coefficients in wells.
     """
@@ -130,7 +108,7 @@ def _linear(matrix: np.ndarray, left: np.ndarray, coupling: np.ndarray):
     """`matrix^-1` of what is left and of the coupling to the panel before; else NaN."""
     sides = np.stack([left, coupling], axis=-1)
     good = np.all(np.isfinite(matrix), axis=(1, 2)) & np.all(np.isfinite(left), axis=1)
-    matrix = np.where(good[:, None, None], matrix, np.eye(DEGREE))
+    matrix = np.where(good[:, None, None], matrix, np.eye(SETTINGS.degree))
     found = np.linalg.solve(matrix, np.where(good[:, None, None], sides, np.nan))
     return found[..., 0], found[..., 1]
 
@@ -147,16 +125,16 @@ def _chained(opens: np.ndarray, own: np.ndarray, coupled: np.ndarray) -> np.ndar
 def _newton(scene: Scene, slides: Slides, panels: _Panels, times: np.ndarray):
     """Times at the nodes of all panels together, so that the recursion holds there."""
     span = panels.span
-    powers = (2 / span)[:, None] ** np.arange(1, DEGREE + 1)
+    powers = (2 / span)[:, None] ** np.arange(1, SETTINGS.degree + 1)
     shift = np.einsum("ck,kij->cij", powers, _SHIFTS)[:, 1:]
     some, number = _chosen(slides, panels.slide), panels.number
     guess, before = None, np.full(span.size, np.nan)
-    for _ in range(_NEWTON):
+    for _ in range(SETTINGS.newton):
         pull = _pull(scene, some, number[:, 1:], times[:, 1:])
         found = transit_times(some.track, pull, some.viscosity, guess)
         since = times - times[:, :1]
         left = np.einsum("cij,cj->ci", shift, since) - found.length
-        matrix = shift[:, :, 1:] + np.eye(DEGREE) * (1 - found.kept)[:, :, None]
+        matrix = shift[:, :, 1:] + np.eye(SETTINGS.degree) * (1 - found.kept)[:, :, None]
         own, coupled = _linear(matrix, -left, -shift[:, :, 0])
         start = _chained(panels.opens, own[:, -1], coupled[:, -1])
         change = np.concatenate([start[:, None], own + coupled * start[:, None]], axis=1)
@@ -167,7 +145,7 @@ def _newton(scene: Scene, slides: Slides, panels: _Panels, times: np.ndarray):
         # The next correction shrinks by as much again at least; it is not made.
         shrinks = np.where(before > 0, np.minimum(size / before, 1.0), 1.0)
         to_come, before = size * shrinks, size
-        if not np.any(to_come > _CONVERGED):
+        if not np.any(to_come > SETTINGS.converged):
             break
     return times, found.kept, to_come
 
@@ -177,8 +155,10 @@ def _solved(scene: Scene, slides: Slides, panels: _Panels, times, least) -> _Sol
     series = (times - times[:, :1]) @ _TO_SERIES.T
     length = (times[:, -1] - times[:, 0]) / panels.span
     tail = (np.abs(series[:, -1]) + np.abs(series[:, -2])) / length
-    noise = _SPACING * np.abs(times[:, -1]) / length
-    fine = (size <= np.maximum(_CONVERGED, noise)) & np.all(np.diff(times) > 0, axis=1)
+    noise = SETTINGS.spacing * np.abs(times[:, -1]) / length
+    fine = (size <= np.maximum(SETTINGS.converged, noise)) & np.all(
+        np.diff(times) > 0, axis=1
+    )
     fine &= tail <= np.maximum(least, noise)
     fine &= times[:, -1] <= slides.late[panels.slide]
     return _Solved(times, kept, fine, tail)
@@ -191,7 +171,9 @@ def _horizon(scene: Scene, slides: Slides, first, time, force) -> np.ndarray:
     held = sign * (end - slides.origin) / slides.eps - first
     beyond = np.maximum(force, 1e-300)[:, None]
     length = steady_transit_times(slides.track, slides.viscosity, beyond)[:, 0]
-    return np.where(held >= SMALLEST, held, _SLOWING * (slides.late - time) / length)
+    return np.where(
+        held >= SETTINGS.smallest, held, SETTINGS.slowing * (slides.late - time) / length
+    )
 
 
 def _cut(scene: Scene, slides: Slides, now, first, time, tail, share, past):
@@ -199,7 +181,7 @@ def _cut(scene: Scene, slides: Slides, now, first, time, tail, share, past):
     some, first, time = _chosen(slides, now), first[now], time[now]
     force = _beyond(scene, some, first, time)
     wells = _horizon(scene, some, first, time, force)
-    able = (force > 0) & (wells >= SMALLEST)
+    able = (force > 0) & (wells >= SETTINGS.smallest)
     wells, force = np.where(able, wells, 1.0), np.where(able, force, 1.0)
     parts = some.track, some.eps, some.viscosity, some.origin
     lags = lags_of(scene, *parts, first, time, force, wells)
@@ -213,7 +195,7 @@ def _cut(scene: Scene, slides: Slides, now, first, time, tail, share, past):
         slide.append(np.full(edges.size - 1, now[i]))
         numbers.append(first[i] + number)
         forces.append(np.interp(number, mine.number, mine.force))
-    none = np.zeros((0, DEGREE + 1))
+    none = np.zeros((0, SETTINGS.degree + 1))
     whose = np.concatenate([np.zeros(0, dtype=int), *slide])
     panels = _Panels(whose, np.concatenate([none, *numbers]))
     return panels, np.concatenate([none, *forces])
@@ -246,11 +228,11 @@ def follow(scene: Scene, slides: Slides, tail: float) -> list[TransitTimes | Non
     """
     size = slides.eps.size
     first, time = slides.first.copy(), slides.time.copy()
-    share, smallest = np.ones(size), np.full(size, SMALLEST)
+    share, smallest = np.ones(size), np.full(size, SETTINGS.smallest)
     past = np.full(size, np.inf)  # numbers that the end of the piece does not let pass
     now = np.arange(size)
     found: list[list[tuple]] = [[] for _ in range(size)]
-    for _ in range(_ROUNDS):
+    for _ in range(SETTINGS.rounds):
         if now.size == 0:
             break
         how = tail, share, past
@@ -259,7 +241,9 @@ def follow(scene: Scene, slides: Slides, tail: float) -> list[TransitTimes | Non
             break
         guess = _guess(scene, slides, panels, force, time)
         solved = _solved(scene, slides, panels, guess, tail)
-        calm = np.all((solved.kept > _SLOW) & (solved.kept < 1 / _SLOW), axis=1)
+        calm = np.all(
+            (solved.kept > SETTINGS.slow) & (solved.kept < 1 / SETTINGS.slow), axis=1
+        )
         on = solved.fine & calm
         going = []
         for c in np.unique(panels.slide):
@@ -278,7 +262,10 @@ def follow(scene: Scene, slides: Slides, tail: float) -> list[TransitTimes | Non
                 p = held[-1]
                 pace = np.diff(solved.times[p, -2:]) / np.diff(panels.number[p, -2:])
                 left = (slides.late[c] - time[c]) / pace[0]
-                if left >= SMALLEST and _ON < solved.kept[p, -1] < 1 / _ON:
+                if (
+                    left >= SETTINGS.smallest
+                    and SETTINGS.on_above < solved.kept[p, -1] < 1 / SETTINGS.on_above
+                ):
                     going.append(c)
                 continue
             failed = mine[held.size]
@@ -287,11 +274,11 @@ def follow(scene: Scene, slides: Slides, tail: float) -> list[TransitTimes | Non
                 past[c] = np.interp(slides.late[c], *nodes)
                 going.append(c)
                 continue
-            share[c] = _AGAIN * (1.0 if held.size > 2 else share[c])
+            share[c] = SETTINGS.again * (1.0 if held.size > 2 else share[c])
             # Where it turns slow, only a large part of the way is worth having.
             if solved.fine[failed] and held.size:
-                smallest[c] = max(_WORTH * panels.span[held[-1]], SMALLEST)
-            if _AGAIN * panels.span[failed] >= smallest[c]:
+                smallest[c] = max(SETTINGS.worth * panels.span[held[-1]], SETTINGS.smallest)
+            if SETTINGS.again * panels.span[failed] >= smallest[c]:
                 going.append(c)
         now = np.array(going, dtype=int)
     return [_curve(rows) for rows in found]

@@ -13,17 +13,9 @@ import numpy as np
 
 from ..limit_path import Path, arrivals_at, slopes_at, states_at
 from .fast_slides import Candidates, FastSlide, FastSlideFinder, FoundTips, none_known
+from .settings import SETTINGS
 from .slow_flow import first_wells
 from .transit import pull_at
-
-# Wells behind the tip where the slip map takes over: passages change slowly enough for
-# panels of 16 wells (8 wells: tails 100 times larger).
-_FIRST = 16.0
-_OVERSHOT = 12.0  # wells after a turn, at the pace before it
-_STILL = 4.0  # of them that must have been passed for the slide to go on
-_CLOSED = 0.1  # wells of time: gaps of brackets at the start of a slide, at most
-_LONG = 100.0  # wells of lag that are worth a slip map after the turn
-_FAST = 0.9  # share that a well leaves of a shift, where lags are many wells
 
 
 class LookAt(NamedTuple):
@@ -81,7 +73,7 @@ def _set_off(finder: FastSlideFinder, cell: np.ndarray, piece: np.ndarray) -> np
         viscosity=finder.viscosity[cell],
         rate=(speed * stiffness)[moves],
         stiffness=stiffness[moves],
-        wells=_FIRST,
+        wells=SETTINGS.first,
     )
     return times
 
@@ -136,7 +128,7 @@ def _starting(
         least=np.zeros(able.size),
         gap=seen.gap,
     )
-    closed = seen.gap < _CLOSED
+    closed = seen.gap < SETTINGS.closed
     return candidates.chosen(closed), able[closed]
 
 
@@ -148,14 +140,14 @@ def _overshooting(
     rows = []
     for c in range(known.size):
         slide = _last(known[c])
-        if slide is None or slide.piece != piece - 1 or slide.curve.last < _FAST:
+        if slide is None or slide.piece != piece - 1 or slide.curve.last < SETTINGS.fast:
             continue
         pace = _pace(slide)
         well = slide.well + slide.sign * slide.curve.edges[-1]
         lag = abs(well * finder.eps[c] - finder.path.states[piece]) / finder.eps[c]
         left = (edge - slide.end) / pace
-        if lag > _LONG and left < 10 * _LONG:
-            rows.append((c, slide.sign, slide.end, edge + _OVERSHOT * pace))
+        if lag > SETTINGS.long_lag and left < 10 * SETTINGS.long_lag:
+            rows.append((c, slide.sign, slide.end, edge + SETTINGS.overshot * pace))
     if not rows:
         return None
     cell, sign, begin, stops = (np.array(column) for column in zip(*rows, strict=True))
@@ -164,8 +156,8 @@ def _overshooting(
     seen = yield from _look(known, np.repeat(cell, 2), np.repeat(begin, 2), many.ravel())
     place = (seen.well + seen.tip).reshape(-1, 2)
     moved = sign * (place[:, 1] - place[:, 0])
-    on = np.all(seen.gap.reshape(-1, 2) < _CLOSED, axis=1)
-    on &= (moved > _STILL) & (stops < late)
+    on = np.all(seen.gap.reshape(-1, 2) < SETTINGS.closed, axis=1)
+    on &= (moved > SETTINGS.still) & (stops < late)
     every = Candidates(
         cell=cell,
         sign=sign,

@@ -4,8 +4,9 @@ import numpy as np
 
 from ...model import AbstractPotential
 from .contraction import LAG_FORCES, from_fold_to_fold
+from .settings import SETTINGS
 
-_GRID = np.concatenate([np.logspace(-9, 0, 400), np.linspace(1.05, 25.0, 480)])
+_GRID = np.concatenate([np.logspace(*SETTINGS.sets_off), np.linspace(*SETTINGS.goes_on)])
 
 
 def first_wells(

@@ -16,24 +16,12 @@ from jaxtyping import Array, Float
 from ..._checks import Real
 from ..._compile import Program, in_chunks
 from ...model import CHUNK, AbstractPotential, Scene
+from .settings import SETTINGS
 
 _POINTS = 10  # Gauss nodes of a panel
 _X, _W = np.polynomial.legendre.leggauss(_POINTS)
 _LEGENDRE = np.polynomial.legendre.legvander(_X, _POINTS - 1)
 _TO_SERIES = np.linalg.inv(_LEGENDRE)
-_DEPTH = 26  # halvings of the period: folds narrower than 1e-8 of it are not resolved
-_FINE = 1e-8  # of the whole integral: last coefficients of a panel that is halved
-# Of it: last coefficients of panels in s, at most; passages err by less than its square.
-ROUGH = 1e-4
-_PANELS = 4, 6, 8, 12, 16, 32, 64  # in s
-_INVERSE = 4  # sweeps of Newton's method for the place at an s
-# Sweeps of Newton's method from a guess that keeps the force constant, and from the
-# times of a passage nearby; from the former where none follow. (Five before others that
-# follow: a slip map takes a seventh longer, and not one of those fewer.)
-_SWEEPS, _AGAIN, _ALONE = 3, 1, 5
-_TRACKS = 16  # in a compiled call
-_NEAR = 256  # Taylor series of one compiled call
-TOGETHER = 12  # passages of a track side by side
 
 
 def _integrals() -> np.ndarray:
@@ -168,7 +156,7 @@ class _Clock(NamedTuple):
         series, width = self.series[panel], self.width[panel]
         left = whole * part - self.before[panel]
         x = 2 * left / (width * series[..., 0]) - 1
-        for _ in range(_INVERSE):
+        for _ in range(SETTINGS.place_sweeps):
             values = np.polynomial.legendre.legvander(x, _POINTS)
             rate = 0.5 * width * np.sum(values[..., :-1] * series, axis=-1)
             grown = 0.5 * width * np.sum(values @ _PRIMITIVE * series, axis=-1)
@@ -182,14 +170,14 @@ def _clock(potential, some: WellArc) -> _Clock:
     cell = np.repeat(np.arange(count), 4)
     left, width = np.tile(np.arange(4) / 4, count), np.full(4 * count, 0.25)
     done: list[tuple[np.ndarray, ...]] = []
-    for level in range(_DEPTH):
+    for level in range(SETTINGS.depth):
         values = _density(potential, some, cell, some.places(cell, left, width))
         series = values @ _TO_SERIES.T
         part = width * series[:, 0]
         if level == 0:
             whole = np.bincount(cell, part, count)
         rough = width * (np.abs(series[:, -1]) + np.abs(series[:, -2]))
-        split = (rough > _FINE * whole[cell]) & (level < _DEPTH - 1)
+        split = (rough > SETTINGS.fine * whole[cell]) & (level < SETTINGS.depth - 1)
         done.append(tuple(c[~split] for c in (cell, left, width, series)))
         if not split.any():
             break
@@ -209,7 +197,7 @@ def _clock(potential, some: WellArc) -> _Clock:
 
 
 def well_pull_of(
-    potential: AbstractPotential, some: WellArc, rough: float = ROUGH
+    potential: AbstractPotential, some: WellArc, rough: float = SETTINGS.rough
 ) -> WellPull:
     """The force along stretches of a period, resolved for the excess.
 
@@ -220,7 +208,7 @@ def well_pull_of(
     """
     clock, count = _clock(potential, some), some.eps.size
     cells = np.arange(count)
-    for panels in _PANELS:
+    for panels in SETTINGS.panels:
         knots = (np.arange(panels)[:, None] + 0.5 * (_X + 1)).ravel() / panels
         inside = clock.shares(knots)
         way = some.sign * some.length
@@ -300,7 +288,7 @@ def transit_times(
     pull: SupportPull,
     viscosity: np.ndarray,
     times=None,
-    sweeps: int = _SWEEPS,
+    sweeps: int = SETTINGS.first_sweeps,
 ) -> Transit:
     """Passages of one well from n lattice points of each cell; `pull` has shape (C, n).
 
@@ -312,9 +300,9 @@ def transit_times(
         steady = pull.support[..., 1] / np.where(rate == 0, np.nan, rate)
         times = track.way[:, None, :] * steady[..., None]
     else:
-        sweeps = _AGAIN
+        sweeps = SETTINGS.near_sweeps
     columns = *track, pull.load, pull.support, viscosity, times
-    return Transit(*in_chunks(_passages, _TRACKS, (sweeps,), columns))
+    return Transit(*in_chunks(_passages, SETTINGS.tracks, (sweeps,), columns))
 
 
 def steady_transit_times(
@@ -331,8 +319,10 @@ def one_transit_time(
 ) -> np.ndarray:
     """Seconds of one passage of each track, shape (C,); `pull` has that shape too."""
     # As many as `transit_times` is asked for elsewhere: no further program is compiled.
-    many = SupportPull(*(np.repeat(series[:, None], TOGETHER, axis=1) for series in pull))
-    return transit_times(track, many, viscosity, sweeps=_ALONE).length[:, 0]
+    many = SupportPull(
+        *(np.repeat(series[:, None], SETTINGS.degree, axis=1) for series in pull)
+    )
+    return transit_times(track, many, viscosity, sweeps=SETTINGS.lone_sweeps).length[:, 0]
 
 
 @Program
@@ -351,5 +341,5 @@ def _series(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"])
 def pull_at(scene: Scene, times: np.ndarray, states: np.ndarray) -> SupportPull:
     """Taylor series of l and Phi' at times in s and states in m of one shape."""
     columns = times.ravel(), states.ravel()
-    found = in_chunks(_series, _NEAR, (scene,), columns)
+    found = in_chunks(_series, SETTINGS.near, (scene,), columns)
     return SupportPull(*(v.reshape(*times.shape, 4) for v in found))

@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-# Sweeps of Newton's method for the number at a time, at most, and what they leave in x.
-_INVERSE, _SETTLED = 6, 1e-13
+from .settings import SETTINGS
 
 
 class TransitTimes(NamedTuple):
@@ -84,12 +83,12 @@ class ManyTransitTimes:
         x = np.clip(2 * since / whole - 1, -1.0, 1.0)
         series, order = self.series[panel], np.arange(self.series.shape[1])
         slopes = chebyshev.chebder(series.T).T
-        for _ in range(_INVERSE):
+        for _ in range(SETTINGS.number_sweeps):
             waves = np.cos(np.arccos(x)[:, None] * order)
             value = np.sum(series * waves, axis=1)
             slope = np.sum(slopes * waves[:, :-1], axis=1)
             before, x = x, np.clip(x - (value - since) / slope, -1.0, 1.0)
-            if np.all(np.abs(x - before) <= _SETTLED):
+            if np.all(np.abs(x - before) <= SETTINGS.settled):
                 break
         return self.edges[panel] + 0.5 * (x + 1) * self.wells[panel]
 

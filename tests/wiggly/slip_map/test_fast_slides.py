@@ -136,7 +136,8 @@ def test_starts_behind_a_fast_slide_that_ends_fast():
 @pytest.mark.slow
 def test_surveys_with_many_nodes_do_not_run_away(monkeypatch):
     """Chebyshev's points less than a well apart: 129 in 3800 wells made a sup of 6e3."""
-    monkeypatch.setattr(finder, "TAIL", finder.BARE_TAIL)
+    rougher = finder.MAP_SETTINGS._replace(tail=finder.MAP_SETTINGS.bare_tail)
+    monkeypatch.setattr(finder, "MAP_SETTINGS", rougher)
     cell = np.array([1.3e-7]), np.array([0.4]), TIMES, 1e-3
     found = engine.integrate_cells(SCENES["sine"], *cell, "windowed", balanced=False)
     assert abs(found.sup_error[0] / 7.47784e-5 - 1) < 1e-2
