@@ -12,7 +12,8 @@ from .attempts import AttemptContext, Cellwise, SoFar, merged, rows_of
 from .enclosure import AFFORDABLE, Report, Requirements, find_fast_slides
 from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, Sums, prepare
-from .limit_path import NODES, Path, path_of
+from .limit_path import SETTINGS as PATH_SETTINGS
+from .limit_path import Path, path_of
 from .plan import LOOSEST, TABLEAU, TILES, Planned, lane_scene
 from .plans_ahead import plan_of_cells
 from .rosenbrock import Tableau
@@ -188,7 +189,9 @@ def _by_slip_maps(
     has = np.array([len(own) > 0 for own in found.slides])
     some = some._replace(
         ground=some.ground._replace(fast_slides=found.slides),
-        needs=some.needs._replace(samples=np.where(has, NODES, some.needs.samples)),
+        needs=some.needs._replace(
+            samples=np.where(has, PATH_SETTINGS.nodes, some.needs.samples)
+        ),
         way=np.where(has, Way.SLIP_MAP, _way_without_maps(some.needs)),
     )
     so_far = sweep.attempt(some)

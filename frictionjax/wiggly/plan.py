@@ -26,7 +26,8 @@ from .enclosure import (
 from .equation import StepPlan as StepPlan
 from .equation import WiggleFolds, plan_steps, power_series_of, pull_of
 from .lanes import LaneScene
-from .limit_path import NODES, Path, slow_ends
+from .limit_path import SETTINGS as PATH_SETTINGS
+from .limit_path import Path, slow_ends
 from .rosenbrock import RODAS5P
 from .slip_map import lag_forces, none_known
 from .ways import Way, by_brackets, ends_before_tips_follow, ways_of
@@ -170,7 +171,7 @@ def _with_brackets(
     path: Path, eps: np.ndarray, needs: Requirements, brackets: np.ndarray
 ) -> Requirements:
     """What cells need that go by brackets: how many slips are sampled, and longer tiles."""
-    samples = np.where(brackets == Way.SAMPLED, NODES, 0)
+    samples = np.where(brackets == Way.SAMPLED, PATH_SETTINGS.nodes, 0)
     needs = needs._replace(samples=samples)
     outer, _ = wells_of(path, eps, needs)
     return needs._replace(tile=np.maximum(needs.tile, outer / TILES))

@@ -5,7 +5,8 @@ from enum import IntEnum
 import numpy as np
 
 from .enclosure import AFFORDABLE, LONG_MEMORY, Requirements, cost_of
-from .limit_path import NODES, Path
+from .limit_path import SETTINGS as PATH_SETTINGS
+from .limit_path import Path
 
 # Wells of a slide that are worth a slip map, where windows set off far back.
 _LONG_SLIDE = 60.0
@@ -78,7 +79,7 @@ def ways_of(
 
 
 def _costs_less_sampled(path: Path, eps, needs: Requirements, times: int) -> np.ndarray:
-    nodes = np.full(eps.size, NODES)
+    nodes = np.full(eps.size, PATH_SETTINGS.nodes)
     sampled = cost_of(path, eps, needs._replace(samples=nodes), times)
     return sampled < cost_of(path, eps, needs._replace(samples=0 * nodes), times)
 

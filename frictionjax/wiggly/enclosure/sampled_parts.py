@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...model import Scene
+from ..limit_path import SETTINGS as PATH_SETTINGS
 from ..limit_path import (
-    FEWER,
     Path,
     nodes_inside,
     nodes_of,
@@ -183,7 +183,7 @@ def _is_known(scene: Scene, path: Path, some: Parts) -> np.ndarray:
     """Whether nodes of each part see the path's speed, which is much the same there."""
     ends = some.low, some.high
     nodes = speeds_at(scene, path, nodes_inside(*ends))
-    own = probes_of(scene, path, *ends, FEWER)
+    own = probes_of(scene, path, *ends, PATH_SETTINGS.fewer_samples)
     times = np.concatenate([own, path.probes.times[some.piece]], axis=1)
     probes = [speeds_at(scene, path, own), path.probes.speeds[some.piece]]
     speeds = np.concatenate(probes, axis=1)

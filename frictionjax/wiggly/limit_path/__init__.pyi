@@ -1,4 +1,3 @@
-from .fast_stretches import FEWER as FEWER
 from .fast_stretches import nodes_inside as nodes_inside
 from .fast_stretches import probes_of as probes_of
 from .fast_stretches import strictly_between as strictly_between
@@ -11,10 +10,8 @@ from .path import speeds_at as speeds_at
 from .path import state_under as state_under
 from .path import states_at as states_at
 from .path import times_at as times_at
-from .resting_ends import RESTS as RESTS
 from .resting_ends import slow_ends as slow_ends
 from .sampled_slide import DEFICIT as DEFICIT
-from .sampled_slide import NODES as NODES
 from .sampled_slide import RESIDUAL as RESIDUAL
 from .sampled_slide import SURPLUS as SURPLUS
 from .sampled_slide import VISCOUS as VISCOUS
@@ -22,3 +19,4 @@ from .sampled_slide import WORK as WORK
 from .sampled_slide import SampledSlide as SampledSlide
 from .sampled_slide import nodes_of as nodes_of
 from .sampled_slide import sampled_slides_of as sampled_slides_of
+from .settings import SETTINGS as SETTINGS

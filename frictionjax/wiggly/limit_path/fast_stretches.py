@@ -9,22 +9,14 @@ from jaxtyping import Bool, Float
 
 from ...model import Scene
 from .path import Path, speeds_at, states_at
-from .sampled_slide import NODES, nodes_of, through_nodes
-
-_INSIDE = 1e-9  # of a stretch of time: how far inside it its outer nodes are
-SAMPLES, FEWER = 64, 16  # of a piece, and of a part of it
-# Of the samples: intervals that are looked into, and as many as have a gap between their
-# way and their speed of more than this, of the longest way. (With four of 64, bursts that
-# were fifth or faster than others made suprema 17,000 times the accuracy wrong.)
-_SUSPECTS, _MOST, _GAP = 1 / 16, 1 / 4, 1e-4
-_PARTS, _ZOOMS = 16, 5
-_TYPICAL = 0.1  # of the median speed: slower ones are missed by shares of this
+from .sampled_slide import nodes_of, through_nodes
+from .settings import SETTINGS
 
 
 def _zoomed(scene: Scene, path: Path, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Times closer and closer to the steepest place of each interval, on both sides."""
-    share, found = np.arange(_PARTS + 1) / _PARTS, []
-    for _ in range(_ZOOMS):
+    share, found = np.arange(SETTINGS.parts + 1) / SETTINGS.parts, []
+    for _ in range(SETTINGS.zooms):
         inner = low[..., None] + (high - low)[..., None] * share
         rises = np.abs(np.diff(_states(scene, path, inner)))
         part = np.argmax(rises, axis=-1)[..., None]
@@ -42,7 +34,7 @@ def probes_of(
     path: Path,
     low: Float[np.ndarray, " n"],
     high: Float[np.ndarray, " n"],
-    samples: int = SAMPLES,
+    samples: int = SETTINGS.samples,
 ) -> Float[np.ndarray, "n m"]:
     """Times in [low, high] (n,) in s, (n, m), at which the path's speed tells the most.
 
@@ -54,9 +46,11 @@ def probes_of(
     middles = 0.5 * (edges[:, 1:] + edges[:, :-1])
     ways = np.diff(_states(scene, path, edges))
     gaps = np.abs(ways - speeds_at(scene, path, middles) * np.diff(edges))
-    large = gaps > _GAP * np.max(np.abs(ways), axis=1, keepdims=True)
+    large = gaps > SETTINGS.gap * np.max(np.abs(ways), axis=1, keepdims=True)
     wanted = np.max(np.count_nonzero(large, axis=1), initial=0)
-    count = int(np.clip(wanted, _SUSPECTS * samples, _MOST * samples))
+    count = int(
+        np.clip(wanted, SETTINGS.suspects * samples, SETTINGS.most_suspects * samples)
+    )
     suspects = np.argpartition(-gaps, count, axis=1)[:, :count]
     ends = (np.take_along_axis(edges, suspects + k, axis=1) for k in (0, 1))
     found = [middles, _zoomed(scene, path, *ends)]
@@ -71,9 +65,11 @@ def probes_of(
 def nodes_inside(
     low: Float[np.ndarray, " n"], high: Float[np.ndarray, " n"]
 ) -> Float[np.ndarray, "n nodes"]:
-    """Nodes of [low, high] (n,) in s, (n, NODES): at the ends from inside, where slides
+    """Nodes of [low, high] (n,) in s, (n, nodes): at the ends from inside, where slides
     begin and pieces meet."""
-    share = np.clip(nodes_of(0.0, 1.0, NODES), _INSIDE, 1 - _INSIDE)
+    share = np.clip(
+        nodes_of(0.0, 1.0, SETTINGS.nodes), SETTINGS.inside, 1 - SETTINGS.inside
+    )
     times = low[:, None] + (high - low)[:, None] * share
     ends = np.nextafter(low, high), np.nextafter(high, low)
     return np.clip(times, *(end[:, None] for end in ends))
@@ -104,6 +100,6 @@ def unseen_of(
     long = np.where(high > low, high, low + 1.0)
     gaps = np.abs(through_nodes(low, long, known, times) - speeds) * inside
     # Of the largest speed, the slide beside a short burst would count for nothing.
-    typical = _TYPICAL * np.median(np.abs(known), axis=1)[:, None]
+    typical = SETTINGS.typical * np.median(np.abs(known), axis=1)[:, None]
     size = np.maximum(np.maximum(np.abs(speeds), typical), 1e-300)
     return np.max(gaps / size, axis=1)

@@ -7,9 +7,7 @@ from ..._compile import Program
 from ...model import Scene, coefficients_jit, strips_at
 from .fast_stretches import nodes_inside, probes_of, unseen_of
 from .path import Path, Probes, slopes_at, states_at, stiffness_at, times_at
-from .sampled_slide import NODES
-
-_BRIEF = 1e-9  # of the duration: pieces of which floats leave little to look into
+from .settings import SETTINGS
 
 
 @Program
@@ -24,10 +22,10 @@ def _looked_at(scene: Scene, path: Path) -> Path:
     flat = times.ravel()
     states = states_at(scene, path, flat)
     speeds = slopes_at(scene, path, flat, states).reshape(times.shape)
-    count = times.shape[1] - NODES
+    count = times.shape[1] - SETTINGS.nodes
     times, seen, known = times[:, :count], speeds[:, :count], speeds[:, count:]
     unseen = unseen_of(*ends, known, times, seen)
-    long = (path.direction != 0) & (ends[1] - ends[0] > _BRIEF * path.edges[-1])
+    long = (path.direction != 0) & (ends[1] - ends[0] > SETTINGS.brief * path.edges[-1])
     return path._replace(
         speed=float(np.max(np.abs(speeds))),
         stiffness=float(np.min(stiffness_at(scene, states))),

@@ -5,11 +5,7 @@ from jaxtyping import Bool, Float
 
 from ...model import Scene
 from .path import Path, slopes_at, times_at
-
-# Share that a well leaves of a shift, below which tips come to rest where the path does:
-# slides lag by half the wells that they remember, 1.4 here.
-RESTS = 0.7
-_END = 8.0  # wells before a slide's end where it should be slow
+from .settings import SETTINGS
 
 
 def slow_ends(
@@ -29,10 +25,10 @@ def slow_ends(
     if slides.size == 0:
         return slow
     ends = np.abs(path.states[slides + 1] - path.states[slides])
-    level = np.maximum(ends - _END * eps[:, None], 0.0)
+    level = np.maximum(ends - SETTINGS.end * eps[:, None], 0.0)
     state = path.states[slides] + path.direction[slides] * level
     times = times_at(scene, path, np.tile(slides, eps.size), state.ravel())
     speed = slopes_at(scene, path, times, state.ravel()).reshape(state.shape)
     memory = 2 * lag[:, None] * (speed / (path.speed or 1.0)) ** 2  # nothing slides at 0
-    slow[:, slides] = memory * -np.log(RESTS) < 1
+    slow[:, slides] = memory * -np.log(SETTINGS.rests) < 1
     return slow

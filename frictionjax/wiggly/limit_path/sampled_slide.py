@@ -7,12 +7,8 @@ import numpy as np
 from jaxtyping import Float
 from numpy.polynomial import chebyshev
 
-NODES = 17  # periods measured in a slide, unless it takes more
-_FINE = 257  # points at which extremes of the fitted curves are looked for
-# By what a fit may magnify errors of what was measured, places at which that is looked for,
-# for each coefficient, and what the number of these is multiplied by until it does not.
-_MAGNIFIED, _PLACES, _FEWER = 30.0, 4, 0.85
-_LAST, _UNCERTAIN = 3, 5.0  # coefficients looked at; errors over them where not all fit
+from .settings import SETTINGS
+
 WORK, VISCOUS, RESIDUAL = range(3)  # rows of what is summed
 AHEAD, BEHIND, OUTSIDE, SURPLUS, DEFICIT = range(5)  # rows of what has extremes
 
@@ -21,7 +17,7 @@ class SampledSlide(NamedTuple):
     """Curves over a slide, fitted in time to what was measured in whole slip periods.
 
     `low`, `high`: ends in s. `primitives` (3, n + 1): Chebyshev series of the sums since
-    `low`, in J, and `whole` (3,) at `high`: work, viscous, residual. At `_FINE` times:
+    `low`, in J, and `whole` (3,) at `high`: work, viscous, residual. At `fine` times:
     `work` (fine,) since `low`, and `extremes` (5, fine): of z - path over a period, ahead
     and behind, and of the way from the strip to z, m; of the dissipation beyond the path's,
     less what the work adds, surplus and deficit, J. `residual` since `low` at `times` (n +
@@ -89,25 +85,25 @@ def _tails(series: np.ndarray, fits: np.ndarray) -> np.ndarray:
     """Size of the last coefficients: what a shorter series would have missed."""
     count = fits.shape[-1]
     used = np.sum(np.any(fits != 0, axis=2), axis=1)
-    last = np.maximum(used[:, None] - _LAST, 0) + np.arange(_LAST)
+    last = np.maximum(used[:, None] - SETTINGS.last, 0) + np.arange(SETTINGS.last)
     found = np.abs(np.take_along_axis(series, last[:, None], axis=2)).max(axis=2)
-    return np.where(used < count, _UNCERTAIN, 1.0)[:, None] * found
+    return np.where(used < count, SETTINGS.uncertain, 1.0)[:, None] * found
 
 
 @lru_cache
 def _fine_basis(count: int) -> np.ndarray:
-    return chebyshev.chebvander(np.linspace(-1.0, 1.0, _FINE), count - 1)
+    return chebyshev.chebvander(np.linspace(-1.0, 1.0, SETTINGS.fine), count - 1)
 
 
 @lru_cache
 def _places(count: int) -> np.ndarray:
-    return chebyshev.chebvander(nodes_of(-1.0, 1.0, _PLACES * count + 1), count - 1)
+    return chebyshev.chebvander(nodes_of(-1.0, 1.0, SETTINGS.places * count + 1), count - 1)
 
 
 def _fit_at(scaled: np.ndarray) -> np.ndarray:
     """Matrices (n, count, count) from values at `scaled` (n, count) to Chebyshev series.
 
-    Of as many coefficients as magnify errors by `_MAGNIFIED` at most, the others 0. (Where
+    Of as many coefficients as magnify errors little enough, the others 0. (Where
     nodes moved to whole periods are no Chebyshev points any more, interpolation swung by
     100 eps in 117 wells of which 57 were measured, with last coefficients of 2e-4 eps.)
     """
@@ -121,8 +117,8 @@ def _fit_at(scaled: np.ndarray) -> np.ndarray:
         fits[left, :size] = np.linalg.inv(basis) if apart else np.linalg.pinv(basis)
         fits[left, size:] = 0.0
         magnified = np.abs(_places(size) @ fits[left, :size]).sum(axis=2).max(axis=1)
-        left = left[magnified > _MAGNIFIED]
-        size = int(_FEWER * size)
+        left = left[magnified > SETTINGS.magnified]
+        size = int(SETTINGS.fewer * size)
     return fits
 
 

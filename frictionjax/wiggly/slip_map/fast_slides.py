@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...model import Scene
-from ..limit_path import RESTS, Path
+from ..limit_path import SETTINGS as PATH_SETTINGS
+from ..limit_path import Path
 from .map import Slides, follow
 from .settings import SETTINGS
 from .transit import WellArc, WellPull, one_transit_time, pull_at, well_pull_of, wiggles_at
@@ -51,7 +52,7 @@ class FastSlide(NamedTuple):
     @property
     def lags(self) -> bool:
         """Whether the tip is behind the path where the slide ends, by more than a slip."""
-        return bool(self.curve.last > RESTS)
+        return bool(self.curve.last > PATH_SETTINGS.rests)
 
 
 def _not_measured() -> np.ndarray:

@@ -57,7 +57,8 @@ def test_at_once_is_as_one_after_the_other(monkeypatch, eps, calls):
 def test_what_was_foreseen_is_found_again_where_the_slide_before_lags(monkeypatch):
     """A slide that ends fast: those found without it are not believed."""
     expected, _ = solved(6e-3)
-    monkeypatch.setattr(slow_ends, "_END", 0.0)  # all slides are slow at their turn
+    at_the_turn = slow_ends.SETTINGS._replace(end=0.0)  # where all slides are slow
+    monkeypatch.setattr(slow_ends, "SETTINGS", at_the_turn)
     found, followed = solved(6e-3)
     assert [slides.size for slides in followed] == [3, 1, 1]
     assert np.max(np.abs(found.z - expected.z)) < 2e-5 * 6e-3
