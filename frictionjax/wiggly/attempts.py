@@ -7,8 +7,8 @@ import numpy as np
 
 from .._compile import WORKERS
 from ..model import Scene
+from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import (
-    CLOSED,
     BracketContext,
     CellBounds,
     Report,
@@ -149,7 +149,7 @@ class AttemptContext(NamedTuple):
         errors = [answers.survey_error / eps]
         if self.wanted.energies:
             errors.append(answers.survey_work_error)
-        worst = np.max(errors, axis=0) / (CLOSED * self.accuracy)
+        worst = np.max(errors, axis=0) / (ENCLOSURE_SETTINGS.closed * self.accuracy)
         return (worst > 1) | (np.isnan(worst) & (answers.status == int(Status.OK)))
 
 

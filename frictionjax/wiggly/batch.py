@@ -9,7 +9,8 @@ from .._checks import quiet_where_extreme, viscosity_of
 from .._compile import WORKERS, crew
 from ..model import Scene
 from .attempts import AttemptContext, Cellwise, SoFar, merged, rows_of
-from .enclosure import AFFORDABLE, Report, Requirements, find_fast_slides
+from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
+from .enclosure import Report, Requirements, find_fast_slides
 from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, Sums, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
@@ -228,7 +229,7 @@ def _prepare(
 
 
 def _affordable(path: Path, cells: Cellwise) -> np.ndarray:
-    return path.travel[-1] / cells.eps <= AFFORDABLE
+    return path.travel[-1] / cells.eps <= ENCLOSURE_SETTINGS.affordable
 
 
 def _from_the_start(sweep: AttemptContext, so_far: SoFar) -> SoFar:

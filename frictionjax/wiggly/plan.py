@@ -17,12 +17,8 @@ from ..model import (
     coefficients_jit,
 )
 from ..profiles import AbstractProfile
-from .enclosure import (
-    MARGIN,
-    CellBounds,
-    Requirements,
-    wells_of,
-)
+from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
+from .enclosure import CellBounds, Requirements, wells_of
 from .equation import StepPlan as StepPlan
 from .equation import WiggleFolds, plan_steps, power_series_of, pull_of
 from .lanes import LaneScene
@@ -132,7 +128,7 @@ def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
     """
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     forgets = 2 * lag * np.log((lag + 2) / (0.1 * accuracy))
-    slow = np.ceil(MARGIN + forgets)
+    slow = np.ceil(ENCLOSURE_SETTINGS.margin + forgets)
     run_up = np.minimum(slow, _resting(ground, lag, forgets))
     offset = _lattice_offsets(ground, path)
     return Requirements(

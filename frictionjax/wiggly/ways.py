@@ -4,7 +4,8 @@ from enum import IntEnum
 
 import numpy as np
 
-from .enclosure import AFFORDABLE, LONG_MEMORY, Requirements, cost_of
+from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
+from .enclosure import Requirements, cost_of
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path
 
@@ -86,7 +87,7 @@ def _costs_less_sampled(path: Path, eps, needs: Requirements, times: int) -> np.
 
 def _remembers_long(needs: Requirements) -> np.ndarray:
     """Whether windows would set off from many slips back."""
-    return needs.run_up > LONG_MEMORY
+    return needs.run_up > ENCLOSURE_SETTINGS.long_memory
 
 
 def _has_mappable_slides(path: Path, eps: np.ndarray) -> np.ndarray:
@@ -102,10 +103,10 @@ def _is_short(path: Path, eps: np.ndarray, reach: np.ndarray) -> np.ndarray:
     narrow = (WIDEST / reach) ** 0.6
     way = path.travel[-1] / eps * narrow
     slides = np.count_nonzero(slides_of(path, eps), axis=1)
-    return way <= np.minimum(_MAP * np.maximum(slides, 3), AFFORDABLE)
+    return way <= np.minimum(_MAP * np.maximum(slides, 3), ENCLOSURE_SETTINGS.affordable)
 
 
 def ends_before_tips_follow(path: Path, eps: np.ndarray, follows: np.ndarray) -> np.ndarray:
     """Whether a slide does, in a cell that one lane can go through."""
     brief = slides_of(path, eps) & (follows[:, None] > path.edges[1:] - path.touch)
-    return np.any(brief, axis=1) & (path.travel[-1] / eps <= AFFORDABLE)
+    return np.any(brief, axis=1) & (path.travel[-1] / eps <= ENCLOSURE_SETTINGS.affordable)

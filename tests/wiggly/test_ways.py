@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.wiggly.enclosure import LONG_MEMORY, Requirements
+from frictionjax.wiggly.enclosure import SETTINGS, Requirements
 from frictionjax.wiggly.limit_path import path_of
 from frictionjax.wiggly.ways import Way, by_brackets, ways_of
 
@@ -59,10 +59,10 @@ def test_brackets_serve_where_little_is_remembered(method, ways):
     ],
 )
 def test_slip_maps_and_one_lane_serve_where_much_is(method, ways):
-    assert chosen(2 * LONG_MEMORY, method) == ways
+    assert chosen(2 * SETTINGS.long_memory, method) == ways
 
 
 def test_one_lane_goes_where_slides_end_before_tips_follow():
     """As far as a lane can go: the last cell has millions of wells."""
     ways = [Way.ONE_LANE, Way.ONE_LANE, Way.SLIP_MAP]
-    assert chosen(2 * LONG_MEMORY, "auto", follows=10.0) == ways
+    assert chosen(2 * SETTINGS.long_memory, "auto", follows=10.0) == ways

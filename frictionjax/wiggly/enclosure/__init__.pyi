@@ -1,8 +1,5 @@
 from .bracket_values import BracketValues as BracketValues
 from .brackets import Brackets as Brackets
-from .close import CLOSED as CLOSED
-from .close import LONG_MEMORY as LONG_MEMORY
-from .close import MARGIN as MARGIN
 from .close import BracketContext as BracketContext
 from .close import Effort as Effort
 from .close import Report as Report
@@ -13,10 +10,10 @@ from .finder import find_fast_slides as find_fast_slides
 from .layout import Layout as Layout
 from .layout import SampledPeriods as SampledPeriods
 from .layout import lay_out as lay_out
-from .requirements import AFFORDABLE as AFFORDABLE
 from .requirements import Requirements as Requirements
 from .requirements import cost_of as cost_of
 from .requirements import longest_lane as longest_lane
 from .requirements import wells_a_leg as wells_a_leg
 from .requirements import wells_of as wells_of
+from .settings import SETTINGS as SETTINGS
 from .starts import CellBounds as CellBounds

@@ -7,13 +7,8 @@ import numpy as np
 from ...model import Scene
 from ..lanes import Lanes, Segments
 from ..limit_path import Path, slopes_at, states_at
-from .requirements import AFFORDABLE
-from .starts import ASIDE, FASTER, CellBounds, Starts
-
-# Steps are 10 to 200 a well; lags let lanes pass through more wells than the path.
-_STEPS_A_WELL, _SOME_WELLS = 2000, 100
-_STEPS_BEHIND = 500  # a well that tips are behind by, which took 130 (gamma = 3/4)
-_BRIEF = 20.0  # wells of a lane whose errors hardly add up, or that it remembers, twice
+from .settings import SETTINGS
+from .starts import CellBounds, Starts
 
 
 class Brackets(NamedTuple):
@@ -125,8 +120,13 @@ def plan_brackets(
     )
     # Nor does the path pass through those that a lane has to catch up with after a jump.
     late = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
-    late = np.minimum(late, np.minimum(path.travel[-1] / ground.eps, AFFORDABLE))[cell]
-    budget = _STEPS_A_WELL * (wells + far + _SOME_WELLS) + _STEPS_BEHIND * late
+    late = np.minimum(late, np.minimum(path.travel[-1] / ground.eps, SETTINGS.affordable))[
+        cell
+    ]
+    budget = (
+        SETTINGS.lane_steps * (wells + far + SETTINGS.some_wells)
+        + SETTINGS.steps_behind * late
+    )
     legs = legs._replace(budget=budget)
     behind, ahead = np.full(windows.stop.size, -1), np.full(windows.stop.size, -1)
     meet_behind, meet_ahead = np.full(count, -1), np.full(count, -1)
@@ -143,7 +143,7 @@ def plan_brackets(
     np.maximum.at(last, windows.owner, windows.stop)
     inside = last <= starts.until
     brief = np.concatenate([inside, inside[second]])
-    brief &= np.bincount(job, wells, brief.size) <= _BRIEF
+    brief &= np.bincount(job, wells, brief.size) <= SETTINGS.brief
     calm = _calm(path, ground, jobs, legs)
     return BracketPlan(jobs, legs, *marks, starts.known, starts.from_slide, brief, calm)
 
@@ -162,15 +162,15 @@ def _calm(path: Path, ground: CellBounds, jobs: Lanes, legs: Segments) -> np.nda
     start = np.abs(legs.slope0[first])
     slower = np.maximum.reduceat(speed, first) <= start
     lag = np.maximum(ground.lag_plus, ground.lag_minus)[jobs.cell] / ground.eps[jobs.cell]
-    memory = 2 * FASTER * lag * (start / (path.speed or 1.0)) ** 2
-    return has[jobs.cell] & inside & slower & (memory <= 0.5 * _BRIEF)
+    memory = 2 * SETTINGS.faster * lag * (start / (path.speed or 1.0)) ** 2
+    return has[jobs.cell] & inside & slower & (memory <= 0.5 * SETTINGS.brief)
 
 
 def legs_of(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Segments:
     """Legs with the path as their guide; slopes from inside each leg."""
     length = np.maximum(end - start, 0.0)
     guides = states_at(scene, path, np.concatenate([start, end]))
-    aside = ASIDE * length
+    aside = SETTINGS.aside * length
     inside = np.concatenate([start + aside, end - aside])
     slopes = slopes_at(scene, path, inside, guides)
     (guide0, guide1), (slope0, slope1) = np.split(guides, 2), np.split(slopes, 2)

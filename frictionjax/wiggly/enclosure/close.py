@@ -16,23 +16,9 @@ from .bracket_values import BracketValues
 from .brackets import BracketPlan, Brackets, plan_brackets
 from .closeness import gaps_of, shifts_of
 from .layout import Layout
-from .requirements import AFFORDABLE, Requirements
+from .requirements import Requirements
+from .settings import SETTINGS
 from .starts import CellBounds, Starts, slow_share, starts_of
-
-CLOSED = 0.5  # of the accuracy: gaps of brackets accepted
-ROUNDS = 3
-EARLIER = 4  # times as far back in each round
-MARGIN = 3  # wells: one to fall behind, one to catch up, one to forget
-LONG_MEMORY = 100.0  # wells: windows that set off further back look at how fast slides are
-_FAST = 0.35  # steps a well on fast slides, where tips do not rest, of those elsewhere
-_LONGEST = 1.5  # times what its longest job takes: the shortest batch
-_BATCH = 1e5  # wells: a few seconds, between two reports
-# Steps beyond those for the wells of the path, of the longest lane in each march, added up,
-# that a cell may wait for in an attempt: 2 to 8 seconds. One lane alone, where that is
-# affordable, has its own budget. (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: where tips
-# do not follow, lanes went through 40 times the wells of the path, for maps that never
-# begin, and there was no answer in 10 minutes.)
-PATIENCE, _STEPS_A_WELL = 2e6, 200.0
 
 Report = Callable[[float], None]
 
@@ -52,9 +38,9 @@ def _batches(work: np.ndarray, workers: int) -> int:
     compile.)
     """
     lanes = workers * LANE_SETTINGS.width
-    longest = _LONGEST * work.max(initial=1.0)
+    longest = SETTINGS.longest_job * work.max(initial=1.0)
     most = min(work.size // (2 * lanes), int(work.sum() / (lanes * longest)))
-    return max(min(int(np.ceil(work.sum() / _BATCH)), most), 1)
+    return max(min(int(np.ceil(work.sum() / SETTINGS.batch)), most), 1)
 
 
 def _of_jobs(plan: BracketPlan, of_legs: np.ndarray) -> np.ndarray:
@@ -66,7 +52,7 @@ def _of_jobs(plan: BracketPlan, of_legs: np.ndarray) -> np.ndarray:
 class Effort(NamedTuple):
     """What lanes have taken so far, shape (cells,).
 
-    `steps`, `rejected`: of all lanes. `waited`: those of `PATIENCE`.
+    `steps`, `rejected`: of all lanes. `waited`: those of `SETTINGS.patience`.
     """
 
     steps: np.ndarray
@@ -153,10 +139,12 @@ class BracketContext(NamedTuple):
     def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
         """Which jobs their cells can still wait for, and the plan with what is left."""
         jobs, legs = plan.jobs, plan.legs
-        left = np.where(self._alone(plan), np.inf, PATIENCE - self.effort.waited[jobs.cell])
+        left = np.where(
+            self._alone(plan), np.inf, SETTINGS.patience - self.effort.waited[jobs.cell]
+        )
         owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
         wells = np.abs(legs.guide1 - legs.guide0) / self.ground.eps[jobs.cell[owner]]
-        allowed = left[owner] + _STEPS_A_WELL * wells
+        allowed = left[owner] + SETTINGS.path_steps * wells
         legs = legs._replace(budget=np.minimum(legs.budget, allowed))
         return left > 0, plan._replace(legs=legs)
 
@@ -166,7 +154,7 @@ class BracketContext(NamedTuple):
         Of one that gave up everything counts: it would take its share again in each march.
         """
         cell, steps = plan.jobs.cell, _of_jobs(plan, np.nan_to_num(found.steps))
-        beyond = np.maximum(steps - _STEPS_A_WELL * self._wells(plan), 0.0)
+        beyond = np.maximum(steps - SETTINGS.path_steps * self._wells(plan), 0.0)
         gave_up = _of_jobs(plan, np.nan_to_num(found.code)) > 0
         beyond = np.where(gave_up, steps, beyond)
         longest = np.zeros(self.ground.eps.size)
@@ -178,7 +166,7 @@ class BracketContext(NamedTuple):
         known = np.zeros(plan.jobs.cell.size, dtype=bool)
         known[: plan.known.size] = plan.known
         wells = self.path.travel[-1] / self.ground.eps[plan.jobs.cell]
-        return known & (wells <= AFFORDABLE)
+        return known & (wells <= SETTINGS.affordable)
 
     def _wells(self, plan: BracketPlan) -> np.ndarray:
         """Wells of the path that jobs go through, (jobs,)."""
@@ -192,7 +180,7 @@ class BracketContext(NamedTuple):
         """
         jobs, legs = plan.jobs, plan.legs
         work = self._wells(plan) + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
-        work = np.where(plan.brief, _FAST, 1.0) * work
+        work = np.where(plan.brief, SETTINGS.fast, 1.0) * work
         jobs, cells = self._steered(jobs, plan.brief | plan.calm)
         order = np.argsort(-work, kind="stable")
         order = order[able[order]]
@@ -253,7 +241,7 @@ def close_brackets(
     open_ = np.arange(windows.cell.size)
     wells = run_ups(rounds, windows, needs.run_up)
     back = np.zeros(wells.size)
-    for _ in range(ROUNDS):
+    for _ in range(SETTINGS.rounds):
         some = windows.chosen(open_)
         place = np.flatnonzero(np.isin(windows.owner, open_))
         place = place[np.argsort(windows.owner[place], kind="stable")]
@@ -276,15 +264,15 @@ def close_brackets(
         # start is forgotten all the same, and the gap is reported as it is. Lanes from
         # close by have had steps of their own, which part them further: they go back once,
         # and so do those that set off from a fast slide where their window begins.
-        far = (wells[open_] > MARGIN) & ~(plan.from_slide & (back[open_] < 1))
+        far = (wells[open_] > SETTINGS.margin) & ~(plan.from_slide & (back[open_] < 1))
         met = np.maximum(meets, shifts_of(found, plan.legs, *begins, speed))
         met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
         worst = np.minimum(worst, met)
-        open_ = open_[worst > CLOSED * rounds.accuracy]
+        open_ = open_[worst > SETTINGS.closed * rounds.accuracy]
         if open_.size == 0:
             break
-        wells[open_] = np.maximum(EARLIER * wells[open_], MARGIN + 1)
-        back[open_] = EARLIER * np.maximum(back[open_], 1)
+        wells[open_] = np.maximum(SETTINGS.earlier * wells[open_], SETTINGS.margin + 1)
+        back[open_] = SETTINGS.earlier * np.maximum(back[open_], 1)
     result = BracketValues(
         arrivals=SegmentEnds(*values),
         legs=Segments(*legs),
@@ -302,10 +290,10 @@ def run_ups(rounds: BracketContext, windows: Brackets, needed: np.ndarray) -> np
     Slides remember in proportion to the square of their speed.
     """
     wells = needed[windows.cell].astype(float)
-    long = (wells > LONG_MEMORY) & np.isfinite(wells)
+    long = (wells > SETTINGS.long_memory) & np.isfinite(wells)
     if not long.any():
         return wells
-    near = np.full(wells.size, MARGIN + 1.0)
+    near = np.full(wells.size, SETTINGS.margin + 1.0)
     scene, path = rounds.scene, rounds.path
     starts = starts_of(
         scene=scene,
@@ -321,4 +309,6 @@ def run_ups(rounds: BracketContext, windows: Brackets, needed: np.ndarray) -> np
     share = slow_share(scene, path, starts.time, states)
     share = np.where(starts.from_slide | starts.lagging, 1.0, share)
     # Others keep theirs: what they find must not depend on their neighbours.
-    return np.where(long, np.ceil(MARGIN + share * (wells - MARGIN)), wells)
+    return np.where(
+        long, np.ceil(SETTINGS.margin + share * (wells - SETTINGS.margin)), wells
+    )

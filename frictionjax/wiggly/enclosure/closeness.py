@@ -3,10 +3,7 @@
 import numpy as np
 
 from ..lanes import SegmentEnds, Segments
-
-_SLOW = 0.03  # of the largest speed: what counts as a slip on a path that rests
-_SLIP = 10.0  # times the path's speed: faster tips are in a slip
-_CREEP = 1e-2  # of the path's speed: tips that are slower hang on a branch and forget there
+from .settings import SETTINGS
 
 
 def gaps_of(
@@ -18,7 +15,7 @@ def gaps_of(
     counts, not the way that it makes. `speed`: the path's largest, m/s.
     """
     wells, _, fastest = _apart(found, legs, behind, ahead, speed)
-    return wells * _SLIP / np.maximum(fastest, _SLIP)
+    return wells * SETTINGS.slip / np.maximum(fastest, SETTINGS.slip)
 
 
 def shifts_of(
@@ -30,7 +27,7 @@ def shifts_of(
     there were 4e-2 eps apart in the slip that followed (gamma = 0.65, eps = 6e-4).
     """
     wells, slowest, _ = _apart(found, legs, behind, ahead, speed)
-    return wells / np.maximum(slowest, _CREEP)
+    return wells / np.maximum(slowest, SETTINGS.creep)
 
 
 def wells_between(well0, tip0, well1, tip1) -> np.ndarray:
@@ -47,7 +44,9 @@ def _apart(found: SegmentEnds, legs: Segments, behind, ahead, speed: float) -> t
     a, b = np.where(both, ahead, 0), np.where(both, behind, 0)
     wells = wells_between(found.well[b], found.tip[b], found.well[a], found.tip[a])
     # On a path that never moves nothing counts as a slip.
-    usual = np.maximum(np.abs(legs.slope1[b]), _SLOW * speed if speed > 0 else np.inf)
+    usual = np.maximum(
+        np.abs(legs.slope1[b]), SETTINGS.slow_slip * speed if speed > 0 else np.inf
+    )
     paces = np.abs(np.stack([found.speed[a], found.speed[b]])) / usual
     # One lane alone is no bracket, and may have failed.
     wells, paces = np.where(both, np.abs(wells), 0.0), np.where(both, paces, 1.0)

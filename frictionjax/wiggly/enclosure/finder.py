@@ -22,35 +22,11 @@ from ..slip_map import (
     asking_for_slides,
 )
 from .brackets import BracketPlan, Brackets
-from .close import (
-    EARLIER,
-    ROUNDS,
-    BracketContext,
-    BracketRound,
-    Effort,
-    no_effort,
-    run_ups,
-)
+from .close import BracketContext, BracketRound, Effort, no_effort, run_ups
 from .closeness import wells_between
 from .requirements import Requirements
+from .settings import SETTINGS
 from .starts import Starts
-
-# Tolerance of the lanes that measure a slip map, of the tolerance of others, and the
-# tightest that is of use. (gamma = 1/2, eps 1e-3 to 1e-4, accuracy 1e-3: the same errors of
-# maps from 1e-11 to 3e-8, in a third of the steps; others add up to as much as 0.02. At
-# accuracy 1e-6 brackets of eps = 1.3e-5 stay open with 1e-10 at least.)
-_TIGHT_MEASURE, _TIGHTEST_MEASURE = 0.05, 1e-12
-# Errors of a map at its start, as lanes leave it, and at least, of the accuracy. (At 0.1
-# brackets of times in the first wells of a slide stayed open where the tip was nearly in a
-# slip.)
-_SET_OFF, _LEAST_ERROR = 0.02, 0.01
-_TIGHT_LOOK = 0.2  # of the tolerance: lanes that lead to the start of a slip map
-# Share of the accuracy that rounding may take in a measurement of a slip map, wells that
-# lanes go through for it at most, and what rounding of loads takes of a spacing of times.
-# (eps = 1e-8, gamma = 1/4: lanes of a twentieth of the wells find the same errors, in a
-# third of the steps, where the rounding of times is taken off, eight times larger ones
-# where it is not; two wells everywhere find 3.5 times larger ones.)
-_NOISE, _MOST_CHECKED, _OF_LOADS = 0.03, 400.0, 0.05
 
 
 class FoundSlides(NamedTuple):
@@ -118,7 +94,8 @@ def _seen(
     """Where lanes find the tips that are asked for, and what has been taken up to then."""
     cells = rounds.cells
     closer = cells._replace(
-        tolerance=_TIGHT_LOOK * cells.tolerance, loosest=_TIGHT_LOOK * cells.loosest
+        tolerance=SETTINGS.tight_look * cells.tolerance,
+        loosest=SETTINGS.tight_look * cells.loosest,
     )
     ground = rounds.ground._replace(fast_slides=wanted.known)
     looks = rounds._replace(ground=ground, cells=closer, brief=None)
@@ -128,16 +105,19 @@ def _seen(
     windows = Brackets(wanted.cells, begins, paired, one, wanted.stops)
     wells, back = run_ups(looks, windows, needs.run_up), np.ones(count)
     found, open_ = FoundTips(*np.empty((3, count))), one
-    for _ in range(ROUNDS):
+    for _ in range(SETTINGS.rounds):
         some = windows.chosen(open_)
         plan, arrived, effort = looks.run(some, wells[open_], back[open_])
         looks = looks._replace(effort=effort)
         for column, part in zip(found, _at_stops(looks, plan, arrived), strict=True):
             column[open_] = part
-        open_ = np.flatnonzero(~(found.gap <= _SET_OFF * rounds.accuracy))
+        open_ = np.flatnonzero(~(found.gap <= SETTINGS.set_off * rounds.accuracy))
         if open_.size == 0:
             break
-        wells[open_], back[open_] = wells[open_] * EARLIER, back[open_] * EARLIER
+        wells[open_], back[open_] = (
+            wells[open_] * SETTINGS.earlier,
+            back[open_] * SETTINGS.earlier,
+        )
     return found, looks.effort
 
 
@@ -155,10 +135,12 @@ def _wells_checked(rounds: BracketContext, cell: int, slide: FastSlide) -> np.nd
     """Wells that lanes go through on each panel: more where rounding adds up."""
     curve = slide.curve
     length = np.diff(curve.starts) / np.diff(curve.edges)
-    noise = _OF_LOADS * np.finfo(float).eps * curve.starts[1:] / length
+    noise = SETTINGS.of_loads * np.finfo(float).eps * curve.starts[1:] / length
     memory = 1 / np.maximum(np.abs(1 - curve.kept), 1e-12)
-    wanted = noise * memory / (_NOISE * rounds.accuracy)
-    return np.minimum(np.clip(np.ceil(wanted), 2, _MOST_CHECKED), np.diff(curve.edges))
+    wanted = noise * memory / (SETTINGS.noise * rounds.accuracy)
+    return np.minimum(
+        np.clip(np.ceil(wanted), 2, SETTINGS.most_checked), np.diff(curve.edges)
+    )
 
 
 def _measuring(
@@ -208,7 +190,9 @@ def _measuring(
 def _exact(rounds: BracketContext, known: np.ndarray) -> BracketContext:
     """For lanes that measure, whatever others of their cells have taken."""
     usual = np.asarray(rounds.cells.tolerance)
-    tight = np.minimum(np.maximum(_TIGHT_MEASURE * usual, _TIGHTEST_MEASURE), usual)
+    tight = np.minimum(
+        np.maximum(SETTINGS.tight_measure * usual, SETTINGS.tightest_measure), usual
+    )
     cells = rounds.cells._replace(tolerance=tight, loosest=tight)
     ground = rounds.ground._replace(fast_slides=known)
     return rounds._replace(ground=ground, cells=cells, effort=no_effort(usual.size))
@@ -219,12 +203,12 @@ def _summed(
 ) -> np.ndarray:
     """Errors that grow by `drift` a well and are forgotten as shifts in time are."""
     curve = slide.curve
-    error, errors = max(gap, _SET_OFF * rounds.accuracy), []
+    error, errors = max(gap, SETTINGS.set_off * rounds.accuracy), []
     for k, wells in enumerate(np.diff(curve.edges)):
         left = curve.kept[k] ** wells
         grown = (1 - left) / (1 - curve.kept[k]) if curve.kept[k] != 1 else wells
         after = error * left + drift[k] * grown + curve.tail[k]
         # NaN of a lane that failed stays: `max` would lose it.
-        errors.append(np.max((error, after, _LEAST_ERROR * rounds.accuracy)))
+        errors.append(np.max((error, after, SETTINGS.least_error * rounds.accuracy)))
         error = after
     return np.array(errors) * np.minimum(pace, 1.0)

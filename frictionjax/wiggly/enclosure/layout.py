@@ -8,12 +8,11 @@ from ...model import Scene
 from ..limit_path import Path, states_at, times_at
 from ..slip_map import ManyTransitTimes, last_begun
 from .brackets import Brackets
-from .requirements import WELLS_A_LEG, Requirements, wells_a_leg
+from .requirements import Requirements, wells_a_leg
 from .sampled_parts import Parts, inner_parts, level_at, sampled, uneven_pieces
 from .segment_ends import Cut, follow_path, segments_of
+from .settings import SETTINGS
 from .starts import way_at
-
-_APART = 1e-12  # of the duration: probes of which each ends a leg
 
 
 class SampledPeriods(NamedTuple):
@@ -118,7 +117,7 @@ def _on_slides(slides: tuple, times: np.ndarray) -> np.ndarray:
     passed = np.zeros(times.size)
     for slide in slides:
         held = np.clip(times, slide.begin, slide.end)
-        passed += np.floor(slide.curve.number_at(held) / WELLS_A_LEG)
+        passed += np.floor(slide.curve.number_at(held) / SETTINGS.most_wells_a_leg)
     return passed
 
 
@@ -210,7 +209,7 @@ def _chains(
     lattice_cell, lattice_time = _lattice(scene, path, eps, needs, parts, stopped)
     edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
     steep = np.unique(path.probes.times[uneven_pieces(path)])
-    apart = np.diff(steep, prepend=-np.inf) > _APART * path.edges[-1]
+    apart = np.diff(steep, prepend=-np.inf) > SETTINGS.apart * path.edges[-1]
     fixed = np.unique(np.concatenate([edges, ts, steep[apart]]))
     cuts = [
         _cut(parts, cell, fixed, lattice_time[lattice_cell == cell]) for cell in chained

@@ -5,12 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..limit_path import Path
-
-WELLS_A_LEG = 16
-_LEG = 0.02  # of the whole way: the guide is a cubic on each leg
-# Wells that one lane alone goes through at most: a minute or two.
-AFFORDABLE = 2e5
-TAIL = 4  # wells before a turning point that are always measured
+from .settings import SETTINGS
 
 
 class Requirements(NamedTuple):
@@ -65,11 +60,11 @@ def longest_lane(path: Path, eps: np.ndarray, needs: Requirements) -> np.ndarray
 def wells_a_leg(path: Path, eps: np.ndarray) -> np.ndarray:
     """Wells between two stops of each cell's lanes, where nothing else stops them."""
     span = max(float(path.travel[-1]), 1e-300)
-    return np.clip(np.floor(_LEG * span / eps), 1, WELLS_A_LEG)
+    return np.clip(np.floor(SETTINGS.leg * span / eps), 1, SETTINGS.most_wells_a_leg)
 
 
 def inner_wells(ways: np.ndarray, needs: Requirements) -> np.ndarray:
     """Wells of each slide of which only some are measured, (cells, pieces)."""
-    inner = np.floor(ways) - np.ceil(needs.transient)[:, None] - TAIL - 1
+    inner = np.floor(ways) - np.ceil(needs.transient)[:, None] - SETTINGS.tail - 1
     samples = needs.samples[:, None]
     return np.where((samples > 0) & (inner > 2 * samples), inner, 0.0)

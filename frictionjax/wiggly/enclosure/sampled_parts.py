@@ -17,16 +17,8 @@ from ..limit_path import (
     times_at,
     unseen_of,
 )
-from .requirements import TAIL, Requirements, inner_wells
-
-# Wells of a part for each node that is measured in it. On fewer, nodes moved to whole wells
-# are no Chebyshev points any more; and behind fast slides periods still change in shape.
-_SPARSE, _FEW = 6, 20
-# Most nodes of a part, over the square root of its wells, and how many there may always be.
-_DENSE, _LEAST = 1.2, 17
-# Of the path's speed: what nodes may miss of it; and halves of halves of a part.
-_EVEN, _HALVINGS = 1e-3, 40
-_STEADY = 2.0  # largest speed over the smallest in such a part
+from .requirements import Requirements, inner_wells
+from .settings import SETTINGS
 
 
 class Parts(NamedTuple):
@@ -86,7 +78,7 @@ def _fast_parts(needs: Requirements, fast_slides: np.ndarray) -> list[tuple]:
         count = needs.samples[c] // 2 + 1
         for index, slide in enumerate(fast_slides[c] if needs.samples[c] > 0 else ()):
             edges, starts = slide.curve.edges, slide.curve.starts
-            for k in np.flatnonzero(np.diff(edges) > _SPARSE * count):
+            for k in np.flatnonzero(np.diff(edges) > SETTINGS.sparse * count):
                 span = edges[k], edges[k + 1], starts[k], starts[k + 1]
                 rows.append((c, slide.piece, *span, index, count))
     return rows
@@ -103,12 +95,15 @@ def _rests_of_slides(
     for (c, slide), at in zip(last, states_at(scene, path, ends), strict=True):
         piece = slide.piece
         way = abs(path.states[piece + 1] - path.states[piece]) / eps[c]
-        first = np.ceil(abs(at - path.states[piece]) / eps[c]) + TAIL
-        past = np.floor(way - needs.lattice_offset[c, piece]) - TAIL
-        if slide.end > path.touch[piece] and past - first > _FEW * needs.samples[c]:
+        first = np.ceil(abs(at - path.states[piece]) / eps[c]) + SETTINGS.tail
+        past = np.floor(way - needs.lattice_offset[c, piece]) - SETTINGS.tail
+        if (
+            slide.end > path.touch[piece]
+            and past - first > SETTINGS.sparse_behind * needs.samples[c]
+        ):
             # Slides turn from fast to slow there: 17 nodes leave 6e-4 eps. Chebyshev's
             # points less than a well apart mean nothing: 129 in 3800 wells left 6e3 m.
-            most = max(_DENSE * np.sqrt(past - first), 2 * _LEAST)
+            most = max(SETTINGS.dense * np.sqrt(past - first), 2 * SETTINGS.least_nodes)
             rows.append((c, piece, first, past, int(min(2 * needs.samples[c], most))))
     return rows
 
@@ -144,7 +139,7 @@ def inner_parts(
 
 def uneven_pieces(path: Path) -> np.ndarray:
     """Pieces on which the path speeds up and slows down between a few nodes, (P,)."""
-    return path.probes.unseen > _EVEN
+    return path.probes.unseen > SETTINGS.even
 
 
 def _joined(parts: list[Parts]) -> Parts:
@@ -164,8 +159,8 @@ def _graded(scene: Scene, path: Path, eps, needs: Requirements, some: Parts) -> 
     0.2 ms, suprema were 6% off, and twice as large in other scenes.
     """
     done = []
-    for _ in range(_HALVINGS):
-        some = _chosen(some, some.last - some.first > _SPARSE * some.nodes)
+    for _ in range(SETTINGS.part_halvings):
+        some = _chosen(some, some.last - some.first > SETTINGS.sparse * some.nodes)
         if some.cell.size == 0:
             break
         known = _is_known(scene, path, some)
@@ -190,7 +185,9 @@ def _is_known(scene: Scene, path: Path, some: Parts) -> np.ndarray:
     unseen = unseen_of(*ends, nodes, times, speeds)
     inside = strictly_between(*ends, times)
     sizes = np.abs(np.concatenate([nodes, np.where(inside, speeds, nodes[:, :1])], axis=1))
-    return (unseen <= _EVEN) & (sizes.max(axis=1) <= _STEADY * sizes.min(axis=1))
+    return (unseen <= SETTINGS.even) & (
+        sizes.max(axis=1) <= SETTINGS.steady * sizes.min(axis=1)
+    )
 
 
 def sampled(

@@ -8,11 +8,7 @@ from ...model import Scene
 from ..lanes import guide_of
 from ..limit_path import Path, states_at
 from .brackets import legs_of
-
-# Of the accuracy, in eps: by how much a leg's guide may be off the path; halvings of a
-# leg, and shares of it at which that is looked for: in the middle odd functions vanish.
-_GUIDE, _HALVINGS, _INSIDE = 0.05, 40, (0.27, 0.62)
-_ROUNDED = 16.0  # roundings of the path's states, which no leg is too long for
+from .settings import SETTINGS
 
 
 class Cut(NamedTuple):
@@ -35,12 +31,14 @@ def follow_path(
     What it is off is added to the deviation of z. (Legs of 16 wells before a turn of the
     load: suprema up to 19 times the accuracy off. A rise by 0.04 N within 6 ms: 0.4 eps.)
     """
-    allowed = np.maximum(_GUIDE * accuracy * eps, _ROUNDED * _rounding_of(path))
+    allowed = np.maximum(
+        SETTINGS.guide * accuracy * eps, SETTINGS.rounded * _rounding_of(path)
+    )
     legs = [_legs_between(cut) for cut in cuts]
     owner = np.repeat(np.arange(len(cuts)), [starts.size for starts, _ in legs])
     starts, ends = (np.concatenate(side) for side in zip(*legs, strict=True))
     owners, middles = [], []
-    for _ in range(_HALVINGS):
+    for _ in range(SETTINGS.leg_halvings):
         off = _off_path(scene, path, starts, ends) > allowed[owner]
         if not off.any():
             break
@@ -82,7 +80,7 @@ def _off_path(scene, path: Path, starts: np.ndarray, ends: np.ndarray) -> np.nda
     """How far the cubics of legs are off the path at some times inside, in m."""
     guide = guide_of(legs_of(scene, path, starts, ends))
     worst = np.zeros(starts.size)
-    for share in _INSIDE:
+    for share in SETTINGS.leg_places:
         times = starts + share * (ends - starts)
         worst = np.maximum(worst, np.abs(guide(times) - states_at(scene, path, times)))
     return worst

@@ -8,14 +8,7 @@ from ...model import Scene
 from ..equation import WiggleFolds
 from ..limit_path import Path, slopes_at, states_at, times_at
 from ..slip_map import FastSlide, ManyTransitTimes, last_begun
-
-ASIDE = 1e-6  # of a stretch of time: where one-sided slopes are taken
-_GAP = 1e-6  # of a well: rounding of z/eps
-FASTER = 1.5  # how much slides may have been faster, squared, where lanes set off
-# Wells: lags that are longer are taken at the speed of the moment. (At the largest speed
-# always: lanes of 300 wells in slow parts of slides at gamma = 0.4, where ten do.)
-_LONG_LAG = 5.0
-_WHOLE = 1e-4  # wells: rounding of times, in numbers of wells
+from .settings import SETTINGS
 
 
 class CellBounds(NamedTuple):
@@ -123,7 +116,7 @@ def starts_of(
     slide = np.flatnonzero(~known)
     share = np.ones(begin.size)
     share[slide] = slow_share(scene, path, time[slide], level[slide])
-    share = np.where(lag > _LONG_LAG * eps, share, 1.0)
+    share = np.where(lag > SETTINGS.long_lag * eps, share, 1.0)
     before = slides, which = last_begun(ground.fast_slides, cell, begin)
     lagging = _still_lagging(path, slides, which, time)
     share = np.where(lagging, 1.0, share)
@@ -178,7 +171,9 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
     curves = ManyTransitTimes([slide.curve for slide in slides])
     rows = [(r.sign, r.well, r.tip, r.curve.edges[0], r.end) for r in slides]
     sign, well, tip, first, end = np.array(rows)[which].T
-    number = np.floor(curves.number_at(which, np.minimum(begin, end)) + _WHOLE) - back
+    number = (
+        np.floor(curves.number_at(which, np.minimum(begin, end)) + SETTINGS.whole) - back
+    )
     number = np.maximum(number, first)
     error = np.zeros(which.size)
     if measured:
@@ -196,10 +191,12 @@ def slow_share(scene: Scene, path: Path, time: np.ndarray, state: np.ndarray) ->
 
     Both grow with the square of the speed; slides may have been faster a moment before.
     """
-    before = time - ASIDE * path.edges[-1]  # a slide may end at full speed, in a kink
+    before = (
+        time - SETTINGS.aside * path.edges[-1]
+    )  # a slide may end at full speed, in a kink
     both = [slopes_at(scene, path, t, state) for t in (time, np.maximum(before, 0.0))]
     share = np.max(np.abs(both), axis=0) / (path.speed or 1.0)  # nothing slides at 0
-    return np.minimum(FASTER * share**2, 1.0)
+    return np.minimum(SETTINGS.faster * share**2, 1.0)
 
 
 def _brackets(ground: CellBounds, cell, direction, level, known, share):
@@ -216,8 +213,8 @@ def _brackets(ground: CellBounds, cell, direction, level, known, share):
     # Mirrored for slides to the left, so that the tip moves up in both.
     sign = np.where(up, 1.0, -1.0)
     at = sign * (level - fold) / eps
-    ahead = np.ceil(at + shift / eps + _GAP)
-    behind = np.floor(at - (shift + lag) / eps - _GAP) - 1
+    ahead = np.ceil(at + shift / eps + SETTINGS.gap)
+    behind = np.floor(at - (shift + lag) / eps - SETTINGS.gap) - 1
     start_well, start_tip = ground.start_well[cell], ground.start_tip[cell]
     tip = np.where(known, start_tip, place)
     return (

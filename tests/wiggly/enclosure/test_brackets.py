@@ -335,8 +335,8 @@ def test_a_far_start_is_not_forgotten_before_it_has_relaxed(z0):
 
 def test_too_much_to_integrate_is_a_status(monkeypatch):
     """A bracket that stays open, at an eps where every slip is too many."""
-    monkeypatch.setattr(rounds, "ROUNDS", 1)
-    monkeypatch.setattr(rounds, "CLOSED", 0.0)
+    never = rounds.SETTINGS._replace(rounds=1, closed=0.0)
+    monkeypatch.setattr(rounds, "SETTINGS", never)
     found = cells(scene_of(), 1e-7, 1.0, "windowed")
     assert found.status[0] == fx.Status.OPEN_BRACKET
     assert np.all(np.isnan(found.z))

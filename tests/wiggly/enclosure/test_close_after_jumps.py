@@ -5,7 +5,8 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.wiggly.enclosure.brackets import BracketPlan
-from frictionjax.wiggly.enclosure.close import PATIENCE, BracketContext, no_effort
+from frictionjax.wiggly.enclosure.close import BracketContext, no_effort
+from frictionjax.wiggly.enclosure.settings import SETTINGS
 from frictionjax.wiggly.enclosure.starts import CellBounds
 from frictionjax.wiggly.lanes.queue import Lanes, SegmentEnds, Segments
 from frictionjax.wiggly.limit_path.find_path import path_of
@@ -60,14 +61,18 @@ def test_cells_wait_for_lanes_that_go_astray_so_long_only():
     plan = BracketPlan(jobs, legs, none, none, none, none, known, known, none, none)
     able, some = rounds._within_patience(plan)
     assert able.all()
-    beyond = some.legs.budget - PATIENCE
-    assert beyond == pytest.approx([1e9 - PATIENCE, 0, 0, 200 * 10, 0, 0], abs=1e-6)
-    steps = PATIENCE * np.array([5.0, 0.6, 0.2, 0.3, 0.4, np.nan])
+    beyond = some.legs.budget - SETTINGS.patience
+    assert beyond == pytest.approx(
+        [1e9 - SETTINGS.patience, 0, 0, 200 * 10, 0, 0], abs=1e-6
+    )
+    steps = SETTINGS.patience * np.array([5.0, 0.6, 0.2, 0.3, 0.4, np.nan])
     found = SegmentEnds(*np.tile(steps, (len(SegmentEnds._fields), 1)))._replace(code=none)
     waited = rounds._waited(plan, found)
-    assert waited == pytest.approx(PATIENCE * np.array([0.3, 0.6, 0.2]), abs=2000.1)
+    assert waited == pytest.approx(
+        SETTINGS.patience * np.array([0.3, 0.6, 0.2]), abs=2000.1
+    )
     gave_up = found._replace(code=np.array([0, 0, 0, 1.0, 0, 0]))
-    assert rounds._waited(plan, gave_up)[0] == 0.3 * PATIENCE
+    assert rounds._waited(plan, gave_up)[0] == 0.3 * SETTINGS.patience
     twice = rounds.effort._replace(waited=2 * waited)
     able = rounds._replace(effort=twice)._within_patience(plan)[0]
     assert able.tolist() == [True, False, True, True, False, True]

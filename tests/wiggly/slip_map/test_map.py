@@ -217,7 +217,8 @@ def test_errors_of_a_wrong_map_are_seen(monkeypatch):
         return found._replace(length=found.length * (1 + 1e-4))
 
     scene, eps, gamma = SCENES["sine"], 1e-6, 0.5
-    monkeypatch.setattr(engine, "AFFORDABLE", 0.0)
+    none_alone = engine.ENCLOSURE_SETTINGS._replace(affordable=0.0)
+    monkeypatch.setattr(engine, "ENCLOSURE_SETTINGS", none_alone)
     monkeypatch.setattr(slip_map, "transit_times", wrong)
     found = fx.solve(scene, eps, gamma, TIMES)
     assert found.status != fx.Status.OK or np.max(found.stats["bracket"]) > 5e-4

@@ -1,0 +1,100 @@
+"""How far back lanes set off, how long they may take, what closes: with what lost."""
+
+from typing import NamedTuple
+
+
+class Settings(NamedTuple):
+    """Lengths in wells, tolerances and gaps of the accuracy, unless said otherwise."""
+
+    # Rounds (`close.py`).
+    closed: float = 0.5  # of the accuracy: gaps of brackets accepted
+    rounds: int = 3
+    earlier: int = 4  # times as far back in each round
+    margin: int = 3  # one to fall behind, one to catch up, one to forget
+    # Windows that set off further back look at how fast slides are.
+    long_memory: float = 100.0
+    fast: float = 0.35  # steps a well where tips do not rest, of those elsewhere
+    longest_job: float = 1.5  # times what its longest job takes: the shortest batch
+    batch: float = 1e5  # a few seconds, between two reports
+    # Steps beyond those for the wells of the path, of the longest lane in each march, added
+    # up, that a cell may wait for in an attempt: 2 to 8 seconds. One lane alone, where that
+    # is affordable, has its own budget. (Two knocks of 5 ms, gamma = 1/2, eps = 1e-5: where
+    # tips do not follow, lanes went through 40 times the wells of the path, for maps that
+    # never begin, and there was no answer in 10 minutes.)
+    patience: float = 2e6
+    path_steps: float = 200.0  # for a well of the path
+
+    # Budgets of a lane (`brackets.py`). Steps are 10 to 200 a well.
+    lane_steps: int = 2000  # for a well
+    some_wells: int = 100  # more than the path's: lags let lanes pass through more
+    # For a well that tips are behind by, which took 130 (gamma = 3/4).
+    steps_behind: int = 500
+    # Of a lane whose errors hardly add up, or that it remembers, twice.
+    brief: float = 20.0
+
+    # What counts as closed (`closeness.py`).
+    slow_slip: float = 0.03  # of the largest speed: a slip's on a path that rests
+    slip: float = 10.0  # times the path's speed: faster tips are in a slip
+    # Of the path's speed: tips that are slower hang on a branch and forget there.
+    creep: float = 1e-2
+
+    # Requirements (`requirements.py`).
+    most_wells_a_leg: int = 16
+    leg: float = 0.02  # of the whole way: the guide is a cubic on each leg
+    affordable: float = 2e5  # for one lane alone, at most: a minute or two
+    tail: int = 4  # before a turning point, always measured
+
+    # Stretches and their ends (`layout.py`, `segment_ends.py`).
+    apart: float = 1e-12  # of the duration: probes of which each ends a leg
+    rounded: float = 16.0  # roundings of the path's states, which no leg is too long for
+    guide: float = (
+        0.05  # of the accuracy, in eps: how far a leg's guide may be off the path
+    )
+    leg_halvings: int = 40
+    # Shares of a leg at which that is looked for: in the middle odd functions vanish.
+    leg_places: tuple[float, float] = (0.27, 0.62)
+
+    # Starts (`starts.py`).
+    aside: float = 1e-6  # of a stretch of time: where one-sided slopes are taken
+    gap: float = 1e-6  # rounding of z/eps
+    faster: float = 1.5  # how much slides may have been, squared, where lanes set off
+    # Lags that are longer are taken at the speed of the moment. (At the largest speed
+    # always: lanes of 300 wells in slow parts of slides at gamma = 0.4, where ten do.)
+    long_lag: float = 5.0
+    whole: float = 1e-4  # rounding of times, in numbers of wells
+
+    # Parts of slides that are sampled (`sampled_parts.py`).
+    # For each node that is measured. On fewer, nodes moved to whole wells are no Chebyshev
+    # points any more.
+    sparse: int = 6
+    sparse_behind: int = 20  # behind fast slides, where periods still change in shape
+    dense: float = 1.2  # most nodes of a part, over the square root of its wells
+    least_nodes: int = 17  # that there may always be
+    even: float = 1e-3  # of the path's speed: what nodes may miss of it
+    part_halvings: int = 40  # halves of halves of a part
+    steady: float = 2.0  # largest speed over the smallest in such a part
+
+    # What slip maps ask (`finder.py`).
+    # Tolerance of the lanes that measure a slip map, of the tolerance of others. (gamma =
+    # 1/2, eps 1e-3 to 1e-4, accuracy 1e-3: the same errors of maps from 1e-11 to 3e-8, in a
+    # third of the steps; others add up to as much as 0.02.)
+    tight_measure: float = 0.05
+    # The tightest that is of use. (At accuracy 1e-6 brackets of eps = 1.3e-5 stay open with
+    # 1e-10 at least.)
+    tightest_measure: float = 1e-12
+    tight_look: float = 0.2  # of the tolerance: lanes that lead to the start of a slip map
+    # Error of a map at its start, as lanes leave it. (At 0.1 brackets of times in the first
+    # wells of a slide stayed open where the tip was nearly in a slip.)
+    set_off: float = 0.02
+    least_error: float = 0.01
+    # Share of the accuracy that rounding may take in a measurement of a slip map.
+    noise: float = 0.03
+    # That lanes go through for a measurement, at most. (eps = 1e-8, gamma = 1/4: lanes of a
+    # twentieth of the wells find the same errors, in a third of the steps, where the
+    # rounding of times is taken off, eight times larger ones where it is not; two wells
+    # everywhere find 3.5 times larger ones.)
+    most_checked: float = 400.0
+    of_loads: float = 0.05  # of a spacing of times: what rounding of loads takes
+
+
+SETTINGS = Settings()
