@@ -11,6 +11,7 @@ from .field import TipField as TipField
 from .landscape import WiggleFolds as WiggleFolds
 from .series_bristle import SeriesBristle as SeriesBristle
 from .series_bristle import power_series_of as power_series_of
+from .settings import SETTINGS as SETTINGS
 from .status import ENDED as ENDED
 from .status import FLAGS as FLAGS
 from .status import FailedCells as FailedCells
@@ -22,6 +23,5 @@ from .step_plan import accuracies_of as accuracies_of
 from .step_plan import plan_steps as plan_steps
 from .step_plan import pull_of as pull_of
 from .step_plan import require_accuracy as require_accuracy
-from .step_sizes import PER_OCTAVE as PER_OCTAVE
 from .step_sizes import log2 as log2
 from .step_sizes import step_of as step_of

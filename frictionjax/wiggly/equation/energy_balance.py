@@ -9,18 +9,8 @@ from jaxtyping import Array, Bool
 from ..._checks import Real
 from ...numerics import cubic, cubic_slope
 from .field import Point, TipField
+from .settings import SETTINGS
 
-# Distance in periods from its equilibrium up to which a rest counts as one: tolerances are
-# up to 1e-4, and 1e-6 with a viscosity of 1e-12 would look like a residual of 0.1 slips.
-_AT_REST = 1e-4
-_NEAR = 1e-2  # periods from a rest: up to there forces are linear
-_STEEP, _SWING = 10.0, 1e-3  # times the way, and periods: slopes times the step, at most
-_TWIST = 0.5  # of the steeper slope: what no parabola has of both, where they are no spike
-_STIFF = 3.0  # steps longer than this many relaxation times count as rest
-# Errors of a dissipation: of the direct sum, over the root of residual and dissipation (at
-# most, in 99.9% of random scenes with few slips); of energies, over accuracy, eps and what
-# the load goes (the same or fewer out anywhere from 3e-5 to 3e-4), and rounding.
-_OF_SUM, _OF_ENERGIES, _ROUNDING = 0.25, 1e-4, 1e-15
 _NODES = (0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5)  # two-point Gauss on [0, 1]
 
 
@@ -50,10 +40,10 @@ def slopes_between(
     """
     slope0, _ = _end_slope(start, step)
     slope1, rest = _end_slope(end, step)
-    chord, steepest = way / step, (_STEEP * jnp.abs(way) + _SWING) / step
+    chord, steepest = way / step, (SETTINGS.steep * jnp.abs(way) + SETTINGS.swing) / step
     size0, size1 = jnp.abs(slope0), jnp.abs(slope1)
     twist = jnp.abs(slope0 + slope1 - 2 * chord)
-    spiked = twist > _TWIST * jnp.maximum(size0, size1)
+    spiked = twist > SETTINGS.twist * jnp.maximum(size0, size1)
     slope0 = jnp.where(spiked & (size0 > steepest), chord, slope0)
     slope1 = jnp.where(spiked & (size1 > steepest), chord, slope1)
     return slope0, slope1, rest
@@ -66,7 +56,7 @@ def _end_slope(point: Point, step: Real) -> tuple[Real, Bool[Array, ""]]:
     over a long step swings the interpolant by up to half a period at gamma = 2. The
     slope of the equilibrium branch, -y'_t/y'_y, is what the solution follows.
     """
-    rest = -step * point.by_state > _STIFF
+    rest = -step * point.by_state > SETTINGS.stiff
     branch = -point.by_time / jnp.where(rest, point.by_state, 1.0)
     return jnp.where(rest, branch, point.velocity), rest
 
@@ -82,7 +72,7 @@ def _settled(point: Point, step: Real) -> tuple[Real, Real]:
     rate = jnp.where(rest, -point.by_state, 1.0)
     off = point.velocity - slope
     left = off / rate
-    near = rest & (jnp.abs(left) < _NEAR)
+    near = rest & (jnp.abs(left) < SETTINGS.near)
     return jnp.where(near, left, 0.0), jnp.where(near, left * (0.5 * off + 2 * slope), 0.0)
 
 
@@ -137,7 +127,7 @@ def advance(
     drag = viscosity * field.eps * end.stretch
     at_end = drag * (slope1 - end.velocity)
     missing = jnp.abs(slope1 - end.velocity) / jnp.where(rest, jnp.abs(end.by_state), 1.0)
-    settled = jnp.where(missing < _AT_REST, 0.0, 0.5 * step * at_end**2 / viscosity)
+    settled = jnp.where(missing < SETTINGS.at_rest, 0.0, 0.5 * step * at_end**2 / viscosity)
     defect = jnp.where(rest, settled, defect)
     return Balance(
         work=balance.work + work,
@@ -183,8 +173,8 @@ def errors_of_sums(
     out by the direct sum, 9 by energies, 113 by the sum where less than a tenth of eps
     pulled is dissipated, 8 by this.)
     """
-    of_sum = _OF_SUM * abs(residual * viscous) ** 0.5  # surveys may undershoot 0
-    return Errors(of_sum, _OF_ENERGIES * unit * pulled + _ROUNDING * size)
+    of_sum = SETTINGS.of_sum * abs(residual * viscous) ** 0.5  # surveys may undershoot 0
+    return Errors(of_sum, SETTINGS.of_energies * unit * pulled + SETTINGS.rounding * size)
 
 
 def dissipated(

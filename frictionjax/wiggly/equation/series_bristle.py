@@ -8,12 +8,7 @@ from jaxtyping import Array, Float
 from ..._checks import Real
 from ..._compile import Program
 from ...bristles import AbstractBristle
-
-_NODES = 16
-# Degrees that get a program of their own: one for each would compile too often. The
-# paper's linear springs need 1, its angular spring 3 to 6 at slopes of 0.1 and eps = 0.1.
-_DEGREES = (1, 4, 8)
-_ROUNDING = 1e-14  # of the largest value: coefficients below are left out
+from .settings import SETTINGS
 
 
 class SeriesBristle(AbstractBristle):
@@ -51,16 +46,16 @@ def _slopes(bristle: AbstractBristle, etas: Array) -> tuple[Array, Array]:
 
 def power_series_of(bristle: AbstractBristle, highest: float) -> AbstractBristle:
     """The bristle as a series for |eta| <= `highest` (m); itself where none converges."""
-    nodes = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
+    nodes = np.cos(np.pi * (np.arange(SETTINGS.series_nodes) + 0.5) / SETTINGS.series_nodes)
     values = [np.asarray(v) for v in _slopes(bristle, nodes * highest)]
-    vandermonde = np.polynomial.chebyshev.chebvander(nodes, _NODES - 1)
+    vandermonde = np.polynomial.chebyshev.chebvander(nodes, SETTINGS.series_nodes - 1)
     found = [np.linalg.solve(vandermonde, v) for v in values]
     sizes = [max(float(np.max(np.abs(v))), 1e-300) for v in values]
     needed = max(
-        int(np.max(np.flatnonzero(np.abs(f) > _ROUNDING * size), initial=0))
+        int(np.max(np.flatnonzero(np.abs(f) > SETTINGS.negligible * size), initial=0))
         for f, size in zip(found, sizes, strict=True)
     )
-    degree = next((d for d in _DEGREES if d >= needed), None)
+    degree = next((d for d in SETTINGS.degrees if d >= needed), None)
     if degree is None or not all(np.all(np.isfinite(v)) for v in values):
         return bristle
     ahead, climb = (np.polynomial.chebyshev.cheb2poly(f[: degree + 1]) for f in found)

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from ..._checks import Outcome
+from .settings import SETTINGS
 
 
 class Status(Outcome):
@@ -35,9 +36,6 @@ def status_of(code: int) -> Status:
     return _BY_CODE[code]
 
 
-_NAMED = 4  # cells in the text of a warning
-
-
 class FailedCells(UserWarning):
     """Some cells of a data set have numbers that cannot be trusted, or none."""
 
@@ -57,9 +55,11 @@ def warn_of_failed(
         return
     named = [
         f"gamma = {gamma[i]:.6g}, eps = {eps[j]:.6g}: {status_of(int(codes[i, j])).name}"
-        for i, j in failed[:_NAMED].tolist()
+        for i, j in failed[: SETTINGS.named].tolist()
     ]
-    more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
+    more = (
+        f" and {len(failed) - SETTINGS.named} more" if len(failed) > SETTINGS.named else ""
+    )
     message = status_of(int(codes[tuple(failed[0])])).message
     warnings.warn(
         f"{len(failed)} of {codes.size} cells failed ({'; '.join(named)}{more}), the first "

@@ -12,48 +12,11 @@ from ..._checks import Real, known_numbers, require, require_real
 from ...loads import steep_times
 from ...model import Coefficients, Scene, coefficients, load_range
 from .landscape import Landscape, WiggleFolds, landscape
-
-# At 100 and 0.1 below, errors at gamma = 0.65 were 1.6 times as large, and 3e-3 eps where
-# 1e-3 was asked for, for 7% fewer steps.
-_SAFETY = 200.0
-_LOOSEST = 1e-4  # looser ones save little (46 steps a slip for 58): guard and folds rule
-# Share of the way to a fold, half a percent of a slip period before it, that one step may
-# err by. At 0.6 slips came up to 3% of a period early, with closed brackets (eps = 1e-5 to
-# 1e-7, gamma = 2); at 0.2 none did.
-_FOLD = 0.03
-# Speed at folds below which tolerances are tighter in proportion, where slips add up. At
-# gamma = 1/2, eps = 1e-4 (0.006) errors were 2.4e-3 eps without, where 1e-3 was asked for.
-_CREEP = 0.025
-_BEFORE = 0.005  # a slip, in slip periods: the last instants that count as outside it
-# Half a percent of a period before a slip the tip runs up to five times as fast as the
-# slide, and an error of a step is one in time: tolerances are tighter by this share of
-# that speed over the one at the fold. Without, errors of such instants were up to 3.9
-# times the accuracy asked for (slanted spring, gamma = 3/4, eps = 1e-4, accuracy 1e-6);
-# at 0.007 up to 1.7. Steps of windows: 1% more at gamma = 1, 4 to 9% at 3/4.
-_HASTE = 0.012
-_FASTEST_COUNTED = 5.0  # slide speeds: instants with a faster tip are inside a slip
-_LEAST_ASKED = 1e-10  # eps
-_TIGHTEST = 1e-13
-# Errors of a few slips, added up; those of all add up to 1e4 at eps = 1e-8, gamma = 1/4. At
-# 4, surveys at gamma = 0.4 were 4e-3 eps off; 16 to 500 gave the same to 1e-5 eps.
-_FEW_ADD = 30.0
-# Of the accuracy: error of a step in the middle of a slip. At 0.2 steps are 4% fewer, and
-# brackets at eps = 1e-8 stay open.
-_IN_SLIPS = 0.05
-# Wells of a slide from which on its dissipation is as good as its states, and the tightest
-# tolerance for fewer, over that. (What is dissipated within a well, on the way from one
-# rest to the next, was 2e-5 off where 1e-5 was asked for, and 1.4e-6 where 1e-6 was.)
-# In slides of few wells on supports that hold the tip, and where nothing slides, less than
-# a hundredth of a slip is: up to 100 times the accuracy off with the share of the wells
-# itself, 1e-2 at least; 0.16 with its power 3/2, 1e-4 at least, for twice the steps.
-_MANY_WELLS, _FEWEST, _POWER = 100.0, 1e-4, 1.5
-_ROUGHEST = 1e-2  # of it, where tolerances are near the rounding of z
-_ROUNDED = 2e-11  # over |z|: tolerances times `_SAFETY` that are near it
-_DOUBLE_SPACING = 2.0**-50  # shortest step over the duration: four spacings of floats
+from .settings import SETTINGS
 
 
 def require_accuracy(
-    accuracy: Any, name: str = "accuracy", least: float = _LEAST_ASKED
+    accuracy: Any, name: str = "accuracy", least: float = SETTINGS.least_asked
 ) -> None:
     """Check the accuracy asked for."""
     allowed = f"{least:.0e} <= {name} <= 1 (error of z in units of eps)"
@@ -61,7 +24,7 @@ def require_accuracy(
 
 
 def accuracies_of(
-    accuracies: Any, least: float = _LEAST_ASKED
+    accuracies: Any, least: float = SETTINGS.least_asked
 ) -> Float[np.ndarray, " accuracies"]:
     """Accuracies asked for, one or several, each once and rising.
 
@@ -143,7 +106,7 @@ def _way_to_fold(ground: Landscape, pull: PullRange, eps: Real, gamma: Real) -> 
     the curvature.
     """
     bend = jnp.maximum(0.5 * ground.fold_curvature, 1e-300)
-    at_rest = jnp.sqrt(_BEFORE * pull.softest * eps / bend)
+    at_rest = jnp.sqrt(SETTINGS.before * pull.softest * eps / bend)
     return jnp.maximum(at_rest, 0.3 * _width_of_fold(ground, pull, eps, gamma))
 
 
@@ -175,9 +138,9 @@ def _adding(
     of width s and time s/pace ends like `s^2/(pace (t* - t))`.
     """
     pace = _pace_at_fold(ground, pull, eps, gamma)
-    creep = jnp.minimum(memory, 1.0) * _CREEP / pace
-    before = _width_of_fold(ground, pull, eps, gamma) ** 2 / (pace * _BEFORE**2)
-    haste = _HASTE * jnp.minimum(before, _FASTEST_COUNTED) / pace
+    creep = jnp.minimum(memory, 1.0) * SETTINGS.creep / pace
+    before = _width_of_fold(ground, pull, eps, gamma) ** 2 / (pace * SETTINGS.before**2)
+    haste = SETTINGS.haste * jnp.minimum(before, SETTINGS.fastest_counted) / pace
     return jnp.maximum(jnp.sqrt(1 + memory) * jnp.maximum(creep, 1.0), haste)
 
 
@@ -187,9 +150,11 @@ def _of_few_wells(way: Real, start: Real, accuracy: Real) -> Real:
     `way`: wells that the limit moves through one way at most; `start`: wells from the
     origin at t = 0.
     """
-    share = way / _MANY_WELLS
-    near = jnp.minimum(_ROUNDED * (start + way) / accuracy, jnp.clip(share, _ROUGHEST, 1.0))
-    return jnp.maximum(jnp.clip(share**_POWER, _FEWEST, 1.0), near)
+    share = way / SETTINGS.many_wells
+    near = jnp.minimum(
+        SETTINGS.rounded * (start + way) / accuracy, jnp.clip(share, SETTINGS.roughest, 1.0)
+    )
+    return jnp.maximum(jnp.clip(share**SETTINGS.power, SETTINGS.fewest, 1.0), near)
 
 
 def plan_steps(
@@ -206,19 +171,19 @@ def plan_steps(
     stretch = jnp.maximum(1.0, ground.stretch)
     adding = _adding(ground, pull, eps, gamma, memory)
     few = _of_few_wells(pull.way / eps, jnp.abs(scene.z0) / eps, accuracy)
-    share = few * accuracy / (_SAFETY * stretch)
-    at_folds = _FOLD * _way_to_fold(ground, pull, eps, gamma)
+    share = few * accuracy / (SETTINGS.safety * stretch)
+    at_folds = SETTINGS.fold * _way_to_fold(ground, pull, eps, gamma)
     held = eps * scene.support.stiffness_at(scene.z0)
     relaxation = eps ** (gamma + 1) / jnp.maximum(ground.steepest, held)
-    shortest = _DOUBLE_SPACING * scene.duration
+    shortest = SETTINGS.double_spacing * scene.duration
     first = jnp.clip(1e-2 * relaxation, 2 * shortest, 1e-2 * scene.duration)
     tolerance, brief = (
-        jnp.clip(jnp.minimum(share / many, at_folds), _TIGHTEST, _LOOSEST)
-        for many in (adding, jnp.minimum(adding, _FEW_ADD))
+        jnp.clip(jnp.minimum(share / many, at_folds), SETTINGS.tightest, SETTINGS.loosest)
+        for many in (adding, jnp.minimum(adding, SETTINGS.few_add))
     )
     plan = StepPlan(
         tolerance=tolerance,
-        loosest=jnp.maximum(tolerance, _IN_SLIPS * few * accuracy / stretch),
+        loosest=jnp.maximum(tolerance, SETTINGS.in_slips * few * accuracy / stretch),
         brief=brief,
         pace=jnp.where(pull.fastest > 0, pull.fastest / (pull.softest * eps), jnp.inf),
         reach=0.25 * ground.branch,

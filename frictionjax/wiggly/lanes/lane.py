@@ -11,8 +11,8 @@ from ..._checks import Real
 from ...loads import AbstractLoad
 from ...model import AbstractPotential
 from ...supports import AbstractSupport
+from ..equation import SETTINGS as EQUATION_SETTINGS
 from ..equation import (
-    PER_OCTAVE,
     Balance,
     Point,
     Status,
@@ -29,7 +29,7 @@ from .running_extrema import Extent, Guide, leave, spend, widen
 from .settings import SETTINGS
 from .step_control import Control, StepVerdict, judge
 
-_LOWEST_LEVEL = SETTINGS.lowest_octave * PER_OCTAVE
+_LOWEST_LEVEL = SETTINGS.lowest_octave * EQUATION_SETTINGS.per_octave
 
 
 class LaneCells(NamedTuple):

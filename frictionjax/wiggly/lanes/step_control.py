@@ -14,7 +14,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool
 
 from ..._checks import Real
-from ..equation import PER_OCTAVE, log2
+from ..equation import SETTINGS as EQUATION_SETTINGS
+from ..equation import log2
 from .materialise import materialise
 from .settings import SETTINGS
 
@@ -87,5 +88,5 @@ def judge(
         SETTINGS.least_change,
         jnp.where(accepted, SETTINGS.most_change, SETTINGS.rejected),
     )
-    level = jnp.floor(PER_OCTAVE * (size + change) + 1e-4)
+    level = jnp.floor(EQUATION_SETTINGS.per_octave * (size + change) + 1e-4)
     return StepVerdict(accepted, level, share - size)

@@ -6,7 +6,7 @@ import diffrax
 import jax.numpy as jnp
 from jaxtyping import Array
 
-from ..equation import PER_OCTAVE
+from ..equation import SETTINGS as EQUATION_SETTINGS
 from .wrapped import AbstractWrappedController
 
 
@@ -61,5 +61,7 @@ class RoundedSteps(AbstractWrappedController):
 
 def _round_down(step: Any) -> Array:
     # A hair above the grid point counts as on it: products of grid steps land there.
-    level = jnp.floor(PER_OCTAVE * jnp.log2(jnp.maximum(step, 1e-300)) + 1e-6)
-    return jnp.exp2(level / PER_OCTAVE)
+    level = jnp.floor(
+        EQUATION_SETTINGS.per_octave * jnp.log2(jnp.maximum(step, 1e-300)) + 1e-6
+    )
+    return jnp.exp2(level / EQUATION_SETTINGS.per_octave)
