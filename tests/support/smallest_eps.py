@@ -4,7 +4,7 @@ import numpy as np
 
 import frictionjax as fx
 from frictionjax.model.scene import _TOLD_APART, _farthest
-from frictionjax.wiggly.sums.results import _RESIDUAL_SHARE
+from frictionjax.wiggly.sums.settings import SETTINGS
 
 _KINKS = [0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 1.0, -1.0]
 SMALLEST = {
@@ -67,5 +67,5 @@ def statuses_of(name: str, gammas=GAMMAS) -> tuple[np.ndarray, np.ndarray]:
     scene = SMALLEST[name]
     ts = np.linspace(0.0, float(scene.duration), 7)
     data = fx.sweep(scene, eps_of(scene), gammas, ts)
-    allowed = _RESIDUAL_SHARE * np.maximum(data.dissipation.values[..., -1], 1e-300)
+    allowed = SETTINGS.residual * np.maximum(data.dissipation.values[..., -1], 1e-300)
     return data.status.values, data.residual.values / allowed

@@ -7,9 +7,8 @@ import numpy as np
 from ..enclosure import Brackets, Layout, SampledPeriods
 from ..equation import Errors, errors_of_sums
 from ..limit_path import DEFICIT, RESIDUAL, SURPLUS, VISCOUS, WORK, Path, SampledSlide
+from .settings import SETTINGS
 from .stop_values import StopValues
-
-_NO_SLIPS = 0.1  # dissipation over eps times what the load goes: less where nothing folds
 
 
 class CellWay(NamedTuple):
@@ -137,7 +136,7 @@ def _is_summed(cell: CellWay, errors: Errors, path: Path, eps: float) -> bool:
 
     Not over surveyed slides with slips: those drift across the ends of periods.
     """
-    few = cell.totals[VISCOUS, -1] < _NO_SLIPS * eps * path.pulled
+    few = cell.totals[VISCOUS, -1] < SETTINGS.no_slips * eps * path.pulled
     return bool(errors.sum_is_closer and (few or not cell.surveys))
 
 

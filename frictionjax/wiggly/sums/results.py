@@ -17,9 +17,8 @@ from .cell_sums import (
     no_energetics,
     way_of,
 )
+from .settings import SETTINGS
 from .stop_values import sampled_slides_at, states_at_stops, stop_values_of
-
-_RESIDUAL_SHARE = 0.05  # of the energy dissipated; solutions leave about 1e-6 of it
 
 
 class CellResults(NamedTuple):
@@ -142,6 +141,6 @@ def _status(cell, stops, layout, found, output, path, eps, balanced) -> int:
     if balanced:
         slip = eps * path.width
         _, viscous, residual = cell.totals[:, -1]
-        if not residual <= _RESIDUAL_SHARE * (slip + viscous):
+        if not residual <= SETTINGS.residual * (slip + viscous):
             return int(Status.UNBALANCED)
     return int(Status.OK)

@@ -11,8 +11,7 @@ from ..._compile import Program, in_chunks
 from ...model import Scene
 from ..enclosure import BracketValues, Layout, SampledPeriods
 from ..limit_path import SURPLUS, WORK, SampledSlide, sampled_slides_of
-
-_CHUNK = 2048  # stops of one compiled call
+from .settings import SETTINGS
 
 
 @Program
@@ -32,7 +31,7 @@ def _energies(scene: Scene, eps, well, tip, t, guide):
 
 def states_at_stops(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, ...]:
     """z in m at stops, E_eps of z less E of the guide, and the size of its parts, in J."""
-    return tuple(in_chunks(_energies, _CHUNK, (scene,), (eps, well, tip, t, guide)))
+    return tuple(in_chunks(_energies, SETTINGS.stops, (scene,), (eps, well, tip, t, guide)))
 
 
 class StopValues(NamedTuple):
