@@ -15,12 +15,8 @@ from .augmented_solver import augmented_field
 from .replay_steps import ReplaySteps
 from .rounded_steps import RoundedSteps
 from .segment_adjoint import segment_adjoint
+from .settings import SETTINGS
 from .well_guard import WellGuard
-
-# Steps of a piece, all of which are kept for derivatives in reverse mode, and how many more
-# there is room for when it is made again, with other roundings. Memory of all is cleared
-# for each piece: 2^14 took 1.3 to 2.3 times as long.
-_STEPS, _MORE = 3840, 256
 
 
 class Checkpoint(NamedTuple):
@@ -108,7 +104,7 @@ def checkpoints_at(
     if adjoint:
         piece = partial(_piece, *parts, max_steps, max_steps, adjoint)
         return jax.lax.scan(lambda f, stop: (piece(f, stop),) * 2, start, stops)[1]
-    steps = max_steps, min(max_steps, _STEPS)
+    steps = max_steps, min(max_steps, SETTINGS.piece)
     forth = partial(_piece, *parts, *steps, diffrax.RecursiveCheckpointAdjoint(1))
     pieces = (
         eqx.filter_closure_convert(piece, start, stops[0])
@@ -165,7 +161,7 @@ def _again(
 
     Where there is no room for them all, `t` is NaN.
     """
-    room = _STEPS + _MORE
+    room = SETTINGS.piece + SETTINGS.more
     every = diffrax.RecursiveCheckpointAdjoint(checkpoints=room)
     still = jax.tree_util.tree_map(
         lambda leaf: jax.lax.stop_gradient(leaf) if eqx.is_inexact_array(leaf) else leaf,

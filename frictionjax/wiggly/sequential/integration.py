@@ -18,10 +18,10 @@ from .checkpoints import (
     first_of,
     times_of_stops,
 )
+from .settings import SETTINGS
 from .solvers_by_name import with_tolerance
 
-MAX_STEPS = 2**30  # a bound, not a buffer: nothing is allocated for it
-_RESIDUAL_SHARE = 0.05  # of the energy dissipated; solutions leave about 1e-6 of it
+MAX_STEPS = SETTINGS.max_steps
 
 
 class Trajectory(NamedTuple):
@@ -133,6 +133,6 @@ def _slip_energy(scene: Scene, eps: Real) -> Real:
 
 def _with_balance(status: Array, scene: Scene, eps: Real, final: Balance) -> Array:
     """A residual of more than a share of the energy of every slip made is a failure."""
-    allowed = _RESIDUAL_SHARE * (_slip_energy(scene, eps) + final.viscous)
+    allowed = SETTINGS.residual * (_slip_energy(scene, eps) + final.viscous)
     closes = final.residual <= allowed
     return jnp.where((status == Status.OK) & ~closes, int(Status.UNBALANCED), status)

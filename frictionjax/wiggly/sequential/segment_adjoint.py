@@ -16,8 +16,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int, PyTree
 
 from ..._checks import Real
-
-MOST_PIECES = 2**12  # kept for derivatives; through more than that they are NaN
+from .settings import SETTINGS
 
 
 class Log(NamedTuple):
@@ -44,12 +43,12 @@ def segment_adjoint(parts: tuple, goes_on: Callable[[PyTree, Real], Array]) -> P
 def _travel_and_log(perturbed: PyTree, parts: tuple, goes_on: Any) -> tuple:
     _, _, front, stops = parts
     begins = jax.tree_util.tree_map(_room, front)
-    where = jnp.zeros(MOST_PIECES, int)
+    where = jnp.zeros(SETTINGS.most_pieces, int)
     return _forth(parts, goes_on, Log(begins, _room(stops[0]), where, jnp.asarray(0)))
 
 
 def _room(leaf: Array) -> Array:
-    return jnp.zeros((MOST_PIECES, *leaf.shape), leaf.dtype)
+    return jnp.zeros((SETTINGS.most_pieces, *leaf.shape), leaf.dtype)
 
 
 def _forth(parts: tuple, goes_on: Any, log: Log | None) -> tuple[PyTree, Log | None]:
@@ -116,11 +115,11 @@ def _back(log: Log, by_fronts: PyTree, perturbed: PyTree, parts: tuple, _: Any) 
 
     moving = eqx.filter(front, eqx.is_inexact_array)
     none = jax.tree_util.tree_map(jnp.zeros_like, (moving, wanted))
-    start = *none, jnp.where(log.pieces > MOST_PIECES, 0, log.pieces)
+    start = *none, jnp.where(log.pieces > SETTINGS.most_pieces, 0, log.pieces)
     given = jnp.arange(stops.shape[0]), _whole(by_fronts, moving, stops.shape[0])
     (*found, _), by_stops = jax.lax.scan(over_stop, start, given, reverse=True)
     # Where room ran out, for pieces or for the steps of one, there is no derivative.
-    bad = (log.pieces > MOST_PIECES) | jnp.any(jnp.isnan(by_stops))
+    bad = (log.pieces > SETTINGS.most_pieces) | jnp.any(jnp.isnan(by_stops))
     by_front, by_wanted, by_stops = jax.tree_util.tree_map(
         lambda leaf: jnp.where(bad, jnp.nan, leaf), (*found, by_stops)
     )

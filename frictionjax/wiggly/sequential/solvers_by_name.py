@@ -10,8 +10,7 @@ import jax.numpy as jnp
 from ..._checks import require
 from .own_methods import OURS, is_ours
 from .rosenbrock_solvers import Rodas5P
-
-_NEWTON_SHARE = 0.03  # of the step's tolerance
+from .settings import SETTINGS
 
 
 def _is_usable(candidate: object) -> bool:
@@ -60,5 +59,5 @@ def with_tolerance(
     finder = getattr(solver, "root_finder", None)
     if finder is None:
         return solver
-    own = type(finder)(rtol=0.0, atol=_NEWTON_SHARE * jnp.asarray(tolerance))
+    own = type(finder)(rtol=0.0, atol=SETTINGS.newton * jnp.asarray(tolerance))
     return eqx.tree_at(lambda s: s.root_finder, solver, own)

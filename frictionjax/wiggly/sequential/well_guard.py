@@ -6,11 +6,8 @@ import diffrax
 import jax.numpy as jnp
 
 from ..._checks import Real
+from .settings import SETTINGS
 from .wrapped import AbstractWrappedController
-
-# Estimates below this share of the tolerance are rounding noise and must not steer;
-# (1e5)^(0.7/5) is the largest growth of a step.
-_NOISE = 1e-5
 
 
 class WellGuard(AbstractWrappedController):
@@ -63,7 +60,7 @@ class WellGuard(AbstractWrappedController):
         excess = jnp.abs(tip1 - tip0) / self.reach
         finite = jnp.isfinite(excess) & jnp.isfinite(error)
         excess = jnp.where(finite, jnp.minimum(excess, 20.0), 20.0)
-        error = jnp.maximum(jnp.abs(error), _NOISE * self.atol)
+        error = jnp.maximum(jnp.abs(error), SETTINGS.noise * self.atol)
         too_far = self.atol * (excess * 1.1) ** error_order
         error = jnp.where(finite, error, too_far)
         error = jnp.where(excess > 1, jnp.maximum(error, too_far), error)

@@ -77,6 +77,6 @@ def test_a_batch_is_its_lanes():
 
 @pytest.mark.parametrize(("room", "again"), [(10, np.inf), (11, 0.05)])
 def test_no_derivative_where_room_runs_out(monkeypatch, room, again):
-    monkeypatch.setattr(travel, "MOST_PIECES", room)
+    monkeypatch.setattr(travel, "SETTINGS", travel.SETTINGS._replace(most_pieces=room))
     slope = jax.grad(lambda rate: values(rate, *POINT[1:], again).y[-1])(RATE)
     assert np.isnan(slope)

@@ -62,7 +62,7 @@ def test_reverse_mode_agrees_with_central_differences(jacobian, i):
 @pytest.mark.slow
 def test_stretches_of_many_pieces(jacobian, monkeypatch):
     """Steps that are not kept would be made again, and would be others."""
-    monkeypatch.setattr(fronts, "_STEPS", 100)
+    monkeypatch.setattr(fronts, "SETTINGS", fronts.SETTINGS._replace(piece=100))
     traced_again = {"max_steps": 2**29}
     found = jax.jit(jax.grad(lambda p: states(p, **traced_again)[-1]))(POINT)
     assert jnp.max(jnp.abs(found - jacobian[-1])) < 1e-6 * jnp.max(jnp.abs(found))

@@ -1,0 +1,29 @@
+"""How far a trajectory by diffrax may go, what it keeps, what steers it."""
+
+from typing import NamedTuple
+
+
+class Settings(NamedTuple):
+    """Of steps, of what is kept of them, of solvers of others."""
+
+    # Integration (`integration.py`).
+    max_steps: int = 2**30  # a bound, not a buffer: nothing is allocated for it
+    # Of the energy dissipated: residual of a balance that is good. Solutions leave about
+    # 1e-6 of it.
+    residual: float = 0.05
+
+    # Derivatives in reverse mode (`checkpoints.py`, `segment_adjoint.py`).
+    # Steps of a piece, all of which are kept. Memory of all is cleared for each piece: 2^14
+    # took 1.3 to 2.3 times as long.
+    piece: int = 3840
+    more: int = 256  # there is room for, when it is made again with other roundings
+    most_pieces: int = 2**12  # kept; through more than that derivatives are NaN
+
+    # Solvers (`solvers_by_name.py`, `well_guard.py`).
+    newton: float = 0.03  # of the step's tolerance
+    # Estimates below this share of the tolerance are rounding noise and must not steer;
+    # (1e5)^(0.7/5) is the largest growth of a step.
+    noise: float = 1e-5
+
+
+SETTINGS = Settings()
