@@ -36,7 +36,7 @@ FLOORS = {
     ],
     "wiggly": [
         {"equation", "rosenbrock"},
-        {"sequential", "lanes", "limit_path"},
+        {"sequential", "lanes", "limit_path", "settings"},
         {"slip_map"},
         {"enclosure"},
         {"sums", "ways"},

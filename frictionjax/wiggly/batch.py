@@ -15,15 +15,13 @@ from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, Sums, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, path_of
-from .plan import LOOSEST, TABLEAU, TILES, Planned, lane_scene
+from .plan import Planned, lane_scene
 from .plans_ahead import plan_of_cells
 from .rosenbrock import Tableau
+from .settings import SETTINGS
 from .slip_map import none_known
 from .sums import CellResults
 from .ways import Way
-
-_MOST_NODES, _SURVEYS = 65, 3
-_FEW = 500  # values that are worth a guess at rooms
 
 
 @quiet_where_extreme
@@ -37,7 +35,7 @@ def integrate_cells(
     balanced: bool = True,
     report: Report = lambda share: None,
     suprema: bool = True,
-    tableau: Tableau = TABLEAU,
+    tableau: Tableau = SETTINGS.tableau,
 ) -> CellResults | None:
     """Every cell (eps, gamma), shape (cells,): values at `ts` and sums over [0, T].
 
@@ -54,7 +52,7 @@ def integrate_cells(
     path = path_of(scene)
     if path is None:
         return None
-    accuracy = min(accuracy, LOOSEST)
+    accuracy = min(accuracy, SETTINGS.loosest)
     lanes = lane_scene(scene, float(eps.max()))
     wanted = _sums(balanced, suprema)
     _prepare(lanes, eps.size, ts.size, wanted, tableau)
@@ -82,7 +80,7 @@ def integrate_cells(
     so_far = _first_attempt(sweep, _cells_of(plan, eps, gamma))
     answers = so_far.answers._replace(tolerance=np.asarray(plan.control.tolerance))
     so_far = so_far._replace(answers=answers)
-    for _ in range(_SURVEYS):
+    for _ in range(SETTINGS.surveys):
         rough = np.flatnonzero(sweep.is_rough(so_far.answers, eps) & ~so_far.open_)
         if rough.size == 0:
             break
@@ -115,14 +113,14 @@ def _cells_of(plan: Planned, eps: np.ndarray, gamma: np.ndarray) -> Cellwise:
 def _surveyed_again(sweep: AttemptContext, so_far: SoFar, rough: np.ndarray) -> SoFar:
     """Twice as many slips of the `rough` cells, at last all."""
     some = rows_of(so_far.cells, rough)
-    samples = some.needs.samples * 2 * (some.needs.samples < _MOST_NODES)
+    samples = some.needs.samples * 2 * (some.needs.samples < SETTINGS.most_nodes)
     can = _affordable(sweep.path, some) | (samples > 0)
     so_far = so_far.with_status(rough[~can], Status.ROUGH_SURVEY)
     again = rough[can]
     if again.size == 0:
         return so_far
     wells = sweep.path.travel[-1] / some.eps
-    longer = np.maximum(some.needs.tile, wells / TILES)
+    longer = np.maximum(some.needs.tile, wells / SETTINGS.tiles)
     some = some._replace(
         needs=some.needs._replace(
             samples=samples, tile=np.where(samples > 0, some.needs.tile, longer)
@@ -143,7 +141,7 @@ def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
         return so_far
     some = rows_of(so_far.cells, chosen)
     wells = sweep.path.travel[-1] / some.eps
-    tile = np.maximum(4 * some.needs.tile, wells / TILES)
+    tile = np.maximum(4 * some.needs.tile, wells / SETTINGS.tiles)
     none = np.zeros(chosen.size, dtype=int)
     some = some._replace(
         needs=some.needs._replace(samples=none, tile=tile),
@@ -220,10 +218,14 @@ def _sums(balanced: bool, suprema: bool) -> Sums:
 
 
 def _prepare(
-    lanes: LaneScene, cells: int, times: int, wanted: Sums, tableau: Tableau = TABLEAU
+    lanes: LaneScene,
+    cells: int,
+    times: int,
+    wanted: Sums,
+    tableau: Tableau = SETTINGS.tableau,
 ) -> None:
     """Have the loop compiled beside the planning."""
-    if cells * times > _FEW:
+    if cells * times > SETTINGS.few_values:
         legs = cells * times // WORKERS
         prepare(lanes, tableau, Room(cells, legs // 2, legs), wanted)
 

@@ -24,33 +24,9 @@ from .equation import WiggleFolds, plan_steps, power_series_of, pull_of
 from .lanes import LaneScene
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, slow_ends
-from .rosenbrock import RODAS5P
+from .settings import SETTINGS
 from .slip_map import lag_forces, none_known
 from .ways import Way, by_brackets, ends_before_tips_follow, ways_of
-
-# Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as fast
-# for one cell, as lanes wait for the longest tile; three times: 0.7.) Of the whole sweep
-# (256) tiles were longer, a few percent of the steps fewer, and values depended on the
-# other cells, by up to a tenth of the accuracy.
-TILES = 128
-_NEAR_STRIP = 1e-3  # wells
-# Looser brackets and surveys save a fifth of the time, and at gamma = 0.75 were off by up
-# to 6 times an accuracy of 1e-1, and twice one of 1e-2.
-LOOSEST = 1e-3
-_CELLS = 16  # in a compiled call: 64 take 4 ms, 16 one
-# Wells after a slip at which lanes may set off, and the shortest rest that is worth it.
-_AFTER_SLIP, _SHORT_REST = 0.05, 0.2
-# Lanes set off in the middle of a slip or two, and forget less in their first wells. (1:
-# brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the first.)
-_SLIPS_FORGET = 1.5
-# Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2, 16
-# eps to 1e-4, seconds at 1, 1.5, 2, 3 and 5: vertical 0.74, 0.57, 0.62, 0.52, 0.45, angular
-# 2.1, 2.0, 1.9, 1.4, 1.6.)
-_TILE = 3.0
-# Rodas4P2 takes as many steps, each a quarter cheaper, and errs by more than 1e-3 of a slip
-# period at times near slips in 26 of 208 cells (gamma 0.65 to 2, eps 1e-3 to 1e-6), by up
-# to a well; this one in 7, and in 1 with the tolerances of now.
-TABLEAU = RODAS5P
 
 
 @Program
@@ -65,7 +41,7 @@ def _controls(scene, eps, gamma, accuracy, rho: tuple | None = None) -> StepPlan
         found = coefficients_jit(scene.potential)
         rho = found.rho_plus, found.rho_minus
     fixed = scene, *map(np.asarray, rho), np.asarray(accuracy)
-    return in_chunks(_plans, _CELLS, fixed, (eps, gamma))
+    return in_chunks(_plans, SETTINGS.cells, fixed, (eps, gamma))
 
 
 @Program
@@ -79,7 +55,7 @@ def ground_of(
     """What windows need to know of each cell."""
     lags = lag_forces(scene.potential, eps, folds, path.speed * viscosity_of(eps, gamma))
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
-    well, tip = in_chunks(_tips, _CELLS, (scene.potential, scene.z0), (eps,))
+    well, tip = in_chunks(_tips, SETTINGS.cells, (scene.potential, scene.z0), (eps,))
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
     return CellBounds(
         eps,
@@ -98,7 +74,7 @@ def ground_of(
 def _relaxation(scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray):
     """Time in s until z0 is within a thousandth of a well of the strip (Lemma 7)."""
     far = abs(float(scene.z0) - path.states[0])
-    efolds = np.log(np.maximum(far / (_NEAR_STRIP * eps), 1.0))
+    efolds = np.log(np.maximum(far / (SETTINGS.near_strip * eps), 1.0))
     return efolds * viscosity_of(eps, gamma) / path.stiffness
 
 
@@ -134,7 +110,7 @@ def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
     return Requirements(
         run_up=run_up,
         transient=np.ceil(lag + run_up + 2),
-        tile=_TILE * slow,
+        tile=SETTINGS.tile * slow,
         samples=np.zeros(lag.size),
         lattice_offset=offset,
         restarts=np.zeros(offset.shape, dtype=bool),
@@ -150,9 +126,9 @@ def _resting(ground: CellBounds, lag: np.ndarray, forgets: np.ndarray) -> np.nda
     further: their lanes have to catch up with each other.
     """
     shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
-    rest = 0.5 - _AFTER_SLIP - lag - shift
-    wells = rest + np.ceil(np.maximum(_SLIPS_FORGET * forgets - rest, 0.0))
-    return np.where(rest > _SHORT_REST, wells, np.inf)
+    rest = 0.5 - SETTINGS.after_slip - lag - shift
+    wells = rest + np.ceil(np.maximum(SETTINGS.slips_forget * forgets - rest, 0.0))
+    return np.where(rest > SETTINGS.short_rest, wells, np.inf)
 
 
 def _lattice_offsets(ground: CellBounds, path: Path) -> np.ndarray:
@@ -170,7 +146,7 @@ def _with_brackets(
     samples = np.where(brackets == Way.SAMPLED, PATH_SETTINGS.nodes, 0)
     needs = needs._replace(samples=samples)
     outer, _ = wells_of(path, eps, needs)
-    return needs._replace(tile=np.maximum(needs.tile, outer / TILES))
+    return needs._replace(tile=np.maximum(needs.tile, outer / SETTINGS.tiles))
 
 
 def _along(

@@ -12,28 +12,10 @@ from .equation import SeriesBristle
 from .equation import StepPlan as StepPlan
 from .lanes import LaneScene
 from .limit_path import Path, path_of
-from .plan import LOOSEST, lane_scene
+from .plan import lane_scene
 from .plans_ahead import plan_ahead
-from .ways import WIDEST, Way, slides_of
-
-# Steps a well: exp of a polynomial in the orders of magnitude of tolerance, drag and reach,
-# and in the lag, with knees at drags of 0.1 and 1. 280 cells of two scenes (vertical and
-# angular, gamma 0.5 to 2, eps 1e-1 to 1e-4, accuracy 1e-3 to 1e-6) lie within a factor of
-# 1.32 of it (rms), 85% within 1.5, all within 1.9. The angular scene at gamma = 0.5 is
-# apart: brackets there stay open at first, and steps are up to 5 times as many.
-_CONSTANT, _TOLERANCE, _LAG, _NARROW = 1.278, 0.417, -0.092, 0.41
-_SMOOTH, _BELOW_TENTH, _BELOW_ONE = -0.131, 0.505, 1.466
-# Slip maps, in the same cells: steps of a slide over those of one run-up, of a few thousand
-# wells at most; and wells that lanes, one after the other, wait for each other. Both for a
-# thousand wells, and how they grow with wells. Steps are twice as many as measured on the
-# vertical scene, half on the angular one. (1 to 100 periods, 3 to 201 slides.)
-_MAP_STEPS, _MAP_CHAIN, _MAP_GROWTH, _RUN_UP = 4.0 / 3, 4e2, 0.05, 2500.0
-# Drag of tips that are still on their way when a slide is over, and a rest begins.
-_BEHIND = 0.1
-# What a step costs more: for each harmonic after the first (1.2 at 4, 2.3 at 16, 5.7 at 64
-# were measured), for each degree of the bristle's series after the first (1.35 at 4), and
-# for a bristle without one.
-_HARMONIC, _DEGREE, _NO_SERIES = 0.075, 0.1, 3.0
+from .settings import SETTINGS
+from .ways import Way, slides_of
 
 
 class Workload(NamedTuple):
@@ -67,7 +49,7 @@ def workload(
     path = path_of(scene)
     if path is None:
         return None
-    accuracy = min(accuracy, LOOSEST)
+    accuracy = min(accuracy, SETTINGS.loosest)
     lanes = lane_scene(scene, float(eps.max()))
     plan = plan_ahead(scene, lanes, path, eps, gamma, times, accuracy, method)
     control, ground, needs, way = plan
@@ -76,12 +58,12 @@ def workload(
     steps = _steps_a_well(control, lag, _drag_of(path, eps, gamma))
     total = steps * cost_of(path, eps, needs, times)
     chain = steps * longest_lane(path, eps, needs)
-    growth = (path.travel[-1] / eps / 1e3) ** _MAP_GROWTH
+    growth = (path.travel[-1] / eps / 1e3) ** SETTINGS.map_growth
     slides = slides_of(path, eps) & by_map[:, None]
     maps, rounds = np.count_nonzero(slides, axis=1), _longest_chains(slides, needs.restarts)
-    run_ups = maps * np.minimum(needs.run_up, _RUN_UP)
-    total = np.where(by_map, _MAP_STEPS * run_ups * steps * growth, total)
-    chain = np.where(by_map, _MAP_CHAIN * rounds * steps * growth, chain)
+    run_ups = maps * np.minimum(needs.run_up, SETTINGS.run_up)
+    total = np.where(by_map, SETTINGS.map_steps * run_ups * steps * growth, total)
+    chain = np.where(by_map, SETTINGS.map_chain * rounds * steps * growth, chain)
     jobs, legs = _rows(path, eps, needs, times)
     return Workload(total, chain, jobs, legs, maps, rounds, _weight_of(lanes))
 
@@ -104,19 +86,19 @@ def _drag_of(path: Path, eps: np.ndarray, gamma: np.ndarray) -> np.ndarray:
     sudden = (path.direction != 0) & (follows > longs)
     waits = np.pad((path.direction == 0) & (follows < longs), ((0, 0), (0, 1)))[:, 1:]
     late = np.any(sudden & waits, axis=1)
-    return np.where(late, np.minimum(drag, _BEHIND), drag)
+    return np.where(late, np.minimum(drag, SETTINGS.behind), drag)
 
 
 def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
     smooth = -np.log10(drag)
     return np.exp(
-        _CONSTANT
-        - _TOLERANCE * np.log10(control.tolerance)
-        + _LAG * np.log1p(lag)
-        + _NARROW * np.log(WIDEST / np.asarray(control.reach))
-        + _SMOOTH * smooth
-        + _BELOW_TENTH * np.minimum(smooth, 1.0)
-        + _BELOW_ONE * np.minimum(smooth, 0.0)
+        SETTINGS.constant
+        - SETTINGS.by_tolerance * np.log10(control.tolerance)
+        + SETTINGS.by_lag * np.log1p(lag)
+        + SETTINGS.by_reach * np.log(SETTINGS.widest / np.asarray(control.reach))
+        + SETTINGS.by_drag * smooth
+        + SETTINGS.above_tenth * np.minimum(smooth, 1.0)
+        + SETTINGS.above_one * np.minimum(smooth, 0.0)
     )
 
 
@@ -138,7 +120,7 @@ def _weight_of(lanes: LaneScene) -> float:
         return 1.0
     profile, bristle = potential.profile, potential.bristle
     harmonics = profile.cos.shape[0] if isinstance(profile, Fourier) else 1
-    shape = _NO_SERIES
+    shape = SETTINGS.no_series
     if isinstance(bristle, SeriesBristle):
-        shape = 1 + _DEGREE * (bristle.ahead.shape[0] - 2)
-    return (1 + _HARMONIC * (harmonics - 1)) * shape
+        shape = 1 + SETTINGS.a_degree * (bristle.ahead.shape[0] - 2)
+    return (1 + SETTINGS.a_harmonic * (harmonics - 1)) * shape

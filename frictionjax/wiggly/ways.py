@@ -8,17 +8,7 @@ from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import Requirements, cost_of
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path
-
-# Wells of a slide that are worth a slip map, where windows set off far back.
-_LONG_SLIDE = 60.0
-# Wells that one lane from z0 goes through in about the time of the slip maps of three
-# slides, for a sine. (16 eps to 1e-4, gamma = 1/2, seconds with maps from 1100, 1800, 2500
-# and 4000 on: 0.35, 0.26, 0.25, 0.39. Whatever the number of slides: 14 s for 200 of 190
-# wells each, which one lane goes through in 3.)
-_MAP = 2200.0 / 3
-# Of the speed: what panels of a slip map might step over.
-_BURST = 0.1
-WIDEST = 0.125  # reach of a sine, periods
+from .settings import SETTINGS
 
 
 class Way(IntEnum):
@@ -36,7 +26,7 @@ class Way(IntEnum):
 
 def slides_of(path: Path, eps: np.ndarray) -> np.ndarray:
     """Pieces of the path that are long enough for slip maps, (cells, pieces)."""
-    return np.abs(np.diff(path.states)) > _LONG_SLIDE * eps[:, None]
+    return np.abs(np.diff(path.states)) > SETTINGS.long_slide * eps[:, None]
 
 
 def by_brackets(
@@ -93,17 +83,19 @@ def _remembers_long(needs: Requirements) -> np.ndarray:
 def _has_mappable_slides(path: Path, eps: np.ndarray) -> np.ndarray:
     """Whether slides are long, and no panel of a map would step over a burst."""
     slides = slides_of(path, eps)
-    bursts = slides & (path.probes.unseen > _BURST)
+    bursts = slides & (path.probes.unseen > SETTINGS.burst)
     return np.any(slides, axis=1) & ~np.any(bursts, axis=1)
 
 
 def _is_short(path: Path, eps: np.ndarray, reach: np.ndarray) -> np.ndarray:
     """Whether one lane has gone through all before slip maps are made."""
     # Steps are the shorter, the narrower the branches.
-    narrow = (WIDEST / reach) ** 0.6
+    narrow = (SETTINGS.widest / reach) ** 0.6
     way = path.travel[-1] / eps * narrow
     slides = np.count_nonzero(slides_of(path, eps), axis=1)
-    return way <= np.minimum(_MAP * np.maximum(slides, 3), ENCLOSURE_SETTINGS.affordable)
+    return way <= np.minimum(
+        SETTINGS.worth_a_map * np.maximum(slides, 3), ENCLOSURE_SETTINGS.affordable
+    )
 
 
 def ends_before_tips_follow(path: Path, eps: np.ndarray, follows: np.ndarray) -> np.ndarray:

@@ -156,7 +156,8 @@ def test_lanes_that_set_off_at_rest_find_the_same_in_fewer_steps(gamma, monkeypa
     scene, eps = scene_of(), [1e-3, 7e-4]
     gammas = [gamma] * 2
     near = cells(scene, eps, gammas, "windowed")
-    monkeypatch.setattr(planning, "_SHORT_REST", np.inf)
+    none = planning.SETTINGS._replace(short_rest=np.inf)
+    monkeypatch.setattr(planning, "SETTINGS", none)
     far = cells(scene, eps, gammas, "windowed")
     assert near.steps.sum() < 0.6 * far.steps.sum()
     for i, e in enumerate(eps):

@@ -16,7 +16,8 @@ from frictionjax.wiggly.lanes.loops import (
 )
 from frictionjax.wiggly.lanes.queue import Lanes, Segments, Tables, run_queue
 from frictionjax.wiggly.lanes.settings import SETTINGS
-from frictionjax.wiggly.plan import TABLEAU, lane_scene
+from frictionjax.wiggly.plan import lane_scene
+from frictionjax.wiggly.settings import SETTINGS as SWEEP_SETTINGS
 
 PROGRAM = np.ones(3), "scheme", True
 FEW, LARGE = Room(1, 7, 14), Room(64, 2048, 4096)
@@ -81,7 +82,7 @@ def test_loops_are_compiled_as_one_function(width):
         fx.loads.Ramp(1.0, 0.0),
         duration=1.0,
     )
-    fixed = lane_scene(scene, 0.1), TABLEAU, Sums(), width
+    fixed = lane_scene(scene, 0.1), SWEEP_SETTINGS.tableau, Sums(), width
     columns = len(LaneCells._fields), len(Lanes._fields), len(Segments._fields)
     tables = [np.ones((n, w)) for n, w in zip(FEW, columns, strict=True)]
     program = jax.make_jaxpr(

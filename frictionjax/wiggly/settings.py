@@ -1,0 +1,83 @@
+"""How cells of a sweep are planned, tried again, and foretold: measured, with what lost."""
+
+from typing import NamedTuple
+
+from .rosenbrock import RODAS5P, Tableau
+
+
+class Settings(NamedTuple):
+    """Lengths in wells, unless said otherwise."""
+
+    # Plans (`plan.py`).
+    # Tiles of a cell, two lanes each: both queues full, twice. (Full once: 0.6 times as
+    # fast for one cell, as lanes wait for the longest tile; three times: 0.7.) Of the whole
+    # sweep (256) tiles were longer, a few percent of the steps fewer, and values depended
+    # on the other cells, by up to a tenth of the accuracy.
+    tiles: int = 128
+    near_strip: float = 1e-3  # as near the strip, starts outside of it are forgotten
+    # Accuracy: looser brackets and surveys save a fifth of the time, and at gamma = 0.75
+    # were off by up to 6 times an accuracy of 1e-1, and twice one of 1e-2.
+    loosest: float = 1e-3
+    cells: int = 16  # in a compiled call: 64 take 4 ms, 16 one
+    after_slip: float = 0.05  # at which lanes may set off
+    short_rest: float = 0.2  # the shortest that is worth it
+    # Lanes set off in the middle of a slip or two, and forget less in their first wells.
+    # (1: brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the
+    # first.)
+    slips_forget: float = 1.5
+    # Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2,
+    # 16 eps to 1e-4, seconds at 1, 1.5, 2, 3 and 5: vertical 0.74, 0.57, 0.62, 0.52, 0.45,
+    # angular 2.1, 2.0, 1.9, 1.4, 1.6.)
+    tile: float = 3.0
+    # Rodas4P2 takes as many steps, each a quarter cheaper, and errs by more than 1e-3 of a
+    # slip period at times near slips in 26 of 208 cells (gamma 0.65 to 2, eps 1e-3 to
+    # 1e-6), by up to a well; this one in 7, and in 1 with the tolerances of now.
+    tableau: Tableau = RODAS5P
+
+    # Ways (`ways.py`).
+    long_slide: float = 60.0  # worth a slip map, where windows set off far back
+    # That one lane from z0 goes through in about the time of the slip map of a slide, three
+    # times these at least, for a sine. (16 eps to 1e-4, gamma = 1/2, seconds with maps from
+    # 1100, 1800, 2500 and 4000 on: 0.35, 0.26, 0.25, 0.39. Whatever the number of slides:
+    # 14 s for 200 of 190 wells each, which one lane goes through in 3.)
+    worth_a_map: float = 2200.0 / 3
+    burst: float = 0.1  # of the speed: what panels of a slip map might step over
+    widest: float = 0.125  # reach of a sine, periods
+
+    # Further attempts (`batch.py`).
+    most_nodes: int = 65  # of a slide: where more are needed, every slip is measured
+    surveys: int = 3  # made again, at most
+    few_values: int = 500  # more are worth a guess at rooms
+
+    # Work foretold (`predicted_work.py`).
+    # Steps a well: exp of a polynomial in the orders of magnitude of tolerance, drag and
+    # reach, and in the lag, with knees at drags of 0.1 and 1. 280 cells of two scenes
+    # (vertical and angular, gamma 0.5 to 2, eps 1e-1 to 1e-4, accuracy 1e-3 to 1e-6) lie
+    # within a factor of 1.32 of it (rms), 85% within 1.5, all within 1.9. The angular scene
+    # at gamma = 0.5 is apart: brackets there stay open at first, and steps are up to 5
+    # times as many.
+    constant: float = 1.278
+    by_tolerance: float = 0.417  # an order of magnitude, downward
+    by_lag: float = -0.092
+    by_reach: float = 0.41  # what is narrower than a sine's
+    by_drag: float = -0.131  # an order of magnitude, downward
+    above_tenth: float = 0.505  # more, at drags above 0.1
+    above_one: float = 1.466  # more, at drags above 1
+    # Slip maps, in the same cells: steps of a slide over those of one run-up. Both these
+    # and the chain are for a thousand wells. Steps are twice as many as measured on the
+    # vertical scene, half on the angular one. (1 to 100 periods, 3 to 201 slides.)
+    map_steps: float = 4.0 / 3
+    map_chain: float = 4e2  # wells that lanes, one after the other, wait for each other
+    map_growth: float = 0.05  # power of thousands of wells that both grow with
+    run_up: float = 2500.0  # of a slip map, at most
+    # Drag of tips that are still on their way when a slide is over, and a rest begins.
+    behind: float = 0.1
+    # What a step costs more: for each harmonic after the first (1.2 at 4, 2.3 at 16, 5.7 at
+    # 64 were measured), for each degree of the bristle's series after the first (1.35 at
+    # 4), for a bristle without one.
+    a_harmonic: float = 0.075
+    a_degree: float = 0.1
+    no_series: float = 3.0
+
+
+SETTINGS = Settings()
