@@ -3,9 +3,9 @@
 import numpy as np
 
 from .instants import Instants
+from .settings import SETTINGS
 
 MEASURES = ("error", "slip_error", "end_error", "dissipation_error", "mescd")
-_LEAST = 1e-17  # relative error that counts as none
 
 
 def errors_of(
@@ -38,5 +38,5 @@ def errors_of(
         "slip_error": float(gaps[when.slip].mean()) if when.slip.size else nothing,
         "end_error": float(gaps[last]),
         "dissipation_error": float(share),
-        "mescd": -float(np.log10(np.maximum(relative, _LEAST))),
+        "mescd": -float(np.log10(np.maximum(relative, SETTINGS.least_relative))),
     }

@@ -6,11 +6,7 @@ import numpy as np
 
 from ..limit import solve_limit
 from ..model import Scene
-
-_SLIP_TIMES = 32  # over one whole slip period
-_SHIFT = 0.005  # share of a slip period within which a slip is looked for
-_MOVES = 0.05  # eps: a slip moves z by more within both shifts of its instant
-_OTHER_PACE = 0.25  # eps: the limit moves by this more or less in no slip period
+from .settings import SETTINGS
 
 
 class Instants(NamedTuple):
@@ -43,7 +39,7 @@ class Instants(NamedTuple):
         """
         cut = (self.ts < self.shift) | (self.ts > end - self.shift)
         moved = np.abs(around[..., 2, :] - around[..., 0, :])
-        return np.where(cut, 2.0, 1.0) * moved > _MOVES * eps
+        return np.where(cut, 2.0, 1.0) * moved > SETTINGS.moves * eps
 
 
 def slips_of(scene: Scene, eps: float) -> float:
@@ -77,7 +73,7 @@ def _begin_whole(
     """
     end = float(scene.duration)
     z = _limit_at(scene, np.stack([ts, np.minimum(ts + period, end)]))
-    steady = np.abs(np.abs(z[1] - z[0]) / eps - 1) < _OTHER_PACE
+    steady = np.abs(np.abs(z[1] - z[0]) / eps - 1) < SETTINGS.other_pace
     return steady & (ts + period <= end)
 
 
@@ -107,10 +103,10 @@ def instants(scene: Scene, eps: float, ts: np.ndarray) -> Instants:
     slip = np.zeros(0)
     begin = _middle_of_last(slides, slides & _begin_whole(scene, eps, ts, period))
     if begin is not None:
-        share = (np.arange(_SLIP_TIMES) + 0.5) / _SLIP_TIMES
+        share = (np.arange(SETTINGS.slip_times) + 0.5) / SETTINGS.slip_times
         slip = ts[begin] + period[begin] * share
     every = np.union1d(ts, slip)
     asked, of_slip = np.searchsorted(every, ts), np.searchsorted(every, slip)
     shift = np.zeros(every.size)
-    shift[asked] = _SHIFT * period
+    shift[asked] = SETTINGS.shift * period
     return Instants(every, asked, of_slip, shift)

@@ -23,10 +23,7 @@ from ..profiles import Sine
 from ..supports import Spring
 from ..sweeps import sweep
 from ..wiggly import Workload, workload
-
-_TIMES = 61
-_REPEATS = 2
-_ABSURD = 1e15  # seconds or bytes that no machine takes
+from .settings import SETTINGS
 
 
 class MachineCost(NamedTuple):
@@ -59,18 +56,15 @@ _UNWRITTEN: dict[str, MachineCost] = {}  # where the cache folder cannot be writ
 ELSEWHERE = MachineCost(0.023, 0.0081, 0.0, 8.4e-8, 6.6e-7, 9.3, 7.7e8, measured=False)
 
 
-# Calls that take as long as the slip map of a slide beside its lanes: both are NumPy and
-# small programs. (Seven vertical cells of three slides 0.68 s, one 0.18, a call 0.033.) And
-# as each of those that wait for the one before: where a load turns at speed, slides cannot
-# be looked at side by side.
-_MAP, _ROUND = 0.4, 1.0
-
-
 def _amounts(work: Workload) -> np.ndarray:
     """How much of each part a sweep has, in the order of `MachineCost`."""
     steps = work.weight * work.steps.sum()
     chain = work.weight * work.chain.max(initial=0.0)
-    calls = 1 + _MAP * work.maps.sum() + _ROUND * work.rounds.max(initial=0.0)
+    calls = (
+        1
+        + SETTINGS.map_calls * work.maps.sum()
+        + SETTINGS.round_calls * work.rounds.max(initial=0.0)
+    )
     return np.array([calls, work.steps.size, work.jobs.sum(), steps, chain])
 
 
@@ -94,8 +88,8 @@ def _example() -> Scene:
 
 def _clocked(scene: Scene, eps: Any, gamma: Any, method: str) -> tuple[float, float]:
     """Seconds of the fastest warm run, and how much longer the first took."""
-    ts, spent = np.linspace(0, 3, _TIMES), []
-    for _ in range(1 + _REPEATS):
+    ts, spent = np.linspace(0, 3, SETTINGS.machine_times), []
+    for _ in range(1 + SETTINGS.repeats):
         begun = time.perf_counter()
         sweep(scene, np.array(eps), np.array(gamma), ts, 1e-3, method)
         spent.append(time.perf_counter() - begun)
@@ -115,7 +109,7 @@ def measure_machine() -> MachineCost:
     rows, seconds, compilation = [], [], 0.0
     for eps, gamma, method in _RUNS:
         cells = cells_of(eps, gamma)
-        work = workload(scene, *cells, _TIMES, 1e-3, method)
+        work = workload(scene, *cells, SETTINGS.machine_times, 1e-3, method)
         assert work is not None
         best, longer = _clocked(scene, eps, gamma, method)
         rows.append(_amounts(work))
@@ -177,7 +171,7 @@ def known_machine(folder: Path | None = None) -> MachineCost | None:
 
 def _is_size(value: Any) -> bool:
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    return number and 0 <= value < _ABSURD
+    return number and 0 <= value < SETTINGS.absurd
 
 
 def machine_cost(folder: Path | None = None, again: bool = False) -> MachineCost:

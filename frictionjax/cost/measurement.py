@@ -23,13 +23,11 @@ from .error_measures import MEASURES, errors_of
 from .instants import Instants, instants
 from .references import LEAST_JUDGED, Reference, reference
 from .scipy_solvers import SCIPY, Run, told
+from .settings import SETTINGS
 from .timed_runs import clocked, runner, timed
 
 METHODS = ("auto", "windowed", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau")
 MEASURED_ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-_TIMES = 61
-_WRONG = 0.5  # eps: nothing that is so far off is a solution
-_LOST = 1.5  # eps: where all times asked for lie in slips, and states may be one apart
 
 _RUN = {
     "seconds": ("s", "median time of a warm run"),
@@ -99,7 +97,11 @@ def _is_wrong(errors: dict, of_truth: dict, accuracy: float) -> bool:
 
     Known at times outside slips; where there are none, at the end, which may be in a slip.
     """
-    name, least = ("end_error", _LOST) if np.isnan(errors["error"]) else ("error", _WRONG)
+    name, least = (
+        ("end_error", SETTINGS.lost)
+        if np.isnan(errors["error"])
+        else ("error", SETTINGS.wrong)
+    )
     return bool(errors[name] - of_truth[name] >= max(least, accuracy))
 
 
@@ -241,7 +243,7 @@ def work_precision(
     names, labels, asked = _required(methods, accuracies, repeats, seconds)
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)
-    ts = np.asarray(require_times(scene, ts, _TIMES))
+    ts = np.asarray(require_times(scene, ts, SETTINGS.times))
     effort = _Effort(asked, int(repeats), float(seconds))
     cells, truths = [], []
     count = gamma.size * eps.size * len(names) * asked.size

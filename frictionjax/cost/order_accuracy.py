@@ -12,18 +12,7 @@ from ..slide_laws import NO_LAW, Law, SlideData, predict_errors
 from ..sweeps import sweep
 from ..wiggly import Status
 from .prediction import predict_cost
-
-_PILOT = 48  # eps of the pilot: two seconds a gamma
-_TIMES = 2  # suprema are over all of [0, T] whatever times are kept
-# Of 4 and 5 the interval is luck: up to three times wider on the next such grid.
-_POINTS = (6, 8, 12, 16, 24, 32, 48)
-_PARTS = 5  # ends of ranges: fifths of the pilot's
-_OFFSETS = (0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75)  # of the distance of two eps
-# Intervals up to this many times what is wanted confirm. Those within it alone: nothing was
-# left beside an order of 1.3 +- 0.02 where grids of smaller eps gave 0.9 +- 0.06.
-_JUDGES = 5.0
-# Predictions are within a factor of two, but those of one pilot share most of that.
-_TIE = 1.25
+from .settings import SETTINGS
 
 
 class EpsGrid(NamedTuple):
@@ -111,8 +100,8 @@ def order_cost(
     require_real("within", within, "within > 0", lambda w: w > 0)
     require_flags(measure=measure)
     require_real("gamma", gamma, "gamma > 0, one number", lambda g: g > 0)
-    pilot = np.geomspace(known[0], known[-1], _PILOT)
-    ts = float(scene.duration) * np.linspace(0, 1, _TIMES)
+    pilot = np.geomspace(known[0], known[-1], SETTINGS.pilot)
+    ts = float(scene.duration) * np.linspace(0, 1, SETTINGS.pilot_times)
     data = sweep(scene, pilot, gamma, ts, accuracy, dissipation=False).isel(gamma=0)
     errors = data.sup_error.where(data.status == int(Status.OK)).values
     measured = _Pilot(pilot, errors, accuracy * pilot, *_predicted(data, pilot, gamma))
@@ -129,10 +118,12 @@ def order_cost(
 
 def _candidates() -> Iterator[tuple[int, int, int]]:
     """First and last place in the pilot, and how many eps."""
-    ends = np.linspace(0, _PILOT - 1, _PARTS + 1).round().astype(int).tolist()
+    ends = (
+        np.linspace(0, SETTINGS.pilot - 1, SETTINGS.parts + 1).round().astype(int).tolist()
+    )
     for i, start in enumerate(ends):
         for stop in ends[i + 1 :]:
-            for points in _POINTS:
+            for points in SETTINGS.points:
                 if points <= stop - start + 1:
                     yield start, stop, points
 
@@ -168,7 +159,7 @@ def _intervals(pilot: _Pilot, start: int, stop: int, points: int) -> dict[str, A
     """
     spacing = (stop - start) / (points - 1)
     # Shifted grids stay in the range: their ends move inwards by half a distance.
-    shifts = (np.array(_OFFSETS) - np.mean(_OFFSETS)) * spacing
+    shifts = (np.array(SETTINGS.offsets) - np.mean(SETTINGS.offsets)) * spacing
     places = np.linspace(start, stop, points) + shifts[:, None]
     rows = np.unique(np.clip(places.round().astype(int), start, stop), axis=0)
     fits = []
@@ -202,7 +193,7 @@ def _judges(grid: EpsGrid, grids: list[EpsGrid], within: float) -> list[EpsGrid]
     return [
         other
         for other in grids
-        if _lies_below(other, grid) and other.half_width <= _JUDGES * within
+        if _lies_below(other, grid) and other.half_width <= SETTINGS.judges * within
     ]
 
 
@@ -227,7 +218,7 @@ def cheapest_grid(grids: list[EpsGrid], within: float) -> OrderCost:
     good = [grid for grid, _ in narrow if grid.confirmed]
     grids = [grid for grid, _ in judged]
     if good:
-        tied = [grid for grid in good if grid.seconds <= _TIE * good[0].seconds]
+        tied = [grid for grid in good if grid.seconds <= SETTINGS.tie * good[0].seconds]
         found = min(tied, key=lambda grid: grid.half_width)
         message = (
             f"the order to +-{within:g} from {found.points} eps, {_range(found)}: "
@@ -265,4 +256,6 @@ def _refusal(grid: EpsGrid, against: list[EpsGrid], within: float) -> str:
         return f"{start}: ranges disagree, {size}, but {but}"
     if grid.confirmed:
         return f"{start}; the best, {size}"
-    return f"{start}; the best, {size}, and no smaller eps to +-{_JUDGES * within:.2g}"
+    return (
+        f"{start}; the best, {size}, and no smaller eps to +-{SETTINGS.judges * within:.2g}"
+    )

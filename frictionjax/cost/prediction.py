@@ -18,15 +18,8 @@ from ..limit import require_start_in_strip
 from ..model import Scene, known_scene, require_reach, require_times, require_told_apart
 from ..wiggly import OURS, Workload, accuracies_of, is_ours, require_accuracy, workload
 from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
+from .settings import SETTINGS
 
-# Factor that 95 to 100% of 96 cells stayed within (`benchmarks/cost_model.py`, nothing else
-# running; 83% while other programs came and went), and 23 of 24 under other loads.
-_WITHIN = 2.0
-_LEAST_EPS = 4  # that an order needs
-# Bytes of a leg and of a job in all tables, and of one value, with the copies made on the
-# way. What 8 vertical sweeps added to a process, 0.1 to 1.3 GB, is within a factor of 1.6
-# (`benchmarks/memory.py`); surveys made again and programs of other profiles come on top.
-_LEG_BYTES, _JOB_BYTES, _VALUE_BYTES = 1200.0, 1500.0, 100.0
 PREDICTED_ACCURACIES = (
     1e-6,
     1e-5,
@@ -54,11 +47,11 @@ class CostPrediction(NamedTuple):
 
     @property
     def low(self) -> float:
-        return self.seconds / _WITHIN
+        return self.seconds / SETTINGS.within
 
     @property
     def high(self) -> float:
-        return self.seconds * _WITHIN
+        return self.seconds * SETTINGS.within
 
     def __str__(self) -> str:
         if not np.isfinite(self.seconds):
@@ -85,8 +78,8 @@ def _predicted(
         nothing = np.full((gamma.size, eps.size), np.nan)
         return CostPrediction(np.nan, nothing, np.nan, machine.memory, machine.measured)
     each = [machine.seconds(_one(work, i)) for i in range(cells[0].size)]
-    rows = _LEG_BYTES * work.legs.sum() + _JOB_BYTES * work.jobs.sum()
-    memory = machine.memory + rows + _VALUE_BYTES * values
+    rows = SETTINGS.leg_bytes * work.legs.sum() + SETTINGS.job_bytes * work.jobs.sum()
+    memory = machine.memory + rows + SETTINGS.value_bytes * values
     return CostPrediction(
         machine.seconds(work),
         np.reshape(each, (gamma.size, eps.size)),
@@ -170,7 +163,7 @@ def fit_budget(
             raise ValueError(f"budget = {budget:g}: cost {cost}; run without a budget")
         if cost.seconds <= budget:
             return Affordable(values, accuracy, cost)
-    while values.size > _LEAST_EPS:
+    while values.size > SETTINGS.least_eps:
         values = np.delete(values, _dearest(cost))
         cost = predict_cost(scene, values, gamma, accuracy, ts, method)
         if cost.seconds <= budget:

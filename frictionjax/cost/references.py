@@ -10,12 +10,10 @@ from ..model import Scene
 from ..wiggly import RODAS4P2, RODAS5P, Rodas4P2, Status, Tableau, integrate_cells, solve
 from .error_measures import MEASURES, errors_of
 from .instants import Instants, slips_of
+from .settings import SETTINGS
 
-# Slips that lanes one after the other (0.4 ms each) and side by side (10 us) may take.
-_ONE_BY_ONE, _EVERY = 2e4, 2e6
-_TIGHTER, _TIGHTEST = 1e-2, 1e-9
 # Tighter accuracies are not judged: the reference's own would be no tenth of them.
-LEAST_JUDGED = 10 * _TIGHTEST
+LEAST_JUDGED = 10 * SETTINGS.tightest
 
 
 class Reference(NamedTuple):
@@ -54,7 +52,7 @@ def reference(
     50 times what their distance said).
     """
     ts, back = when.around(float(scene.duration))
-    tight = max(_TIGHTER * accuracy, _TIGHTEST)
+    tight = max(SETTINGS.tighter * accuracy, SETTINGS.tightest)
     found: list[_Found] = []
     for name, method, asked in _ways(slips_of(scene, eps), tight):
         z, spent, status = method(scene, eps, gamma, ts, asked)
@@ -67,15 +65,15 @@ def reference(
 
 def _ways(slips: float, tight: float) -> Iterator[tuple[str, Callable, float]]:
     four, five = partial(_in_lanes, RODAS4P2), partial(_in_lanes, RODAS5P)
-    if slips <= _ONE_BY_ONE:
+    if slips <= SETTINGS.one_by_one:
         yield "one slip after the other, Rodas4P2", _one_by_one, tight
-    elif slips <= _EVERY:
+    elif slips <= SETTINGS.every_slip:
         yield "every slip in lanes, Rodas4P2", partial(four, "resolved"), tight
-    if slips <= _EVERY:
+    if slips <= SETTINGS.every_slip:
         yield "every slip in lanes, Rodas5P", partial(five, "resolved"), tight
     else:
         yield "windows, Rodas4P2", partial(four, "windowed"), tight
-    for asked in (tight, max(0.1 * tight, 0.1 * _TIGHTEST)):
+    for asked in (tight, max(0.1 * tight, 0.1 * SETTINGS.tightest)):
         yield "windows, Rodas5P", partial(five, "windowed"), asked
 
 

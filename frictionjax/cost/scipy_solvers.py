@@ -12,10 +12,10 @@ from scipy import integrate as scipy_integrate
 from .._compile import Program
 from ..model import Scene, coefficients_jit
 from ..wiggly import Status, field_of
+from .settings import SETTINGS
 from .step_record import StepRecord
 
 SCIPY = ("LSODA", "BDF", "Radau")
-_RTOL = 1e-13  # SciPy warns of less than 2.2e-14
 
 
 class Run(NamedTuple):
@@ -109,7 +109,7 @@ def run_scipy(
             begin,
             start,
             end,
-            rtol=_RTOL,
+            rtol=SETTINGS.rtol,
             atol=np.array([tolerance, tolerance * slip]),
             jac=jacobian,
         )

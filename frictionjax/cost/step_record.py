@@ -7,8 +7,8 @@ import numpy as np
 
 from .._compile import Program, in_chunks
 from ..wiggly import TipField, advance, arrival, at_rest
+from .settings import SETTINGS
 
-_CHUNK = 4096  # steps of one compiled call
 _NODES = {"Radau": 3}  # times at which an attempt looks at the field; of others one
 
 
@@ -55,7 +55,7 @@ class StepRecord:
             return 0.0
         times = np.array([step[:2] for step in self._steps], dtype=float)
         tips = np.array([[y[0] for y in ends] for ends in self._tips], dtype=float)
-        return float(np.sum(in_chunks(_residuals, _CHUNK, (field,), (times, tips))))
+        return float(np.sum(in_chunks(_residuals, SETTINGS.steps, (field,), (times, tips))))
 
 
 @Program

@@ -9,13 +9,7 @@ import numpy as np
 
 from ..wiggly import MAX_STEPS, Status, is_ours, solve
 from .scipy_solvers import SCIPY, Run, run_scipy
-
-# s of the fastest step through diffrax, whose loops cannot be stopped: bounds their number.
-# (1.2 to 2.4 us measured; at 3 us runs were ended that would have taken half the time.)
-_FAST_STEP = 1e-6
-# Warm runs that are timed at least, and s after which no more are. (What took longer was
-# timed once: half of the rows had no spread.)
-_LEAST, _ENOUGH = 3, 0.5
+from .settings import SETTINGS
 
 
 def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
@@ -39,7 +33,9 @@ def _run_solve(scene, eps, gamma, ts, accuracy, method, seconds) -> Run:
 def _most(method: Any, seconds: float) -> int:
     """Steps after which a run is ended."""
     return (
-        MAX_STEPS if is_ours(method) else int(np.clip(seconds / _FAST_STEP, 1, MAX_STEPS))
+        MAX_STEPS
+        if is_ours(method)
+        else int(np.clip(seconds / SETTINGS.fast_step, 1, MAX_STEPS))
     )
 
 
@@ -61,7 +57,9 @@ def timed(
     if first is None:
         _, first = clocked(run)
     warm: list[float] = []
-    while len(warm) < repeats and (len(warm) < _LEAST or sum(warm) < _ENOUGH):
+    while len(warm) < repeats and (
+        len(warm) < SETTINGS.least_runs or sum(warm) < SETTINGS.enough
+    ):
         result, spent = clocked(run)
         warm.append(spent)
         if sum(warm) > seconds:

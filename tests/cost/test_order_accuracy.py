@@ -70,7 +70,7 @@ def test_out_of_reach_is_said(scene):
     assert f"+-{best:.2g}" in found.message
 
 
-PILOT = np.geomspace(1e-1, 1e-6, eps_grids._PILOT)
+PILOT = np.geomspace(1e-1, 1e-6, eps_grids.SETTINGS.pilot)
 
 
 def lawless(pilot, errors):
