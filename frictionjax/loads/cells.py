@@ -9,20 +9,7 @@ import numpy as np
 from .._checks import require
 from ..intervals import Enclosure, Interval, Jet, TooMuchWorkError
 from ..intervals import interval as iv
-
-# Cells at first, and into how many one is cut: a pulse of a millionth of [0, T] is reached
-# in 5 cuts by 8 of 8 cells each, in 12 by 2 of 2; many cells are cut by 2, as most of them
-# are decided by the next cut.
-_FIRST, _CUTS, _MANY = 256, 8, 2000
-_NEEDLE = 8  # spacings of floats at T: cells are not cut below this
-# Looked at; and numbers in all steps of the function there, which take 3 to 8 s; of
-# these, for the steepest place.
-_MOST_CELLS, MOST_NUMBERS, STEEPEST_SHARE = 2**20, 2**25, 0.25
-# Of the load's mean slope `max |l| / T`: slopes that move nothing over all of [0, T], and
-# kinks that are none. Of max |l|: changes below its rounding, and what no jump is below.
-_FLAT, KINK = 1e-12, 1e-9
-_ROUNDED, _STEADY = 1e-15, 1e-9
-_TOO_LARGE = 0.5 * float(np.finfo(float).max)
+from .settings import SETTINGS
 
 
 class Kind(IntEnum):
@@ -59,10 +46,10 @@ def proved_cells(bounds: Enclosure, duration: float) -> LoadCells:
     Cut until they do: nothing hides between samples, as none are taken. OPEN where more
     cells are needed than are affordable. Raises `ValueError` where the load is no number.
     """
-    edges = np.linspace(0.0, duration, _FIRST + 1)
-    lo, hi, size, left = edges[:-1], edges[1:], 0.0, _MOST_CELLS
+    edges = np.linspace(0.0, duration, SETTINGS.first + 1)
+    lo, hi, size, left = edges[:-1], edges[1:], 0.0, SETTINGS.most_cells
     done: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
-    bounds.allow(MOST_NUMBERS)
+    bounds.allow(SETTINGS.most_numbers)
     while lo.size:
         try:
             kinds, size = _kinds(bounds, lo, hi, duration, size)
@@ -73,7 +60,7 @@ def proved_cells(bounds: Enclosure, duration: float) -> LoadCells:
         again = kinds == Kind.OPEN
         done.append((lo[~again], hi[~again], kinds[~again]))
         lo, hi = lo[again], hi[again]
-        cuts = _CUTS if lo.size < _MANY else 2
+        cuts = SETTINGS.cuts if lo.size < SETTINGS.many else 2
         if cuts * lo.size > left:
             done.append((lo, hi, np.full(lo.size, int(Kind.OPEN))))
             break
@@ -92,7 +79,7 @@ def halves(lo: np.ndarray, hi: np.ndarray, cuts: int = 2) -> tuple[np.ndarray, n
 
 def needle(duration: float) -> float:
     """Length in s of the shortest cells."""
-    return _NEEDLE * float(np.spacing(duration))
+    return SETTINGS.needle * float(np.spacing(duration))
 
 
 def _kinds(
@@ -125,10 +112,12 @@ def _decided(whole: Jet, slope: Interval, length, size: float, duration: float):
     """The kind of each cell by bounds of its slope; OPEN where they do not decide."""
     smooth, mean = ~whole.seam, size / duration
     with np.errstate(all="ignore"):
-        small = length * slope.size <= _ROUNDED * size
-        calm = (slope.width <= KINK * mean) & (whole.value.width <= _STEADY * size)
+        small = length * slope.size <= SETTINGS.rounded * size
+        calm = (slope.width <= SETTINGS.kink * mean) & (
+            whole.value.width <= SETTINGS.steady * size
+        )
     bent = (whole.bend.lo >= 0) | (whole.bend.hi <= 0)
-    flat = slope.size <= np.where(smooth, _FLAT, KINK) * mean
+    flat = slope.size <= np.where(smooth, SETTINGS.flat, SETTINGS.kink) * mean
     rules = (
         (flat, Kind.FLAT),
         (slope.lo >= 0, Kind.RISING),
@@ -152,7 +141,11 @@ def _slopes(whole: Jet, at_middle: Interval, half: np.ndarray) -> Interval:
 
 
 def _require_numbers(times: np.ndarray, values: Interval) -> None:
-    bad = np.isnan(values.lo) | (values.lo > _TOO_LARGE) | (values.hi < -_TOO_LARGE)
+    bad = (
+        np.isnan(values.lo)
+        | (values.lo > SETTINGS.too_large)
+        | (values.hi < -SETTINGS.too_large)
+    )
     if bad.any():
         at = f"no finite number at t = {times[bad][0]:.9g}"
         require(False, "load.fn", at, "finite values on [0, duration]")

@@ -7,23 +7,10 @@ import numpy as np
 
 from .._checks import Real
 from ..intervals import Enclosure, NoRuleError, TooMuchWorkError, enclosure_of
-from .cells import (
-    MOST_NUMBERS,
-    STEEPEST_SHARE,
-    Kind,
-    LoadCells,
-    LoadPoint,
-    by_bounds,
-    halves,
-    needle,
-    proved_cells,
-)
+from .cells import Kind, LoadCells, LoadPoint, by_bounds, halves, needle, proved_cells
 from .needles import kinks_of, require_numbers_inside
 from .sampled_cells import Samples, sampled_cells
-
-_TOGETHER = 1e-12  # of the duration: turning points that are one
-_MOST_LOOKS = 60
-_STEEPEST = 1.02
+from .settings import SETTINGS
 
 
 class Course(NamedTuple):
@@ -69,7 +56,7 @@ def course_of(fn: Callable[[Real], Real], duration: float) -> Course:
 def _proved_course(fn: Callable, bounds: Enclosure, duration: float) -> Course:
     """By bounds alone; raises `TooMuchWorkError`."""
     cells, at = proved_cells(bounds, duration), by_bounds(bounds)
-    bounds.allow(MOST_NUMBERS)
+    bounds.allow(SETTINGS.most_numbers)
     require_numbers_inside(fn, bounds, cells)
     if np.any(cells.kind == Kind.OPEN):
         raise TooMuchWorkError
@@ -96,8 +83,8 @@ def _events(
     kinks = kinks_of(cells, at, duration)
     cells = _unbent(cells, at)
     turns = _turns(cells, kinks, at)
-    others = kinks[_gaps(kinks, turns) > _TOGETHER * duration]
-    first, last = _TOGETHER * duration, (1 - _TOGETHER) * duration
+    others = kinks[_gaps(kinks, turns) > SETTINGS.together * duration]
+    first, last = SETTINGS.together * duration, (1 - SETTINGS.together) * duration
     inside = (others > first) & (others < last)
     return turns[(turns > first) & (turns < last)], others[inside]
 
@@ -139,7 +126,7 @@ def _roots(at: LoadPoint, lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
     """
     x1, x2, f1, f2 = hi, lo, at(hi)[1], at(lo)[1]
     share = np.full(lo.size, 0.5)
-    for _ in range(_MOST_LOOKS):
+    for _ in range(SETTINGS.most_looks):
         x = x1 + share * (x2 - x1)
         f = at(x)[1]
         same = np.sign(f) == np.sign(f1)
@@ -191,7 +178,7 @@ def _steepest(bounds: Enclosure, at: LoadPoint, duration: float) -> float:
     """A time at which |l'| is within 2% of its largest, by bounds of it."""
     edges = np.linspace(0.0, duration, 65)
     lo, hi, place, best = edges[:-1], edges[1:], 0.5 * duration, 0.0
-    bounds.allow(STEEPEST_SHARE * MOST_NUMBERS)
+    bounds.allow(SETTINGS.steepest_share * SETTINGS.most_numbers)
     while lo.size:
         try:
             whole = bounds(lo, hi)
@@ -206,6 +193,6 @@ def _steepest(bounds: Enclosure, at: LoadPoint, duration: float) -> float:
         with np.errstate(invalid="ignore"):
             from_middle = np.where(whole.seam, np.inf, sizes + away)
         most = np.fmin(whole.slope.size, from_middle)
-        open_ = (most > _STEEPEST * best) & (hi - lo > needle(duration))
+        open_ = (most > SETTINGS.steepest * best) & (hi - lo > needle(duration))
         lo, hi = halves(lo[open_], hi[open_])
     return place

@@ -21,11 +21,7 @@ from .._checks import (
 )
 from .course import Course, course_of
 from .load import AbstractLoad, listed_turning_points
-
-_SAMPLES = 4096  # of a load whose numbers are traced or may have changed: finds slow turns
-_OTHER_WAY = 1e-9  # of the largest |l|: what it may go there where it should not
-_LATER = 1e-12  # of the duration: rounding of durations
-_SAME = 1e-9  # of the largest |l|, of the duration: turning points that are one
+from .settings import SETTINGS
 
 
 class UnprovedLoad(UserWarning):
@@ -107,7 +103,7 @@ class Custom(AbstractLoad):
         if self.found is None or self.until is None:
             wrong, times = _turns_elsewhere(self, self.listed, duration), self.listed
         else:
-            wrong, times = duration > (1 + _LATER) * self.until, self.found
+            wrong, times = duration > (1 + SETTINGS.later) * self.until, self.found
             if jax.tree_util.tree_leaves(eqx.filter(self.fn, eqx.is_array)):
                 wrong |= _turns_elsewhere(self, self.found, duration)
         return jnp.where(wrong, jnp.nan, listed_turning_points(times, duration, count))
@@ -119,7 +115,7 @@ class Custom(AbstractLoad):
             return np.union1d(course.turns, course.kinks)
         inside = listed[(listed > 0) & (listed < duration)]
         _require_complete(course, inside)
-        apart = np.abs(course.kinks[:, None] - inside) > _SAME * duration
+        apart = np.abs(course.kinks[:, None] - inside) > SETTINGS.same * duration
         return np.union1d(listed, course.kinks[apart.all(axis=1)])
 
 
@@ -156,7 +152,7 @@ def _require_complete(course: Course, listed: np.ndarray) -> None:
     for turn, low, high in zip(turns, before, after, strict=True):
         near = listed[(listed > low) & (listed < high)]
         heights = course.values(np.append(near, turn))
-        if not np.any(np.abs(heights[:-1] - heights[-1]) <= _SAME * course.size):
+        if not np.any(np.abs(heights[:-1] - heights[-1]) <= SETTINGS.same * course.size):
             missing.append(turn)
     some = ", ".join(f"{turn:.9g}" for turn in missing[:4])
     more = f" and {len(missing) - 4} more" if len(missing) > 4 else ""
@@ -168,9 +164,9 @@ def _turns_elsewhere(
     load: Custom, turns: Float[Array, " n"], duration: Real
 ) -> Bool[Array, ""]:
     """Whether samples of a load go both ways between two of these times, traceable."""
-    times = duration * jnp.linspace(0.0, 1.0, _SAMPLES)
+    times = duration * jnp.linspace(0.0, 1.0, SETTINGS.samples)
     values = jax.lax.stop_gradient(jax.vmap(load)(times))
-    steps, noise = jnp.diff(values), _OTHER_WAY * jnp.max(jnp.abs(values))
+    steps, noise = jnp.diff(values), SETTINGS.other_way * jnp.max(jnp.abs(values))
     piece = jnp.searchsorted(turns, times, side="right")
     inside = piece[1:] == piece[:-1]
     rooms = turns.shape[0] + 1

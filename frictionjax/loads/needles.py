@@ -8,17 +8,10 @@ import numpy as np
 
 from .._checks import Real, require
 from ..intervals import Enclosure
-from .cells import KINK, Kind, LoadCells, LoadPoint, halves, needle
+from .cells import Kind, LoadCells, LoadPoint, halves, needle
+from .settings import SETTINGS
 
-_JUMP = 1e-6  # of max |l|: what a load may change by within a few spacings of floats
-# Changes that the slopes on either side explain: one of them holds at least half way.
-_EXPLAINED = 1.5
-# A change of slope that is a kink: of the slopes beside it. What l'' may do there is less.
-_KINK = 1e-6
-_ASIDE = 8  # shortest cells: from a place that is not smooth to what is beside it
-# Closer and closer by 8: a power |t|^p rises by 8^-p of the step before, a logarithm by 1.
-_NEARER, _GROWS, _RISEN = np.array([512, 64, 8, 1]), 0.95, 1e-9
-_MOST_LOOKS = 2**15  # stretches
+_NEARER = np.array(SETTINGS.nearer)
 _SLOW = "a continuous function, slow enough to tell from one that jumps"
 
 
@@ -27,7 +20,7 @@ def kinks_of(cells: LoadCells, at: LoadPoint, duration: float) -> np.ndarray:
     sharp = np.flatnonzero(cells.kind == Kind.NEEDLE)
     if sharp.size == 0:
         return np.zeros(0)
-    aside = _ASIDE * needle(duration)
+    aside = SETTINGS.aside * needle(duration)
     starts = np.concatenate([[True], np.diff(cells.lo[sharp]) > aside])
     ends = np.append(starts[1:], True)
     lo, hi = cells.lo[sharp[starts]], cells.hi[sharp[ends]]
@@ -36,11 +29,13 @@ def kinks_of(cells: LoadCells, at: LoadPoint, duration: float) -> np.ndarray:
     size, steepest = cells.size + 1e-300, np.fmax(np.abs(slope0), np.abs(slope1))
     _require_bounded(lo, hi, at, size, duration)
     length, change = after - before, np.abs(value1 - value0)
-    unsure = change - np.maximum(_JUMP * size, _EXPLAINED * steepest * length)
+    unsure = change - np.maximum(
+        SETTINGS.jump * size, SETTINGS.explained * steepest * length
+    )
     jump = int(np.argmax(np.where(np.isnan(unsure), np.inf, unsure)))
     where = f"at t = {hi[jump]:.6g}, or changes so within {length[jump]:.2g} s"
     require(unsure[jump] <= 0, "load.fn", f"jumps by {change[jump]:.6g} {where}", _SLOW)
-    least = KINK * size / duration + _KINK * steepest
+    least = SETTINGS.kink * size / duration + SETTINGS.kink_beside * steepest
     kink = ~(np.abs(slope1 - slope0) <= least)
     return hi[kink]
 
@@ -49,14 +44,14 @@ def _require_bounded(
     lo: np.ndarray, hi: np.ndarray, at: LoadPoint, size: float, duration: float
 ) -> None:
     """Check that values do not go on growing towards places, however close."""
-    away = _NEARER[:, None] * (_ASIDE * needle(duration))
+    away = _NEARER[:, None] * (SETTINGS.aside * needle(duration))
     for side in (lo - away, hi + away):
         times = np.clip(side, 0.0, duration)
         values = at(times.ravel())[0].reshape(times.shape)
         with np.errstate(invalid="ignore"):
             steps = np.abs(np.diff(values, axis=0))
-            grows = np.all(steps[1:] >= _GROWS * steps[:-1], axis=0)
-            pole = grows & np.all(steps > _RISEN * size, axis=0)
+            grows = np.all(steps[1:] >= SETTINGS.grows * steps[:-1], axis=0)
+            pole = grows & np.all(steps > SETTINGS.risen * size, axis=0)
         known = f"grows without bound at t = {lo[np.argmax(pole)]:.9g}"
         require(not pole.any(), "load.fn", known, "finite values on [0, duration]")
 
@@ -71,7 +66,7 @@ def require_numbers_inside(
     sharp = cells.kind == Kind.NEEDLE
     lo, hi = cells.lo[sharp], cells.hi[sharp]
     looked = 0
-    while lo.size and looked < _MOST_LOOKS:
+    while lo.size and looked < SETTINGS.most_stretches:
         looked += lo.size
         wide = _is_wide(bounds, lo, hi)
         lo, hi = lo[wide], hi[wide]

@@ -10,20 +10,7 @@ import numpy as np
 from .._checks import Real, require
 from ..intervals import work_of
 from .cells import Kind, LoadCells, halves, needle
-
-# Cells of which each is looked at from its ends and at two places inside. A pulse that
-# lasts longer than one is seen; of shorter ones, one in the share of its cell.
-_CELLS, _FEWEST = 2**16, 2**8
-_CHUNK = 2**14  # times of one compiled call
-_MOST = 2**20  # cells
-# Of all samples, in all steps of the function, which take 5 to 10 s; and of a call.
-_MOST_NUMBERS, _MOST_AT_ONCE = 2**27, 2**23
-# Of the range of l: what it may go off its way between samples at the end.
-_UNSEEN = 1e-6
-_PLACES = (0.38, 0.71)  # inside a cell: not where multiples of T/2^n are
-# How well a cubic through the ends foretells values inside, of max |l|, and slopes, of the
-# largest there and of the mean one. (By values alone kinks passed in cells that are short.)
-_FORETOLD, _FORETOLD_SLOPE = 1e-7, 1e-5
+from .settings import SETTINGS
 
 
 class Samples:
@@ -37,12 +24,13 @@ class Samples:
         with jax.ensure_compile_time_eval():
             closed = jax.make_jaxpr(lambda t: jnp.asarray(fn(t), float))(0.5)
         self.numbers = max(1, work_of(closed.jaxpr)[0])
-        room = _MOST_NUMBERS // (8 * self.numbers)
+        room = SETTINGS.most_sampled_numbers // (8 * self.numbers)
         known = f"a program of {self.numbers} numbers"
-        allowed = f"at most {_MOST_NUMBERS // (8 * _FEWEST)}, or a PiecewiseLinear load"
-        require(room >= _FEWEST, "load.fn", known, allowed)
-        self.cells = min(_CELLS, 1 << (room.bit_length() - 1))
-        self._chunk = max(64, min(_CHUNK, _MOST_AT_ONCE // self.numbers))
+        longest = SETTINGS.most_sampled_numbers // (8 * SETTINGS.fewest)
+        allowed = f"at most {longest}, or a PiecewiseLinear load"
+        require(room >= SETTINGS.fewest, "load.fn", known, allowed)
+        self.cells = min(SETTINGS.sampled, 1 << (room.bit_length() - 1))
+        self._chunk = max(64, min(SETTINGS.chunk, SETTINGS.most_at_once // self.numbers))
 
         @jax.jit
         def rates(times: Any) -> Any:
@@ -75,7 +63,9 @@ def sampled_cells(at: Samples, duration: float) -> LoadCells:
     edges = np.linspace(0.0, duration, at.cells + 1)
     lo, hi, size = edges[:-1], edges[1:], 0.0
     done: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
-    left = min(_MOST + at.cells, _MOST_NUMBERS // (4 * at.numbers))
+    left = min(
+        SETTINGS.most_sampled + at.cells, SETTINGS.most_sampled_numbers // (4 * at.numbers)
+    )
     least, most = np.inf, -np.inf
     while lo.size:
         values, slopes = _seen(at, lo, hi)
@@ -86,7 +76,7 @@ def sampled_cells(at: Samples, duration: float) -> LoadCells:
         kinds = _kinds(values, slopes, hi - lo, size, duration)
         again, left = kinds == Kind.OPEN, left - lo.size
         if 2 * np.sum(again) > left:
-            unseen = _UNSEEN * (most - least) + 1e-12 * size
+            unseen = SETTINGS.unseen * (most - least) + 1e-12 * size
             kinds[again] = _left_open(
                 values[:, again], slopes[:, again], lo[again], hi[again], unseen
             )
@@ -104,7 +94,7 @@ def _left_open(values, slopes, lo: np.ndarray, hi: np.ndarray, unseen: float) ->
     A sine of 1 MHz passed for a load that rests, of which the limit was 0.13 m off.
     """
     off, _ = _surprises(values, slopes * (hi - lo))
-    s = np.array(_PLACES)[:, None]
+    s = np.array(SETTINGS.places)[:, None]
     rise = values[3] - values[0]
     straight = np.max(np.abs(values[0] + rise * s - values[1:3]), axis=0)
     off = np.fmin(off, straight)
@@ -128,7 +118,7 @@ def _require_slopes(times: np.ndarray, slopes: np.ndarray) -> None:
 
 def _seen(at: Samples, lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Values and slopes at both ends of each cell and at places inside, (4, n)."""
-    share = np.array([0.0, *_PLACES, 1.0])[:, None]
+    share = np.array([0.0, *SETTINGS.places, 1.0])[:, None]
     times = lo + (hi - lo) * share
     values, slopes = at(times.ravel())
     return values.reshape(times.shape), slopes.reshape(times.shape)
@@ -156,12 +146,14 @@ def _is_foretold(values, ways, length: np.ndarray, size: float, duration: float)
     """Whether the cubic through the ends of each cell is near what is inside."""
     off, off_way = _surprises(values, ways)
     largest = np.max(np.abs(ways), axis=0) + size * length / duration
-    return (off <= _FORETOLD * size) & (off_way <= _FORETOLD_SLOPE * largest)
+    return (off <= SETTINGS.foretold * size) & (
+        off_way <= SETTINGS.foretold_slope * largest
+    )
 
 
 def _surprises(values, ways) -> tuple[np.ndarray, np.ndarray]:
     """How far values inside, and slopes times lengths, are from the cubic of the ends."""
-    s = np.array(_PLACES)[:, None]
+    s = np.array(SETTINGS.places)[:, None]
     rise = values[3] - values[0]
     first, last = ways[0] - rise, ways[3] - rise
     value = values[0] + rise * s + s * (1 - s) * (first * (1 - s) - last * s)

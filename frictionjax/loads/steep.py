@@ -6,11 +6,7 @@ from jaxtyping import Array, Float
 
 from .._checks import Real
 from .load import AbstractLoad
-
-_SAMPLES = 64
-# Intervals between samples that are looked into, and how: a ramp that lasts a 1e-8 of the
-# way is found where it lifts the load by more than the bend of the rest.
-_SUSPECTS, _PARTS, _ZOOMS = 4, 16, 5
+from .settings import SETTINGS
 
 
 def steep_times(load: AbstractLoad, start: Real, end: Real) -> Float[Array, " samples"]:
@@ -20,15 +16,18 @@ def steep_times(load: AbstractLoad, start: Real, end: Real) -> Float[Array, " sa
     between two samples shows in the rise. (Without, a load that rose by 0.8 N in 2 ms of
     3 s counted as flat, and states were 32 times the accuracy off.)
     """
-    edges = start + (end - start) * jnp.arange(_SAMPLES + 1) / _SAMPLES
+    edges = (
+        start
+        + (end - start) * jnp.arange(SETTINGS.steep_samples + 1) / SETTINGS.steep_samples
+    )
     middles = 0.5 * (edges[1:] + edges[:-1])
     slopes = jax.vmap(load.slope)(middles)
     gaps = jnp.abs(jnp.diff(jax.vmap(load)(edges)) - slopes * jnp.diff(edges))
-    _, suspects = jax.lax.top_k(gaps, _SUSPECTS)
+    _, suspects = jax.lax.top_k(gaps, SETTINGS.suspects)
 
     def steepest(low: Real, high: Real) -> Real:
-        for _ in range(_ZOOMS):
-            inner = low + (high - low) * jnp.arange(_PARTS + 1) / _PARTS
+        for _ in range(SETTINGS.zooms):
+            inner = low + (high - low) * jnp.arange(SETTINGS.parts + 1) / SETTINGS.parts
             rises = jnp.abs(jnp.diff(jax.vmap(load)(inner)))
             part = jnp.argmax(rises)
             low, high = inner[part], inner[part + 1]

@@ -2,15 +2,11 @@
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real, as_real, require_real
 from .load import AbstractLoad, periodic_turning_count, periodic_turning_points
-
-# A kink computed as (2k+1) period/4 must already lie on the piece to its right, or an
-# integrator starting there sees the old slope: two roundings of slack.
-_SLACK = 4 * float(np.finfo(np.float64).eps)
+from .settings import SETTINGS
 
 
 class Triangle(AbstractLoad):
@@ -30,7 +26,7 @@ class Triangle(AbstractLoad):
 
     def __call__(self, t: Real) -> Real:
         halves = 2 * t / self.period
-        piece = jnp.floor(halves + 0.5 + _SLACK * (1 + jnp.abs(halves)))
+        piece = jnp.floor(halves + 0.5 + SETTINGS.slack * (1 + jnp.abs(halves)))
         sign = 1 - 2 * jnp.mod(piece, 2)
         return self.amplitude * sign * 2 * (halves - piece)
 
