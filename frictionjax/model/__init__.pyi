@@ -16,6 +16,6 @@ from .scene import known_scene as known_scene
 from .scene import load_range as load_range
 from .scene import require_times as require_times
 from .scene import require_told_apart as require_told_apart
-from .strip import CHUNK as CHUNK
+from .settings import SETTINGS as SETTINGS
 from .strip import strip_of as strip_of
 from .strip import strips_at as strips_at

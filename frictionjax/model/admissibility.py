@@ -18,9 +18,9 @@ from .clearance import clearance
 from .friction_coefficients import Coefficients, coefficients_jit
 from .given_rest import require_given
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
+from .settings import SETTINGS
 
 _EPS64 = float(np.finfo(np.float64).eps)
-_TOGETHER = 8  # eps of one compiled call
 
 
 @Program
@@ -115,7 +115,7 @@ def _some_margins(potential: AbstractPotential, eps: Float[Array, " few"]):
 def _margins(
     potential: AbstractPotential, eps: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    return in_chunks(_some_margins, _TOGETHER, (potential,), (eps,))
+    return in_chunks(_some_margins, SETTINGS.margins, (potential,), (eps,))
 
 
 def _fits(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:

@@ -8,8 +8,7 @@ from .._checks import Real
 from ..bristles import Rod
 from ..numerics import smallest
 from .potentials import AbstractPotential, BristlePotential
-
-_PLACES = 512  # of a period, for the tip and for what is ahead of it
+from .settings import SETTINGS
 
 
 def clearance(potential: AbstractPotential, eps: Real) -> Real:
@@ -44,11 +43,12 @@ def _rods(potential: BristlePotential, heights: Float[Array, " n"]) -> Rod:
 
 def _ahead(potential: BristlePotential, eps: Real) -> Real:
     """The same for secants over 1/512 of a period and more."""
-    heights = potential.profile(jnp.arange(_PLACES) / _PLACES)
+    places = SETTINGS.clearance_places
+    heights = potential.profile(jnp.arange(places) / places)
     rods = _rods(potential, eps * heights)
-    steps = jnp.arange(1, _PLACES + 1)
-    ahead = heights[(jnp.arange(_PLACES)[:, None] + steps) % _PLACES]
-    secants = (ahead - heights[:, None]) * _PLACES / steps
-    under = eps * steps / _PLACES <= rods.reach[:, None]
+    steps = jnp.arange(1, places + 1)
+    ahead = heights[(jnp.arange(places)[:, None] + steps) % places]
+    secants = (ahead - heights[:, None]) * places / steps
+    under = eps * steps / places <= rods.reach[:, None]
     steepest = jnp.max(jnp.where(under, secants, -jnp.inf), axis=1)
     return smallest(rods.slope - steepest)

@@ -12,18 +12,11 @@ from .._checks import Real, require
 from .._compile import Program, in_chunks
 from ..numerics import slope_of
 from .potentials import GivenPotential
+from .settings import SETTINGS
 
-_PLACES = 256  # of a period, off the grid of round phases
-_STRETCHES = 16  # of a period: a jump or a narrow bump fills half of none
-_INSIDE = 1e-7  # of a period, before the seam
-_STEP = 2.0**-20  # between neighbours: 64 harmonics bend by 1e-13 of themselves there
 # Fourth differences of noise are sqrt(70) times as large; of smooth functions next to none.
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / np.sqrt(70.0)
 _NODES, _SHARES = np.polynomial.legendre.leggauss(6)  # 64 harmonics: 1e-11 of a step
-_MOST_OF_W = 1e-7  # of the range of W: energies of wells, a slip has its digits then
-_MOST_OF_FORCE = 1e-9  # of the range of W': slips would come at times of their own
-_MOST_OF_Q = 1e-3  # of the largest |Q| and |Q'|: less is no Q any more
-_TOGETHER = 8  # eps of one compiled call
 
 
 class Noises(NamedTuple):
@@ -45,7 +38,7 @@ class Noises(NamedTuple):
 
 def noises(potential: GivenPotential, eps: np.ndarray) -> Noises:
     """Values of W and Q looked at, at every eps (n,)."""
-    found = in_chunks(_noises, _TOGETHER, (potential,), (eps,))
+    found = in_chunks(_noises, SETTINGS.noises, (potential,), (eps,))
     return Noises(*(np.asarray(part) for part in found))
 
 
@@ -65,15 +58,15 @@ def require_digits(found: Noises, eps: np.ndarray) -> None:
     """
     needs = "smooth values: as written it is a small difference of large numbers"
     for name, noise, most in (
-        ("potential.W: noise over range", found.w, _MOST_OF_W),
-        ("potential.W: noise of its slope over range", found.force, _MOST_OF_FORCE),
+        ("potential.W: noise over range", found.w, SETTINGS.most_of_w),
+        ("potential.W: noise of its slope over range", found.force, SETTINGS.most_of_force),
     ):
         require(noise[0] <= most, name, float(noise[0]), f"at most {most:g}, {needs}")
-    lost = (found.q > _MOST_OF_Q) | (found.change > _MOST_OF_FORCE)
+    lost = (found.q > SETTINGS.most_of_q) | (found.change > SETTINGS.most_of_force)
     if lost.any():
         worst, size = float(found.q[lost][0]), float(eps[lost][0])
         name = f"potential.Q at eps = {size:.6g}: noise over largest value"
-        require(False, name, worst, f"at most {_MOST_OF_Q:g}, {needs}")
+        require(False, name, worst, f"at most {SETTINGS.most_of_q:g}, {needs}")
 
 
 @Program
@@ -100,7 +93,7 @@ def _noises(potential: GivenPotential, eps: Float[Array, " n"]):
 
 def _at_seam(rest: Callable[[Real], Real]) -> Float[Array, " 2"]:
     """What a function and its slope jump by, from just before Y = 1 to Y = 0."""
-    ends = jnp.array([0.0, 1 - _INSIDE, 1 - 2 * _INSIDE])
+    ends = jnp.array([0.0, 1 - SETTINGS.inside, 1 - 2 * SETTINGS.inside])
     values, slopes = jax.vmap(jax.value_and_grad(rest))(ends)
     both = jnp.stack([values, slopes], axis=1)
     # From both places before it, a straight line: what is rounded there is in the noise.
@@ -108,25 +101,25 @@ def _at_seam(rest: Callable[[Real], Real]) -> Float[Array, " 2"]:
 
 
 def _phases() -> Float[Array, " n"]:
-    return (jnp.arange(_PLACES) + 0.381966) / _PLACES
+    return (jnp.arange(SETTINGS.places) + 0.381966) / SETTINGS.places
 
 
 def _of_values(fn: Callable[[Real], Real]) -> Real:
     """What changes between neighbouring places and slopes do not explain."""
     ends = jax.vmap(fn)(jnp.append(_phases(), _phases()[0] + 1))
-    inside = _phases()[:, None] + (1 + _NODES) / (2 * _PLACES)
-    slopes = jax.vmap(jax.vmap(slope_of(fn)))(inside) @ _SHARES / (2 * _PLACES)
+    inside = _phases()[:, None] + (1 + _NODES) / (2 * SETTINGS.places)
+    slopes = jax.vmap(jax.vmap(slope_of(fn)))(inside) @ _SHARES / (2 * SETTINGS.places)
     return _worst_median(jnp.diff(ends) - slopes) / np.sqrt(2.0)
 
 
 def _of_slopes(fn: Callable[[Real], Real]) -> Real:
     """Noise of a slope, from phases that are almost the same."""
-    beside = _phases()[:, None] + _STEP * jnp.arange(-2, 3)
+    beside = _phases()[:, None] + SETTINGS.neighbours * jnp.arange(-2, 3)
     slopes = jax.vmap(jax.vmap(slope_of(fn)))(beside)
     return _worst_median(slopes @ _WEIGHTS)
 
 
 def _worst_median(left: Float[Array, " n"]) -> Real:
     """The largest median of the stretches of a period."""
-    parts = jnp.abs(left).reshape(_STRETCHES, -1)
+    parts = jnp.abs(left).reshape(SETTINGS.stretches, -1)
     return jnp.max(jnp.median(parts, axis=1))

@@ -15,11 +15,9 @@ from ..profiles import AbstractSampled
 from .admissibility import admissible_coefficients
 from .friction_coefficients import Coefficients, with_errors
 from .potentials import AbstractPotential, BristlePotential, potential
+from .settings import SETTINGS
 
-_SLACK = 1e-10  # of the interval; rounding of l - Phi' at |l| = 1e4 rho is 1e-12
-_SPACINGS = 8  # of l: two each of l, z and Phi', and of what z is solved from
 _SPACING = float(np.finfo(np.float64).eps)
-_STEPS = 6  # of Newton: H' is a parabola at worst, where xi is close to rho
 
 
 @with_nan
@@ -114,7 +112,7 @@ def dual_dissipation(potential: AbstractPotential, xi: Real) -> Real:
             return jnp.clip(y - value / jnp.where(bend == 0, 1.0, bend), left, right)
 
         # H' is zero at the turn, so what is left of its place enters squared.
-        place = jax.lax.stop_gradient(jax.lax.fori_loop(0, _STEPS, newton, secant))
+        place = jax.lax.stop_gradient(jax.lax.fori_loop(0, SETTINGS.newton, newton, secant))
         turn = primitive(place)
         split = jnp.abs(turn - start) + jnp.abs(end - turn)
         return jnp.where(turns, split, jnp.abs(end - start))
@@ -155,8 +153,8 @@ def limit_dissipation(
     the nearest xi inside.
     """
     size = jnp.maximum(jnp.abs(load), jnp.abs(load - xi))
-    lost = jnp.where(jnp.asarray(load) == 0, 0.0, _SPACINGS * _SPACING * size)
-    slack = slack + lost + _SLACK * (found.rho_plus - found.rho_minus)
+    lost = jnp.where(jnp.asarray(load) == 0, 0.0, SETTINGS.spacings * _SPACING * size)
+    slack = slack + lost + SETTINGS.slack * (found.rho_plus - found.rho_minus)
     inside = (xi >= found.rho_minus - slack) & (xi <= found.rho_plus + slack)
     held = jnp.clip(xi, found.rho_minus, found.rho_plus)
     return jnp.where(inside, jnp.abs(v) * dual_dissipation(potential, held), jnp.inf)

@@ -5,14 +5,7 @@ import numpy as np
 from .._checks import require
 from .digits import Noises, noises, require_digits
 from .potentials import AbstractPotential, GivenPotential
-
-_SEAM = 1e-6  # of the largest value, as of W
-_ABOVE_NOISE = 20.0  # times the median, which a jump of noise stays below
-_STEP, _GREATER, _LESS = 8.0, 2, 8  # eps times 64 to eps/8^8: over 9 decades
-# 1/sqrt(eps) grows by 2.8 in such a step, log(eps) by 1.8 at most from eps = 0.01 on. What
-# settles down somewhere, as 1/(eps + 1e-4), is bounded, if large.
-_GROWS = 2.5
-_FELT = 1e-9  # of the range of W': of less than that no force knows
+from .settings import SETTINGS
 
 
 def require_given(potential: AbstractPotential, eps: np.ndarray) -> None:
@@ -33,7 +26,7 @@ def require_given(potential: AbstractPotential, eps: np.ndarray) -> None:
 def _require_periodic(found: Noises, eps: np.ndarray) -> None:
     size = found.largest
     noise = np.stack([found.q * size, found.change * found.range / eps], axis=1)
-    allowed = _SEAM * size[:, None] + _ABOVE_NOISE * noise
+    allowed = SETTINGS.seam * size[:, None] + SETTINGS.above_noise * noise
     wrong = found.seam > allowed
     if not wrong.any():
         return
@@ -44,14 +37,16 @@ def _require_periodic(found: Noises, eps: np.ndarray) -> None:
 
 
 def _require_bounded(potential: GivenPotential, least: float) -> None:
-    sizes = least * _STEP ** np.arange(_GREATER, -_LESS - 1, -1.0)
+    sizes = least * SETTINGS.eps_ratio ** np.arange(
+        SETTINGS.greater, -SETTINGS.less - 1, -1.0
+    )
     found = noises(potential, sizes)
-    largest, now = found.largest, _GREATER
+    largest, now = found.largest, SETTINGS.greater
     with np.errstate(all="ignore"):
         growth = largest[1:] / largest[:-1]
     # What has no value at a larger eps, or overflows at a smaller one, tells nothing.
-    grows = bool(np.all(np.isnan(growth) | (growth > _GROWS)))
-    felt = least * largest[now] > _FELT * found.range[now]
+    grows = bool(np.all(np.isnan(growth) | (growth > SETTINGS.grows)))
+    felt = least * largest[now] > SETTINGS.felt * found.range[now]
     known = np.isfinite(growth[now - 1]) or np.isfinite(growth[now])
     name = f"potential.Q at eps = {least:.6g}"
     said = (

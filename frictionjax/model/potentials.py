@@ -25,8 +25,7 @@ from .._checks import (
 from ..bristles import AbstractBristle
 from ..numerics import bracketed_root, increment, mean_slope, second_remainder, smallest
 from ..profiles import AbstractProfile, require_smooth
-
-_ZOOM = 256  # samples between two neighbours of a scan: its minimum to 1e-8
+from .settings import SETTINGS
 
 
 def _slope(fn: Callable[[Real], Real], x: Real) -> tuple[Real, Real]:
@@ -300,5 +299,5 @@ def smallest_stretch(
     offset = jax.vmap(lambda y: potential.offset(y, eps))(grid)
     coarse = stretch(grid)
     places = [jnp.argmin(coarse), jnp.argmin(offset), jnp.argmax(offset)]
-    fine = grid[jnp.stack(places)][:, None] + np.linspace(-1, 1, _ZOOM + 1) / count
+    fine = grid[jnp.stack(places)][:, None] + np.linspace(-1, 1, SETTINGS.zoom + 1) / count
     return smallest(jnp.concatenate([coarse, stretch(fine.ravel())]))

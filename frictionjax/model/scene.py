@@ -36,16 +36,10 @@ from ..profiles import AbstractProfile
 from ..supports import AbstractSupport
 from .admissibility import admissible_coefficients, require_convex
 from .potentials import AbstractPotential, BristlePotential, potential
+from .settings import SETTINGS
 
-_TRACED_TURNS = 64  # turning points allowed for where the load's numbers are traced
-# Of the largest |z|: rounding of z itself is 1e-4 eps there. (At 1e-13 to 3e-13 most sweeps
-# of five scenes held ROUGH_SURVEY, at accuracy 1e-3; at 5e-13 to 8e-13 a stiff one did, and
-# 1 in 100 above.)
-_TOLD_APART = 2.0**-40
 _ANEW = ByIdentity()  # the scene built of one with other leaves
 _ALPHA = ByIdentity()  # the normal force in N that was computed when it was checked
-_ROUNDED = 8  # spacings of floats by which a time may exceed the duration
-_MOST_TURNS = 2**20  # in a scene: 8 MB a copy of their times
 
 
 class Scene(eqx.Module):
@@ -178,10 +172,10 @@ def _with_turns(load: AbstractLoad, duration: Any) -> tuple[AbstractLoad, int]:
 
 def _room_for_turns(load: AbstractLoad, duration: Any) -> int:
     if not is_concrete(load, duration):
-        return _TRACED_TURNS
+        return SETTINGS.traced_turns
     count = load.turning_count(float(duration))
-    allowed = f"at most {_MOST_TURNS} in [0, duration]"
-    require(count <= _MOST_TURNS, "load: turning points", count, allowed)
+    allowed = f"at most {SETTINGS.most_turns} in [0, duration]"
+    require(count <= SETTINGS.most_turns, "load: turning points", count, allowed)
     return 1 << max(2, (count - 1).bit_length()) if count else 0
 
 
@@ -259,7 +253,7 @@ def require_told_apart(scene: Scene, eps: Any) -> None:
     if not is_concrete(scene, eps):
         return
     least, far = float(np.min(np.asarray(eps, dtype=float))), float(_farthest(scene))
-    smallest = _TOLD_APART * far
+    smallest = SETTINGS.told_apart * far
     allowed = (
         f"eps >= {no_less(smallest, 4)}: wells at {far:.3g} m that floats can tell apart"
     )
@@ -287,7 +281,7 @@ def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " 
     require(np.all(np.diff(known) >= 0), "ts", known, "times that do not decrease")
     end = float(duration)
     # 3 * 0.1 > 0.3, and what is added up n times is n spacings off.
-    slack = (_ROUNDED + known.size) * np.spacing(end)
+    slack = (SETTINGS.rounded + known.size) * np.spacing(end)
     inside = known[0] >= -slack and known[-1] <= end + slack
     require(inside, "ts", known[[0, -1]], f"times in [0, duration] = [0, {no_more(end)}]")
     if known[0] >= 0 and known[-1] <= end:

@@ -8,8 +8,7 @@ from .._checks import Real
 from .._compile import Program, in_chunks
 from ..supports import AbstractSupport
 from .scene import Scene
-
-CHUNK = 1024  # times of one compiled call
+from .settings import SETTINGS
 
 
 def strip_of(
@@ -33,5 +32,5 @@ def strips_at(
     if times.size == 0:
         return times, times, times
     rho = np.asarray(rho_plus, dtype=float), np.asarray(rho_minus, dtype=float)
-    load, lower, upper = in_chunks(_strips, CHUNK, (scene, *rho), (times,))
+    load, lower, upper = in_chunks(_strips, SETTINGS.times, (scene, *rho), (times,))
     return load, lower, upper

@@ -9,14 +9,8 @@ from jaxtyping import Array, Float
 
 from .._checks import Real
 from .._compile import Program, in_chunks
-from ..model import (
-    CHUNK,
-    AbstractPotential,
-    BristlePotential,
-    Coefficients,
-    Scene,
-    strips_at,
-)
+from ..model import SETTINGS as MODEL_SETTINGS
+from ..model import AbstractPotential, BristlePotential, Coefficients, Scene, strips_at
 from ..numerics import slope_of
 from .settings import SETTINGS
 
@@ -71,7 +65,7 @@ def slide_data(
     """
     turns = np.asarray(scene.turning_points())
     turns = np.unique(turns[turns < float(scene.duration)])
-    if turns.size >= CHUNK - SETTINGS.moments:
+    if turns.size >= MODEL_SETTINGS.times - SETTINGS.moments:
         return None
     wells = _wells(scene.potential, SETTINGS.small_eps * float(np.max(eps)))
     return SlideData(*wells, *_moments(scene, found, turns))

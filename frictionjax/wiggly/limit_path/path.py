@@ -12,7 +12,8 @@ import numpy as np
 from jaxtyping import Array, Float, Int, Shaped
 
 from ..._compile import Program, in_chunks
-from ...model import CHUNK, Scene, strips_at
+from ...model import SETTINGS as MODEL_SETTINGS
+from ...model import Scene, strips_at
 from ...numerics import find_root
 
 
@@ -95,7 +96,7 @@ def times_at(
     if states.size == 0:
         return states
     columns = states, path.rho[piece], path.touch[piece], path.edges[piece + 1]
-    (found,) = in_chunks(_times_at, CHUNK, (scene,), columns)
+    (found,) = in_chunks(_times_at, MODEL_SETTINGS.times, (scene,), columns)
     return np.clip(found, columns[2], columns[3])
 
 
@@ -108,14 +109,14 @@ def arrivals_at(
 ) -> Float[np.ndarray, " n"]:
     """Time in [early, late] at which `l - Phi'` is `pull` (N) at each state."""
     columns = states, pull, early, late
-    return in_chunks(_times_at, CHUNK, (scene,), columns)[0]
+    return in_chunks(_times_at, MODEL_SETTINGS.times, (scene,), columns)[0]
 
 
 def state_under(
     scene: Scene, times: Float[np.ndarray, " n"], pull: Float[np.ndarray, " n"]
 ) -> Float[np.ndarray, " n"]:
     """State in m at which `l - Phi'` is `pull` (N) at each time."""
-    return in_chunks(_state_under, CHUNK, (scene,), (times, pull))[0]
+    return in_chunks(_state_under, MODEL_SETTINGS.times, (scene,), (times, pull))[0]
 
 
 def states_at(
@@ -141,7 +142,7 @@ def slopes_at(
         return times
     piece = path.piece_of(times)
     slides = (path.direction[piece] != 0) & (times > path.touch[piece])
-    slope, stiffness = in_chunks(_rates, CHUNK, (scene,), (times, states))
+    slope, stiffness = in_chunks(_rates, MODEL_SETTINGS.times, (scene,), (times, states))
     return np.where(slides, slope / stiffness, 0.0)
 
 
@@ -155,4 +156,6 @@ def speeds_at(
 
 def stiffness_at(scene: Scene, states: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
     """Phi'' in N/m at states (n,) in m."""
-    return in_chunks(_rates, CHUNK, (scene,), (np.zeros_like(states), states))[1]
+    return in_chunks(
+        _rates, MODEL_SETTINGS.times, (scene,), (np.zeros_like(states), states)
+    )[1]

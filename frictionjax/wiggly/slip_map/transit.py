@@ -15,7 +15,8 @@ from jaxtyping import Array, Float
 
 from ..._checks import Real
 from ..._compile import Program, in_chunks
-from ...model import CHUNK, AbstractPotential, Scene
+from ...model import SETTINGS as MODEL_SETTINGS
+from ...model import AbstractPotential, Scene
 from .settings import SETTINGS
 
 _POINTS = 10  # Gauss nodes of a panel
@@ -99,7 +100,7 @@ def _wiggles(potential: AbstractPotential, eps, places):
 def wiggles_at(potential: AbstractPotential, eps: np.ndarray, places: np.ndarray):
     """`V_eps'` in N, G, and A in m at tip coordinates, all of one shape."""
     columns = np.broadcast_to(eps, places.shape).ravel(), places.ravel()
-    found = in_chunks(_wiggles, CHUNK, (potential,), columns)
+    found = in_chunks(_wiggles, MODEL_SETTINGS.times, (potential,), columns)
     return [v.reshape(places.shape) for v in found]
 
 

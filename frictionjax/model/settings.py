@@ -1,0 +1,56 @@
+"""What scenes are checked by, and how finely: with what lost."""
+
+from typing import NamedTuple
+
+
+class Settings(NamedTuple):
+    """Lengths in periods, unless said otherwise."""
+
+    # Scenes (`scene.py`).
+    traced_turns: int = 64  # of a load whose numbers are traced: room for them
+    most_turns: int = 2**20  # in a scene: 8 MB a copy of their times
+    # Smallest eps, of the largest |z|: rounding of z itself is 1e-4 eps there. (At 1e-13 to
+    # 3e-13 most sweeps of five scenes held ROUGH_SURVEY, at accuracy 1e-3; at 5e-13 to
+    # 8e-13 a stiff one did, and 1 in 100 above.)
+    told_apart: float = 2.0**-40
+    rounded: int = 8  # spacings of floats by which a time may exceed the duration
+
+    # Admissibility (`admissibility.py`, `clearance.py`).
+    margins: int = 8  # eps of one compiled call
+    clearance_places: int = 512  # for the tip and for what is ahead of it
+
+    # Digits of the potential (`digits.py`).
+    places: int = 256  # off the grid of round phases
+    stretches: int = 16  # of a period: a jump or a narrow bump fills half of none
+    inside: float = 1e-7  # before the seam
+    neighbours: float = 2.0**-20  # apart: 64 harmonics bend by 1e-13 of themselves there
+    # Noise, of the range of W: energies of wells, a slip has its digits then.
+    most_of_w: float = 1e-7
+    most_of_force: float = (
+        1e-9  # of the range of W': slips would come at times of their own
+    )
+    most_of_q: float = 1e-3  # of the largest |Q| and |Q'|: less is no Q any more
+    noises: int = 8  # eps of one compiled call
+
+    # A rest that is given (`given_rest.py`).
+    seam: float = 1e-6  # of the largest value, as of W
+    above_noise: float = 20.0  # times the median, which a jump of noise stays below
+    eps_ratio: float = 8.0  # of eps that are looked at, over 9 decades
+    greater: int = 2  # such steps up from eps, to 64 eps
+    less: int = 8  # down, to eps/8^8
+    # 1/sqrt(eps) grows by 2.8 in such a step, log(eps) by 1.8 at most from eps = 0.01 on.
+    # What settles down somewhere, as 1/(eps + 1e-4), is bounded, if large.
+    grows: float = 2.5
+    felt: float = 1e-9  # of the range of W': of less than that no force knows
+
+    # The law of friction (`friction_law.py`).
+    slack: float = 1e-10  # of the interval; rounding of l - Phi' at |l| = 1e4 rho is 1e-12
+    spacings: int = 8  # of l: two each of l, z and Phi', and of what z is solved from
+    newton: int = 6  # sweeps: H' is a parabola at worst, where xi is close to rho
+
+    # Potentials and strips (`potentials.py`, `strip.py`).
+    zoom: int = 256  # samples between two neighbours of a scan: its minimum to 1e-8
+    times: int = 1024  # of one compiled call
+
+
+SETTINGS = Settings()
