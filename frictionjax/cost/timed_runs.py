@@ -57,9 +57,8 @@ def timed(
     if first is None:
         _, first = clocked(run)
     warm: list[float] = []
-    while len(warm) < repeats and (
-        len(warm) < SETTINGS.least_runs or sum(warm) < SETTINGS.enough
-    ):
+    least, enough = SETTINGS.least_runs, SETTINGS.enough
+    while len(warm) < repeats and (len(warm) < least or sum(warm) < enough):
         result, spent = clocked(run)
         warm.append(spent)
         if sum(warm) > seconds:

@@ -153,9 +153,8 @@ def march(
     of_jobs = wells if work is None else work
     narrow, wide = loop_times(of_jobs.max(), of_jobs.sum())
     if narrow < wide:
-        width = _LOOPS.width_for(
-            program, needed, max(wells.max(), wells.sum() / SETTINGS.narrow)
-        )
+        longest = max(wells.max(), wells.sum() / SETTINGS.narrow)
+        width = _LOOPS.width_for(program, needed, longest)
     found = _LOOPS.run((*program, width), needed, fill)
     return SegmentEnds(*np.asarray(found)[: needed.legs].T)
 

@@ -217,6 +217,11 @@ def _guess(scene: Scene, slides: Slides, panels: _Panels, force, time) -> np.nda
     return guess
 
 
+def _leaves(kept, share: float):
+    """Whether a transit leaves more than a share of a shift, and grows it by no more."""
+    return (kept > share) & (kept < 1 / share)
+
+
 def follow(scene: Scene, slides: Slides, tail: float) -> list[TransitTimes | None]:
     """Times of passage of every slide, from where it sets off to its end or until slow.
 
@@ -241,9 +246,7 @@ def follow(scene: Scene, slides: Slides, tail: float) -> list[TransitTimes | Non
             break
         guess = _guess(scene, slides, panels, force, time)
         solved = _solved(scene, slides, panels, guess, tail)
-        calm = np.all(
-            (solved.kept > SETTINGS.slow) & (solved.kept < 1 / SETTINGS.slow), axis=1
-        )
+        calm = np.all(_leaves(solved.kept, SETTINGS.slow), axis=1)
         on = solved.fine & calm
         going = []
         for c in np.unique(panels.slide):
@@ -262,10 +265,8 @@ def follow(scene: Scene, slides: Slides, tail: float) -> list[TransitTimes | Non
                 p = held[-1]
                 pace = np.diff(solved.times[p, -2:]) / np.diff(panels.number[p, -2:])
                 left = (slides.late[c] - time[c]) / pace[0]
-                if (
-                    left >= SETTINGS.smallest
-                    and SETTINGS.on_above < solved.kept[p, -1] < 1 / SETTINGS.on_above
-                ):
+                on_fast = _leaves(solved.kept[p, -1], SETTINGS.on_above)
+                if left >= SETTINGS.smallest and on_fast:
                     going.append(c)
                 continue
             failed = mine[held.size]
