@@ -230,7 +230,7 @@ def test_a_full_disk_is_one_line_of_the_shell(tmp_path, monkeypatch):
     def full(*_):
         raise FULL
 
-    monkeypatch.setattr(report_folder, "write_figures", full)
+    monkeypatch.setattr("frictionjax.report.write_figures", full)
     result = run("figures", "--out", tmp_path / "out")
     assert result.exit_code == 1
     assert result.stderr == (
