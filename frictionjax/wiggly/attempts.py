@@ -32,7 +32,6 @@ class Cellwise(NamedTuple):
     cells: LaneCells
     brief: np.ndarray
     needs: Requirements
-    way: np.ndarray
 
 
 def rows_of(parts: Any, chosen: np.ndarray) -> Any:
@@ -79,11 +78,10 @@ class SoFar(NamedTuple):
         return self._replace(answers=CellResults(**columns), open_=open_)
 
     def with_cells(self, some: Cellwise, chosen: np.ndarray) -> "SoFar":
-        """Other needs and ways of some cells, for later attempts too."""
+        """Other needs of some cells, for later attempts too."""
         rows = zip(self.cells.needs, some.needs, strict=True)
         needs = Requirements(*(_with_rows(old, chosen, new) for old, new in rows))
-        way = _with_rows(self.cells.way, chosen, some.way)
-        return self._replace(cells=self.cells._replace(needs=needs, way=way))
+        return self._replace(cells=self.cells._replace(needs=needs))
 
 
 class AttemptContext(NamedTuple):
@@ -161,10 +159,8 @@ def merged(every: Cellwise, *parts: tuple[np.ndarray, SoFar]) -> SoFar:
     open_ = np.concatenate([part.open_ for _, part in parts])[order]
     slides = np.concatenate([part.cells.ground.fast_slides for _, part in parts])[order]
     needs = zip(*(part.cells.needs for _, part in parts), strict=True)
-    way = np.concatenate([part.cells.way for _, part in parts])[order]
     cells = every._replace(
         ground=every.ground._replace(fast_slides=slides),
         needs=Requirements(*(np.concatenate(column)[order] for column in needs)),
-        way=way,
     )
     return SoFar(cells, answers, open_)

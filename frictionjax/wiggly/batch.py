@@ -10,7 +10,7 @@ from .._compile import WORKERS, crew
 from ..model import Scene
 from .attempts import AttemptContext, Cellwise, SoFar, merged, rows_of
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
-from .enclosure import Report, Requirements, find_fast_slides
+from .enclosure import Report, find_fast_slides
 from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, Sums, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
@@ -77,7 +77,7 @@ def integrate_cells(
         every_slip=method == "resolved",
         report=report,
     )
-    so_far = _first_attempt(sweep, _cells_of(plan, eps, gamma))
+    so_far = _first_attempt(sweep, _cells_of(plan, eps, gamma), plan.way == Way.SLIP_MAP)
     answers = so_far.answers._replace(tolerance=np.asarray(plan.control.tolerance))
     so_far = so_far._replace(answers=answers)
     for _ in range(SETTINGS.surveys):
@@ -106,7 +106,6 @@ def _cells_of(plan: Planned, eps: np.ndarray, gamma: np.ndarray) -> Cellwise:
         ),
         brief=np.asarray(control.brief),
         needs=plan.needs,
-        way=plan.way,
     )
 
 
@@ -121,12 +120,8 @@ def _surveyed_again(sweep: AttemptContext, so_far: SoFar, rough: np.ndarray) -> 
         return so_far
     wells = sweep.path.travel[-1] / some.eps
     longer = np.maximum(some.needs.tile, wells / SETTINGS.tiles)
-    some = some._replace(
-        needs=some.needs._replace(
-            samples=samples, tile=np.where(samples > 0, some.needs.tile, longer)
-        ),
-        way=np.where(samples > 0, some.way, Way.EVERY_SLIP),
-    )
+    tile = np.where(samples > 0, some.needs.tile, longer)
+    some = some._replace(needs=some.needs._replace(samples=samples, tile=tile))
     so_far = so_far.with_cells(rows_of(some, can), again)
     return so_far.with_attempt(sweep.attempt(rows_of(so_far.cells, again)), again)
 
@@ -143,19 +138,15 @@ def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
     wells = sweep.path.travel[-1] / some.eps
     tile = np.maximum(4 * some.needs.tile, wells / SETTINGS.tiles)
     none = np.zeros(chosen.size, dtype=int)
-    some = some._replace(
-        needs=some.needs._replace(samples=none, tile=tile),
-        way=np.full(chosen.size, Way.EVERY_SLIP),
-    )
+    some = some._replace(needs=some.needs._replace(samples=none, tile=tile))
     return so_far.with_attempt(sweep.attempt(some), chosen)
 
 
-def _first_attempt(sweep: AttemptContext, every: Cellwise) -> SoFar:
+def _first_attempt(sweep: AttemptContext, every: Cellwise, by_map: np.ndarray) -> SoFar:
     """Answers of all cells: those without slip maps aside.
 
     Their lanes run while fast slides are found, which is mostly NumPy on one core.
     """
-    by_map = every.way == Way.SLIP_MAP
     some, others = np.flatnonzero(by_map), np.flatnonzero(~by_map)
     if some.size == 0:
         return sweep.attempt(every)
@@ -191,7 +182,6 @@ def _by_slip_maps(
         needs=some.needs._replace(
             samples=np.where(has, PATH_SETTINGS.nodes, some.needs.samples)
         ),
-        way=np.where(has, Way.SLIP_MAP, _way_without_maps(some.needs)),
     )
     so_far = sweep.attempt(some)
     steps, rejected, _ = found.effort()
@@ -199,10 +189,6 @@ def _by_slip_maps(
         steps=so_far.answers.steps + steps, rejected=so_far.answers.rejected + rejected
     )
     return so_far._replace(answers=answers)
-
-
-def _way_without_maps(needs: Requirements) -> np.ndarray:
-    return np.where(needs.samples > 0, Way.SAMPLED, Way.EVERY_SLIP)
 
 
 def prepare_cells(
@@ -257,8 +243,7 @@ def _from_the_start(sweep: AttemptContext, so_far: SoFar) -> SoFar:
         samples=none,
         restarts=np.zeros_like(some.needs.restarts),
     )
-    way = np.full(chosen.size, Way.ONE_LANE)
-    part = sweep.attempt(some._replace(needs=needs, way=way))
+    part = sweep.attempt(some._replace(needs=needs))
     # Lanes that failed say why.
     left = np.flatnonzero(part.open_ & (part.answers.status == int(Status.OK)))
     return so_far.with_attempt(part.with_status(left, Status.OPEN_BRACKET), chosen)

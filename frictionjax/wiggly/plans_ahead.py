@@ -14,22 +14,6 @@ from .plan import Planned, planned
 _AHEAD = ByIdentity()  # the last plan that was made ahead for a scene, and what it is of
 
 
-def plan_ahead(
-    scene: Scene,
-    lanes: LaneScene,
-    path: Path,
-    eps: np.ndarray,
-    gamma: np.ndarray,
-    times: int,
-    accuracy: float,
-    method: str,
-) -> Planned:
-    """The plan of cells, which `plan_of_cells` need not make again."""
-    plan = planned(scene, lanes, path, eps, gamma, times, accuracy, method)
-    _AHEAD.put(scene, (_asked(eps, gamma, times, accuracy, method), plan))
-    return plan
-
-
 def plan_of_cells(
     scene: Scene,
     lanes: LaneScene,
@@ -39,12 +23,18 @@ def plan_of_cells(
     times: int,
     accuracy: float,
     method: str,
+    ahead: bool = False,
 ) -> Planned:
-    """The plan of cells: that made ahead, once, or a new one."""
-    ahead = _AHEAD.take(scene)
-    if ahead is not None and ahead[0] == _asked(eps, gamma, times, accuracy, method):
-        return ahead[1]
-    return planned(scene, lanes, path, eps, gamma, times, accuracy, method)
+    """The plan of cells: that made ahead, or a new one; kept, once, where it is `ahead`."""
+    asked = _asked(eps, gamma, times, accuracy, method)
+    known = _AHEAD.take(scene)
+    if known is not None and known[0] == asked:
+        plan = known[1]
+    else:
+        plan = planned(scene, lanes, path, eps, gamma, times, accuracy, method)
+    if ahead:
+        _AHEAD.put(scene, (asked, plan))
+    return plan
 
 
 def _asked(

@@ -13,7 +13,7 @@ from .equation import StepPlan as StepPlan
 from .lanes import LaneScene
 from .limit_path import Path, path_of
 from .plan import lane_scene
-from .plans_ahead import plan_ahead
+from .plans_ahead import plan_of_cells
 from .settings import SETTINGS
 from .ways import Way, slides_of
 
@@ -51,7 +51,9 @@ def workload(
         return None
     accuracy = min(accuracy, SETTINGS.loosest)
     lanes = lane_scene(scene, float(eps.max()))
-    plan = plan_ahead(scene, lanes, path, eps, gamma, times, accuracy, method)
+    plan = plan_of_cells(
+        scene, lanes, path, eps, gamma, times, accuracy, method, ahead=True
+    )
     control, ground, needs, way = plan
     by_map = way == Way.SLIP_MAP
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
