@@ -1,3 +1,4 @@
+from .encoding import decoded as decoded
 from .tables import Table as Table
 from .tables import place_of as place_of
 from .tables import read_table as read_table

@@ -5,7 +5,6 @@ columns between semicolons, tabs, commas or blanks; decimal commas where no comm
 columns. What cannot be read is named by line and column.
 """
 
-import codecs
 import csv
 import re
 from typing import NamedTuple
@@ -13,16 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .._checks import require
+from .encoding import decoded
 from .thousands import BOTH_WAYS, is_grouped, ungrouped
 from .units import Heading, heading_of, is_unit
 
-_MARKS = (
-    (codecs.BOM_UTF8, "utf-8-sig"),
-    (codecs.BOM_UTF32_LE, "utf-32"),  # begins as UTF-16 does
-    (codecs.BOM_UTF32_BE, "utf-32"),
-    (codecs.BOM_UTF16_LE, "utf-16"),
-    (codecs.BOM_UTF16_BE, "utf-16"),
-)
 _COMMENTS = ("#", "%", "//")
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eEdD][-+]?\d+)?$")
 _BLANK = " "
@@ -59,39 +52,6 @@ class _Row(NamedTuple):
 def place_of(line: int, column: int, name: str = "") -> str:
     """`line 3, column 2 (force)`, columns counted from 0 and told from 1."""
     return f"line {line}, column {column + 1}{f' ({name})' if name else ''}"
-
-
-def decoded(data: bytes) -> str:
-    """The text of a file's bytes.
-
-    Raises `ValueError` for bytes that are no text.
-    """
-    for mark, encoding in _MARKS:
-        if data.startswith(mark):
-            return _decoded(data, encoding)
-    if data and b"\0" in data[:4096]:
-        return _decoded(data, _unmarked(data[:4096]))
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError:
-        return _decoded(data, "cp1252")
-
-
-def _unmarked(data: bytes) -> str:
-    """UTF-16 without a mark: digits and letters have their zero on one side."""
-    first, second = data[::2].count(0), data[1::2].count(0)
-    require(
-        max(first, second) > 0.3 * len(data), "file", "bytes", "text, and no binary file"
-    )
-    return "utf-16-be" if first > second else "utf-16-le"
-
-
-def _decoded(data: bytes, encoding: str) -> str:
-    try:
-        return data.decode(encoding)
-    except UnicodeDecodeError as error:
-        place = f"byte {error.start + 1}"
-        raise ValueError(f"{place}: needs text in {encoding.upper()}") from None
 
 
 def read_table(data: bytes, decimal: str | None = None) -> Table:

@@ -1,5 +1,6 @@
 """Measured heights out of files: texts, and formats of instruments."""
 
+import re
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,11 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from .._text import decoded
 from .columns import read_text
-from .encoding import decoded_text
 from .gaps import without_gaps
 from .instruments import is_instrument_text, read_instrument
 from .scales import asked_of
+
+_CONTROL = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # ^Z ends a text of DOS
 
 
 class MeasuredWarning(UserWarning):
@@ -86,7 +89,7 @@ def heights_of(
     try:
         asked = asked_of(*options)
         data = Path(path).read_bytes()
-        text = None if is_instrument_text(data) else decoded_text(data)
+        text = None if is_instrument_text(data) else _text_of(data)
         if text is None:
             samples = read_instrument(data, Path(path).suffix.lower(), asked)
         else:
@@ -97,3 +100,12 @@ def heights_of(
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     return Measured(samples.x, samples.heights, tuple(samples.notes))
+
+
+def _text_of(data: bytes) -> str | None:
+    """The text of a file; None where it is none."""
+    try:
+        text = decoded(data, "latin-1")
+    except ValueError:
+        return None
+    return None if _CONTROL.search(text) else text

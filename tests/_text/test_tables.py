@@ -5,7 +5,7 @@ import codecs
 import numpy as np
 import pytest
 
-from frictionjax._text.tables import decoded, read_table
+from frictionjax._text import decoded, read_table
 from frictionjax._text.units import Heading, heading_of
 
 PLAIN = "t,force\n0,1.5\n0.25,-2\n"

@@ -11,7 +11,7 @@ from instrument_files import COUNT, PERIOD, PIXEL, SIN, X, heights
 import frictionjax as fx
 from frictionjax.measured import MeasuredWarning, fit_profile, read_heights
 from frictionjax.measured.cells import find_dialect
-from frictionjax.measured.encoding import decoded_text
+from frictionjax.measured.files import _text_of
 from frictionjax.measured.units import cell_unit, metres
 
 UM, NM = 1e6 * X, 1e9 * heights(1)[0]
@@ -101,8 +101,8 @@ def test_texts_in_any_encoding(encoding, tmp_path):
 
 
 def test_bytes_that_are_no_text():
-    assert decoded_text(bytes(range(256))) is None
-    assert decoded_text(b"1 2\n3 4\n\x1a") == "1 2\n3 4\n"
+    assert _text_of(bytes(range(256))) is None
+    assert _text_of(b"1 2\n3 4\n\x1a") == "1 2\n3 4\n"
 
 
 @pytest.mark.parametrize(
