@@ -51,7 +51,7 @@ class OneLineErrors(click.Group):
 
 def _of_file(error: OSError) -> tuple[str, int]:
     """Message and exit status of a file that cannot be read or written."""
-    from .io import FULL
+    from ._checks import FULL
 
     status = 1 if error.errno in FULL else 2
     # Whoever writes a file names it: what is left is what is printed.

@@ -1,8 +1,8 @@
 """What every entry point asks of what it is given, and how it says so.
 
 Arguments, grids of eps and gamma, the process around the library, what a part of a scene
-is, what every result tells, enums whose members speak for people. Nothing here knows what
-friction is."""
+is, what every result tells, enums whose members speak for people, files that are written
+whole. Nothing here knows what friction is."""
 
 import lazy_loader
 

@@ -36,3 +36,6 @@ from .surroundings import is_debugged as is_debugged
 from .surroundings import with_nan as with_nan
 from .viscosity import quiet_where_extreme as quiet_where_extreme
 from .viscosity import viscosity_of as viscosity_of
+from .whole_files import FULL as FULL
+from .whole_files import naming as naming
+from .whole_files import write_whole as write_whole

@@ -13,7 +13,6 @@ import os
 import pickle
 import sys
 import sysconfig
-import tempfile
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -22,6 +21,8 @@ from typing import Any
 import equinox as eqx
 import jax
 from jax import export
+
+from .._checks import write_whole
 
 # Where what belongs to a program may come from: a user's function or class can change
 # while its name stays the same.
@@ -187,16 +188,8 @@ def _called(exported: export.Exported, out: Any) -> Callable:
 
 
 def _write(path: Path, data: bytes) -> None:
-    """Whole or not at all: other processes may read it at any time."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        os.replace(temporary, path)
-    except OSError:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    write_whole(path, data)
     _drop_oldest(path.parent.parent)
 
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from platformdirs import user_cache_path
 
-from .._checks import as_real, cells_of
+from .._checks import as_real, cells_of, write_whole
 from ..bristles import VerticalSpring
 from ..loads import Sine as SineLoad
 from ..model import Scene
@@ -198,6 +198,4 @@ def keep_machine(found: MachineCost, folder: Path | None = None) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     values = dict(zip(MachineCost._fields[:-1], found[:-1], strict=True))
     text = json.dumps(_kept(folder) | {_key(): values}, indent=1)
-    part = path.with_name(f"{path.name}.{os.getpid()}")
-    part.write_text(text + "\n", encoding="utf-8")
-    part.replace(path)  # whole or not at all: two processes may write
+    write_whole(path, text + "\n")

@@ -19,6 +19,3 @@ from .scene_files import load_scene as load_scene
 from .scene_files import load_study as load_study
 from .scene_files import save_scene as save_scene
 from .scene_files import scene_document as scene_document
-from .whole_files import FULL as FULL
-from .whole_files import naming as naming
-from .whole_files import write_whole as write_whole

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .._checks import require
-from .whole_files import write_whole
+from .._checks import require, write_whole
 
 
 def read_document(source: Any) -> Any:

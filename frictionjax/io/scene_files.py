@@ -10,12 +10,11 @@ import equinox as eqx
 import numpy as np
 import tomli_w
 
-from .._checks import asked_names, require
+from .._checks import asked_names, require, write_whole
 from ..measured import fit_profile, read_heights
 from ..model import BristlePotential, Scene
 from ..profiles import Fourier
 from .registry import PARTS, numbers_of_part
-from .whole_files import write_whole
 
 _TOP = ("duration", "z0")
 _STUDY = ("eps", "gamma", "accuracy")

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import plot
-from .._checks import as_text, require
+from .._checks import as_text, require, write_whole
 from ..bristles import AbstractBristle
 from ..design import (
     AngleFit,
@@ -21,7 +21,7 @@ from ..design import (
     surface_heights,
     write_heights,
 )
-from ..io import scene_document, write_whole
+from ..io import scene_document
 from ..model import Scene, friction
 from ..profiles import AbstractProfile
 from ..supports import Spring

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .. import plot
-from ..io import naming, write_whole
+from .._checks import naming, write_whole
 from ..model import Coefficients, Scene
 from ..studies import Study
 

@@ -8,8 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from .._checks import require
-from ..io import FULL
+from .._checks import FULL, require
 
 
 def require_folder(path: Any) -> Path:

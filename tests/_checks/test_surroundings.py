@@ -18,11 +18,10 @@ from command_line import run
 from sweep_like import sweep_like
 
 import frictionjax as fx
-from frictionjax._checks import surroundings
+from frictionjax._checks import naming, surroundings
 from frictionjax._checks.surroundings import SurroundingsError, with_nan
 from frictionjax._compile import program_cache as kept_programs
 from frictionjax._compile.programs import Program
-from frictionjax.io.whole_files import naming
 from frictionjax.report import folder as report_folder
 from frictionjax.report.place import filled
 

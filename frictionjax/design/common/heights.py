@@ -9,8 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from ..._checks import require_real, require_whole
-from ...io import write_whole
+from ..._checks import require_real, require_whole, write_whole
 from ...profiles import AbstractProfile
 
 

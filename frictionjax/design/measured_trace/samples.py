@@ -16,9 +16,9 @@ from ..._checks import (
     require_whole,
     with_nan,
     without_masked,
+    write_whole,
 )
 from ..._compile import Program
-from ...io import write_whole
 from ...model import Scene, known_scene, require_times
 from ...wiggly import solve
 from .file import TRACE_QUANTITIES, trace_columns

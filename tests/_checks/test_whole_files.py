@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import frictionjax as fx
+from frictionjax._checks import naming, write_whole
 from frictionjax.design.common.heights import write_heights
-from frictionjax.io.whole_files import naming, write_whole
 
 SINE = fx.profiles.Sine(0.1)
 SCENE = fx.Scene(

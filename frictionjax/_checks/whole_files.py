@@ -34,11 +34,11 @@ def write_whole(path: Any, content: str | bytes | memoryview) -> None:
         if not _can_be_moved_to(path):
             path.write_bytes(data)
             return
-        part = path.with_name(f".{os.getpid()}-part")
+        part = path.with_name(f".{os.urandom(8).hex()}-part")  # of this thread alone
         try:
             with naming(path):
                 part.write_bytes(data)
-            if path.exists():
+            with contextlib.suppress(FileNotFoundError):
                 part.chmod(path.stat().st_mode)
             part.replace(path)
         finally:
