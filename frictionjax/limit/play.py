@@ -138,9 +138,3 @@ def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
     return _solve(scene, coefficients_jit(scene.potential), ts)
-
-
-def dissipation_between(scene: Scene, t1: Any, t2: Any) -> Real:
-    """`int_t1^t2 R(z')` in J of the limit solution, for 0 <= t1 <= t2 <= duration."""
-    cumulative = solve_limit(scene, jnp.stack([jnp.asarray(t1), jnp.asarray(t2)]))
-    return cumulative.dissipation[1] - cumulative.dissipation[0]

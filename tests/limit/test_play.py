@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.limit.play import dissipation_between
 
 SURFACE = fx.profiles.Fourier(cos=[0.0, 0.01], sin=[0.03, 0.0])
 BRISTLE = fx.bristles.VerticalSpring(2.0, 1.5, 1.0)
@@ -115,8 +114,6 @@ def test_values_do_not_depend_on_the_times_asked_for(load, support):
         alone = fx.solve_limit(problem, ts[i : i + 1])
         assert abs(alone.z[0] - fine.z[i]) < 1e-15
         assert abs(alone.dissipation[0] - fine.dissipation[i]) < 1e-14
-    split = sum(dissipation_between(problem, a, b) for a, b in ((0.2, 1.0), (1.0, 2.7)))
-    assert abs(split - dissipation_between(problem, 0.2, 2.7)) < 1e-14
 
 
 def test_a_load_that_touches_the_edge_and_turns():
