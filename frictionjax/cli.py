@@ -1,7 +1,6 @@
 """The command line. Only click is imported here: `--help` must not wait for JAX."""
 
 import json
-import math
 import os
 import sys
 import warnings
@@ -72,13 +71,27 @@ def _options(*options: Callable) -> Callable:
     return decorate
 
 
+def _bristle(which: str) -> Callable:
+    kinds = click.Choice(["slanted", "angular"])
+    return click.option(
+        "--bristle", type=kinds, help=f"Another bristle than the scene's{which}"
+    )
+
+
+def _out(command: str) -> Callable:
+    default = f"frictionjax-{command}"
+    return click.option("--out", default=default, show_default=True, metavar="DIR")
+
+
+_POSITIVE = click.FloatRange(min=0, min_open=True)
+_progress = click.option(
+    "--progress/--no-progress", default=True, help="A bar on standard error."
+)
 _scene = click.argument("scene", required=False, metavar="[SCENE.toml]")
 _surface = _options(
-    click.option(
-        "--bristle",
-        type=click.Choice(["slanted", "angular"]),
-        help="Another bristle than the scene's: slanted (k 1, rest length 2.4, "
-        "height 1, angle 1) or angular (k 1, length 1.414, height 1, rest angle 0.3).",
+    _bristle(
+        ": slanted (k 1, rest length 2.4, height 1, angle 1) or angular (k 1, length "
+        "1.414, height 1, rest angle 0.3)."
     ),
     click.option(
         "--heights",
@@ -178,39 +191,26 @@ def _interruptible(work: Callable[[], Any]) -> Any:
 def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
     """Friction coefficients of a scene, in each direction."""
     _start()
-    from .model import friction as friction_of
-    from .report import (
-        coefficient_table,
-        coefficients_by_name,
-        errors_by_name,
-        joined,
-        read_job,
-        row_table,
-    )
+    from .report import friction_document, friction_text, read_job
 
     job = read_job(scene, **surface)
-    law = friction_of(job.scene)
-    if as_json:
-        numbers: dict[str, Any] = coefficients_by_name(law)
-        if law.alpha is not None:
-            numbers["pulling"] = bool(law.alpha < 0)
-        error = errors_by_name(law, job.error)
-        if job.rows is not None or error:
-            finite = {name: e if math.isfinite(e) else None for name, e in error.items()}
-            numbers["error"] = finite
-        if job.rows is not None:
-            numbers["rows"] = {"mean": job.rows.mean, "std": job.rows.std}
-        if job.notes:
-            numbers["notes"] = job.notes
-        for line in job.notes[1:]:
-            click.echo(line, err=True)
-        click.echo(json.dumps(numbers, indent=2))
+    if not as_json:
+        click.echo(friction_text(job))
         return
-    sections = [("", line) for line in job.notes]
-    sections.append(("Friction coefficients", coefficient_table(law, job.error)))
-    if job.rows is not None:
-        sections.append(("Over the rows of the map", row_table(job.rows)))
-    click.echo(joined(sections))
+    for line in job.notes[1:]:
+        click.echo(line, err=True)
+    click.echo(json.dumps(friction_document(job), indent=2))
+
+
+def _numbers(**given: str | None) -> dict[str, Any]:
+    """Lists of numbers, of the options that are given.
+
+    An empty text is not a missing option: it is refused by name.
+    """
+    from .report import number_list
+
+    known = {name: text for name, text in given.items() if text is not None}
+    return {name: number_list(name, text) for name, text in known.items()}
 
 
 @main.command()
@@ -222,12 +222,12 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
 @click.option("--method", default="auto", show_default=True, help="Solver.")
 @click.option(
     "--budget",
-    type=click.FloatRange(min=0, min_open=True),
+    type=_POSITIVE,
     help="Seconds of computation: the best of the scene's accuracy and 1e-3 to 1e-6, or "
     "with --accuracy the eps, that fit.",
 )
-@click.option("--out", default="frictionjax-study", show_default=True, metavar="DIR")
-@click.option("--progress/--no-progress", default=True, help="A bar on standard error.")
+@_out("study")
+@_progress
 def study(
     scene: str | None,
     eps: str | None,
@@ -243,7 +243,6 @@ def study(
     _start()
     from .report import (
         expectation,
-        number_list,
         prepare_study,
         read_job,
         require_folder,
@@ -252,10 +251,7 @@ def study(
     )
 
     folder = require_folder(out)
-    given = {"eps": eps, "gamma": gamma}
-    wanted: dict[str, Any] = {
-        k: number_list(k, v) for k, v in given.items() if v is not None
-    }
+    wanted = _numbers(eps=eps, gamma=gamma)
     if accuracy is not None:
         wanted["accuracy"] = accuracy
     job = read_job(scene, **surface)
@@ -291,18 +287,18 @@ def _refuse(beside: str, *names: str) -> None:
 )
 @click.option(
     "--seconds",
-    type=click.FloatRange(min=0, min_open=True),
+    type=_POSITIVE,
     default=2.0,
     show_default=True,
     help="After which a run is ended; diffrax's after a million steps for each.",
 )
 @click.option(
     "--order-within",
-    type=click.FloatRange(min=0, min_open=True),
+    type=_POSITIVE,
     help="Instead: which eps give the order of convergence to +- this, and in which time.",
 )
-@click.option("--out", default="frictionjax-cost", show_default=True, metavar="DIR")
-@click.option("--progress/--no-progress", default=True, help="A bar on standard error.")
+@_out("cost")
+@_progress
 def cost(
     scene: str | None,
     eps: str | None,
@@ -317,35 +313,24 @@ def cost(
 ) -> None:
     """What accuracy costs in time: this library's methods and general solvers."""
     _start()
-    from .report import (
-        chosen_eps,
-        number_list,
-        read_job,
-        require_folder,
-        run_cost,
-        run_order_cost,
-    )
+    from .report import chosen_eps, read_job, require_folder, run_cost, run_order_cost
 
     if order_within is not None:
         _refuse("--order-within", "methods", "accuracies", "seconds", "out", "progress")
         job = read_job(scene, **surface)
-        given = {"eps": eps, "gamma": gamma}
-        some = {k: number_list(k, v) for k, v in given.items() if v is not None}
-        job = job._replace(study=job.study | some)
+        job = job._replace(study=job.study | _numbers(eps=eps, gamma=gamma))
         within = order_within
         click.echo(_interruptible(lambda: run_order_cost(job, within)))
         return
     folder = require_folder(out)
-    # An empty text is not a missing option: it is refused by name.
-    cells = {"gamma": [1.0] if gamma is None else number_list("gamma", gamma)}
-    asked = None if accuracies is None else number_list("accuracies", accuracies)
+    cells = {"gamma": [1.0]} | _numbers(gamma=gamma, accuracies=accuracies, eps=eps)
+    asked = cells.pop("accuracies", None)
     names = None if methods is None else [name.strip() for name in methods.split(",")]
-    known = None if eps is None else number_list("eps", eps)
     job = read_job(scene, **surface)
-    cells["eps"] = chosen_eps(job.scene, job.study["eps"]) if known is None else known
+    if "eps" not in cells:
+        cells["eps"] = chosen_eps(job.scene, job.study["eps"])
     job = job._replace(study=job.study | cells)
-    options = names, asked, seconds, progress
-    _write(folder, lambda place: run_cost(job, place, *options))
+    _write(folder, lambda place: run_cost(job, place, names, asked, seconds, progress))
 
 
 @main.command()
@@ -360,11 +345,7 @@ def cost(
     "the surface is designed, and this number too where it is given with --bounds.",
 )
 @click.option("--bounds", type=(float, float), help="Of that number.", metavar="LOW HIGH")
-@click.option(
-    "--bristle",
-    type=click.Choice(["slanted", "angular"]),
-    help="Another bristle than the scene's.",
-)
+@_bristle(".")
 @click.option("--pulling", is_flag=True, help="Bristles that pull (alpha < 0) will do too.")
 @click.option("--harmonics", type=click.IntRange(1), default=16, show_default=True)
 @click.option(
@@ -383,38 +364,25 @@ def cost(
     show_default=True,
     help="Of heights.csv in a period.",
 )
-@click.option("--out", default="frictionjax-design", show_default=True, metavar="DIR")
-def design(
-    scene: str | None,
-    free: str | None,
-    bounds: tuple[float, float] | None,
-    bristle: str | None,
-    pulling: bool,
-    harmonics: int,
-    smallest_radius: float | None,
-    largest_amplitude: float | None,
-    period: float,
-    samples: int,
-    out: str,
-    **wanted: Any,
-) -> None:
+@_out("design")
+def design(scene: str | None, bristle: str | None, out: str, **asked: Any) -> None:
     """The bristle, or the surface, with a wanted friction.
 
     Writes the scene with it, the heights of its surface for a machine tool, tables and
     pictures into a folder.
     """
     _start()
-    from .report import DesignRequest, read_job, require_folder, run_design
+    from .report import TARGETS, DesignRequest, read_job, require_folder, run_design
 
     folder = require_folder(out)
     job = read_job(scene, bristle)
-    more = smallest_radius, largest_amplitude, pulling
-    asked = DesignRequest(wanted, free, bounds, period, samples, harmonics, *more)
-    _write(folder, lambda place: run_design(job, place, asked))
+    wanted = {name: asked.pop(name) for name in [*asked] if name in TARGETS}
+    request = DesignRequest(wanted, **asked)
+    _write(folder, lambda place: run_design(job, place, request))
 
 
 @main.command()
-@click.option("--out", default="frictionjax-figures", show_default=True, metavar="DIR")
+@_out("figures")
 def figures(out: str) -> None:
     """Figures of the paper: coefficients against the angle of the bristle."""
     _start()

@@ -1,10 +1,12 @@
 from .cost import chosen_eps as chosen_eps
 from .cost import run_cost as run_cost
+from .design import TARGETS as TARGETS
 from .design import DesignRequest as DesignRequest
 from .design import run_design as run_design
 from .folder import paper_figures as paper_figures
 from .folder import write_figures as write_figures
-from .job import joined as joined
+from .friction import friction_document as friction_document
+from .friction import friction_text as friction_text
 from .job import number_list as number_list
 from .job import read_job as read_job
 from .order_cost import run_order_cost as run_order_cost
@@ -14,7 +16,3 @@ from .study import expectation as expectation
 from .study import prepare_study as prepare_study
 from .study import run_study as run_study
 from .study import within_budget as within_budget
-from .tables import coefficient_table as coefficient_table
-from .tables import coefficients_by_name as coefficients_by_name
-from .tables import errors_by_name as errors_by_name
-from .tables import row_table as row_table

@@ -30,10 +30,11 @@ from .job import Job, joined, with_surface
 from .tables import coefficient_table, table
 
 _MAP = 121  # values of an axis
+TARGETS = ("ratio", "difference", "rho_plus", "rho_minus")
 
 
 class DesignRequest(NamedTuple):
-    """What a design is to reach: `wanted` by name, and how its results are written."""
+    """What a design is to reach: `wanted` of `TARGETS`, and how its results are written."""
 
     wanted: dict[str, float]
     free: str | None
