@@ -29,9 +29,7 @@ class AngularSpring(AbstractBristle):
     rest_angle: Real = eqx.field(converter=as_real)
 
     def __check_init__(self):
-        for name in self.positive:
-            value = getattr(self, name)
-            require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
+        self._require_positive()
         require_real("bristle.rest_angle", self.rest_angle, "rest_angle > -pi/2")
         if not is_known(self):
             return

@@ -5,7 +5,7 @@ from typing import ClassVar, NamedTuple
 
 import jax.numpy as jnp
 
-from .._checks import Part, Real
+from .._checks import Part, Real, require_real
 
 
 class SlopeBounds(NamedTuple):
@@ -37,6 +37,11 @@ class AbstractBristle(Part):
 
     positive: ClassVar[tuple[str, ...]] = ()
     angles: ClassVar[tuple[str, ...]] = ()
+
+    def _require_positive(self) -> None:
+        for name in self.positive:
+            value = getattr(self, name)
+            require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
 
     @abc.abstractmethod
     def offset(self, eta: Real) -> Real:

@@ -28,9 +28,7 @@ class SlantedSpring(AbstractBristle):
     angle: Real = eqx.field(converter=as_real)
 
     def __check_init__(self):
-        for name in self.positive:
-            value = getattr(self, name)
-            require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
+        self._require_positive()
         allowed = "-pi/2 < angle < pi/2"
         require_real("bristle.angle", self.angle, allowed, lambda v: abs(v) < 0.5 * jnp.pi)
 

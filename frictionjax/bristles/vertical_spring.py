@@ -5,7 +5,7 @@ from typing import ClassVar
 import equinox as eqx
 import jax.numpy as jnp
 
-from .._checks import Real, as_real, require_real
+from .._checks import Real, as_real
 from .bristle import AbstractBristle
 
 
@@ -24,9 +24,7 @@ class VerticalSpring(AbstractBristle):
     height: Real = eqx.field(converter=as_real)
 
     def __check_init__(self):
-        for name in self.positive:
-            value = getattr(self, name)
-            require_real(f"bristle.{name}", value, f"{name} > 0", lambda v: v > 0)
+        self._require_positive()
 
     def offset(self, eta: Real) -> Real:
         return jnp.zeros_like(eta)

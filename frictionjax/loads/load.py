@@ -2,11 +2,12 @@
 
 import abc
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from .._checks import Part, Real
+from .._checks import Part, Real, as_real, require_real
 
 
 class AbstractLoad(Part):
@@ -44,18 +45,27 @@ class AbstractLoad(Part):
         return jax.jvp(self, (t,), (jnp.ones_like(t),))[1]
 
 
-def periodic_turning_points(
-    quarter: Real, duration: Real, count: int
-) -> Float[Array, " count"]:
-    """Odd multiples of a quarter period in (0, duration), as rule 2 wants them."""
-    times = (2 * jnp.arange(count) + 1) * quarter
-    enough = (2 * count + 1) * quarter >= duration
-    return jnp.where(enough, jnp.minimum(times, duration), jnp.nan)
+class PeriodicLoad(AbstractLoad):
+    """A load that turns, or has kinks, at odd multiples of a quarter period and only there.
 
+    `amplitude` in N, `period` in s.
+    """
 
-def periodic_turning_count(quarter: float, duration: float) -> int:
-    """How many odd multiples of a quarter period lie in (0, duration)."""
-    return max(0, int((duration / quarter + 1) // 2) + 1)
+    amplitude: Real = eqx.field(converter=as_real)
+    period: Real = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        require_real("load.amplitude", self.amplitude, "any amplitude")
+        require_real("load.period", self.period, "period > 0", lambda p: p > 0)
+
+    def turning_count(self, duration: float) -> int:
+        return max(0, int((duration / (float(self.period) / 4) + 1) // 2) + 1)
+
+    def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
+        quarter = self.period / 4
+        times = (2 * jnp.arange(count) + 1) * quarter
+        enough = (2 * count + 1) * quarter >= duration
+        return jnp.where(enough, jnp.minimum(times, duration), jnp.nan)
 
 
 def listed_turning_points(
