@@ -1,5 +1,10 @@
 """Orders of convergence: measured by regression, predicted by the laws of a slide."""
 
-import lazy_loader
-
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+from .law_orders import ENERGY as ENERGY
+from .law_orders import STATE as STATE
+from .law_orders import LawFit as LawFit
+from .law_orders import Trust as Trust
+from .law_orders import fit_with_law as fit_with_law
+from .order import Fit as Fit
+from .order import Verdict as Verdict
+from .order import local_orders as local_orders

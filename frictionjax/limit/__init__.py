@@ -1,5 +1,7 @@
 """The limit system: the play operator that friction is for eps -> 0 (eq. 2.3)."""
 
-import lazy_loader
-
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+from .play import LimitSolution as LimitSolution
+from .play import play_step as play_step
+from .play import require_start_in_strip as require_start_in_strip
+from .play import solve_limit as solve_limit
+from .play import strip as strip

@@ -1,5 +1,5 @@
 """Measured friction traces: force or position against time, from files and arrays."""
 
-import lazy_loader
-
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+from .samples import Trace as Trace
+from .samples import forces_at as forces_at
+from .samples import simulate_trace as simulate_trace

@@ -1,5 +1,4 @@
 """From what lanes found to the values of each cell: states, energies, deviations."""
 
-import lazy_loader
-
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+from .results import CellResults as CellResults
+from .results import evaluate as evaluate

@@ -1,1 +1,0 @@
-from .certification import certify as certify

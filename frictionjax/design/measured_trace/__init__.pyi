@@ -1,3 +1,0 @@
-from .samples import Trace as Trace
-from .samples import forces_at as forces_at
-from .samples import simulate_trace as simulate_trace

@@ -1,1 +1,0 @@
-from .fit import fit_trace as fit_trace

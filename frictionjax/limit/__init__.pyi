@@ -1,5 +1,0 @@
-from .play import LimitSolution as LimitSolution
-from .play import play_step as play_step
-from .play import require_start_in_strip as require_start_in_strip
-from .play import solve_limit as solve_limit
-from .play import strip as strip

@@ -1,2 +1,0 @@
-from .results import CellResults as CellResults
-from .results import evaluate as evaluate
