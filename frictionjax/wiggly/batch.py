@@ -191,12 +191,10 @@ def _by_slip_maps(
     return so_far._replace(answers=answers)
 
 
-def prepare_cells(
-    scene: Scene, eps: np.ndarray, times: int, balanced: bool = True, suprema: bool = True
-) -> None:
+def prepare_cells(scene: Scene, eps: np.ndarray, times: int) -> None:
     """Have the loop for cells of these eps compiled, before `integrate_cells` asks."""
     lanes = lane_scene(scene, float(eps.max()))
-    _prepare(lanes, eps.size, times, _sums(balanced, suprema))
+    _prepare(lanes, eps.size, times, _sums(balanced=True, suprema=True))
 
 
 def _sums(balanced: bool, suprema: bool) -> Sums:

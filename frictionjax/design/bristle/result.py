@@ -23,7 +23,7 @@ from ..common import (
 )
 from .inverse import Pulled
 from .sensitivities import Sensitivities, sensitivities_of
-from .status import GOOD, FitStatus, fit_status_of
+from .status import GOOD, FitStatus
 
 
 def _unknown(entries: dict[str, Any]) -> Real:
@@ -145,7 +145,7 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
 
 
 def _message(fit: AngleFit) -> str:
-    status = fit_status_of(int(fit.code))
+    status = FitStatus.of(int(fit.code))
     asked = f"{fit.quantity} = {as_text(fit.target)}"
     if status in (FitStatus.UNREACHABLE, FitStatus.PULLS):
         return f"{asked} {_out_of_reach(fit, status)}"

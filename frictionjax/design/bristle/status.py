@@ -18,9 +18,3 @@ class FitStatus(Outcome):
 
 
 GOOD = (FitStatus.OK, FitStatus.TANGENT, FitStatus.INDIFFERENT, FitStatus.MORE)
-_BY_CODE = {int(status): status for status in FitStatus}
-
-
-def fit_status_of(code: int) -> FitStatus:
-    """The status with this integer."""
-    return _BY_CODE[int(code)]
