@@ -4,13 +4,8 @@ import math
 
 import numpy as np
 
+from .settings import SETTINGS
 from .steepest import SampledWaves, series_values, slopes_of_waves, steepest
-
-# Of 360 surfaces with noise of 1%, stated errors hold of 96.5% (of 98% at 0.3%); with half
-# this margin of 94.7%. Where noise leaves the waves before the filter open by more than
-# `_KNOWN` they only bound what is said: with a margin there too, a sine with 0.6% of noise
-# was called open in one of ten, now in one of 25.
-_MARGIN, _KNOWN = 0.5, 0.2  # of the error; of the slope
 
 
 def taken_off(
@@ -40,6 +35,6 @@ def _taken(waves: SampledWaves, samples: np.ndarray | None) -> float:
     less = before.slope - steepest(waves, smooth).slope
     if not math.isfinite(before.error):
         return max(again, 0.0)
-    known = before.error < _KNOWN * before.slope
-    least = less + (_MARGIN if known else -1.0) * before.error
+    known = before.error < SETTINGS.known * before.slope
+    least = less + (SETTINGS.margin if known else -1.0) * before.error
     return max(0.0, min(max(again, least), less + before.error))

@@ -13,6 +13,7 @@ from .._checks import (
     require_whole,
     without_masked,
 )
+from .settings import SETTINGS
 from .slope_errors import SlopeErrors
 from .smoothing import gaussian_gain
 from .steepest import SampledWaves
@@ -47,12 +48,6 @@ class SeriesFit(NamedTuple):
     waves: SampledWaves
 
 
-_MOST = 16  # harmonics that decide on the period
-_ROUNDING = 1e-12  # of the largest height: what varies less is rounding
-_BEYOND, _SEEN = 4, 128  # times the harmonics asked for, and how many, to see the rest
-_LONGEST = 2.9  # periods in the trace that a multiple of the strongest wave needs
-
-
 def _design(x: np.ndarray, period: float, harmonics: int) -> np.ndarray:
     phases = 2 * np.pi * np.outer(x / period, np.arange(1, harmonics + 1))
     trend = np.stack([np.ones_like(x), (x - x.mean()) / np.ptp(x)], axis=1)
@@ -83,15 +78,15 @@ def find_period(
     """
     span = float(np.ptp(x))
     spacing = span / (x.size - 1)
-    frequencies = np.arange(1.5 / span, 0.25 / spacing, 0.1 / span)
+    frequencies = np.arange(1.5 / span, 0.25 / spacing, SETTINGS.frequency_step / span)
     coarse = [_misfit(x, heights, 1 / f, 1) for f in frequencies]
     best = float(frequencies[int(np.argmin(coarse))])
     period, left = _refine(x, heights, best, harmonics)
     for multiple in (2, 3):
-        if best / multiple * span < _LONGEST:
+        if best / multiple * span < SETTINGS.longest:
             break
         longer, less = _refine(x, heights, best / multiple, harmonics)
-        if less < 0.5 * left and left > 1e-6 * np.var(heights):
+        if less < SETTINGS.halves * left and left > SETTINGS.worth * np.var(heights):
             period, left = longer, less
     return period
 
@@ -101,14 +96,15 @@ def _refine(
 ) -> tuple[float, float]:
     """Best period near 1/`frequency` and the variance that it leaves."""
     span = float(np.ptp(x))
-    fits = min(harmonics, _MOST, max(1, int(0.5 * (x.size - 1) / (frequency * span)) - 1))
+    most = max(1, int(0.5 * (x.size - 1) / (frequency * span)) - 1)
+    fits = min(harmonics, SETTINGS.most_deciding, most)
     from scipy.optimize import minimize_scalar  # 0.3 s, for measured surfaces only
 
     search = minimize_scalar(
         lambda period: _misfit(x, heights, period, fits),
         bounds=(1 / (frequency + 0.5 / span), 1 / max(frequency - 0.5 / span, 1.5 / span)),
         method="bounded",
-        options={"xatol": 1e-9 * span},
+        options={"xatol": SETTINGS.period_found * span},
     )
     return float(search.x), float(search.fun) / max(1e-300, 1 - (2 * fits + 2) / x.size)
 
@@ -140,7 +136,7 @@ def fit_heights(
         f"harmonics <= {most}, of {x.size} samples",
     )
     variance = _detrended_variance(x, heights)
-    noise = _ROUNDING * np.max(np.abs(heights))
+    noise = SETTINGS.rounding * np.max(np.abs(heights))
     require(variance > noise**2, "heights", "a straight line", "heights that vary")
     span, spacing = float(np.ptp(x)), float(np.ptp(x)) / (x.size - 1)
     if period is None:
@@ -156,9 +152,8 @@ def fit_heights(
     solution = np.linalg.lstsq(design, heights, rcond=None)[0]
     left = float(np.mean((heights - design @ solution) ** 2))
     c = _complex(solution) / period
-    waves = _waves(
-        x, heights, period, max(harmonics, min(_BEYOND * harmonics, most, _SEEN))
-    )
+    more = max(harmonics, min(SETTINGS.beyond * harmonics, most, SETTINGS.seen))
+    waves = _waves(x, heights, period, more)
     if smoothing is not None:
         gain = gaussian_gain(smoothing, period, max(harmonics, waves.c.size))
         c, waves = gain[:harmonics] * c, waves._replace(gain=gain[: waves.c.size])
@@ -180,7 +175,7 @@ def _waves(
     solution = np.linalg.lstsq(design, heights, rcond=None)[0]
     left = float(np.sum((heights - design @ solution) ** 2))
     free = max(1, x.size - design.shape[1])
-    rounding = _ROUNDING * float(np.ptp(heights))
+    rounding = SETTINGS.rounding * float(np.ptp(heights))
     noise = max(np.sqrt(left / free), rounding) * np.sqrt(2 / x.size) / period
     return SampledWaves(
         _complex(solution) / period, np.full(harmonics, noise), np.ones(harmonics)

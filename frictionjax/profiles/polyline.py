@@ -17,11 +17,7 @@ from .._checks import (
     require_real,
 )
 from .profile import AbstractProfile
-
-_A_CORNER = 8  # samples in the narrowest corner, and on the shortest flank
-_FEWEST, _MOST = 256, 8192
-_UNSEEN = 4096  # samples, where traced numbers cannot be looked at
-_NARROWEST = 1e-12  # where two flanks go on as one there is nothing to round
+from .settings import SETTINGS
 
 
 class Corners(NamedTuple):
@@ -62,7 +58,7 @@ class Polyline(AbstractProfile):
     x: Float[Array, " n"]
     heights: Float[Array, " n"]
     radius: Real
-    points: int = eqx.field(static=True, default=_UNSEEN)
+    points: int = eqx.field(static=True, default=SETTINGS.unseen)
 
     def __init__(self, x: Any, heights: Any, radius: Any):
         self.x, self.heights, self.radius = as_real(x), as_real(heights), as_real(radius)
@@ -83,7 +79,7 @@ class Polyline(AbstractProfile):
         y = jnp.where(y < corners.ends[-1] - 1, y + 1, y)
         # (All corners added up: 2.4 times the time for 4 points, 12 times for 32.)
         zone = jnp.sum(y[..., None] >= corners.ends[:-1], axis=-1)
-        width = jnp.maximum(corners.width, _NARROWEST)[zone]
+        width = jnp.maximum(corners.width, SETTINGS.narrowest)[zone]
         along = y - self.x[zone]
         share = along / width + 0.5
         t = jnp.clip(share, 0.0, 1.0)
@@ -105,10 +101,11 @@ def _corners(x: Any, heights: Any, radius: Any, xp: Any) -> Corners:
 
 def _resolving(corners: Corners) -> int:
     """Samples a period, a power of 2: another radius seldom needs another program."""
-    rounded = corners.width[corners.width > _NARROWEST]
-    size = max(min(rounded.min(), (corners.straight + corners.width).min()), 1e-9)
-    wanted = 2 ** int(np.ceil(np.log2(_A_CORNER / size)))
-    return int(np.clip(wanted, _FEWEST, _MOST))
+    rounded = corners.width[corners.width > SETTINGS.narrowest]
+    narrowest = min(rounded.min(), (corners.straight + corners.width).min())
+    size = max(narrowest, SETTINGS.thinnest)
+    wanted = 2 ** int(np.ceil(np.log2(SETTINGS.a_corner / size)))
+    return int(np.clip(wanted, SETTINGS.fewest, SETTINGS.most))
 
 
 def _require_points(given_x: Any, given_heights: Any) -> None:
@@ -128,7 +125,7 @@ def _require_points(given_x: Any, given_heights: Any) -> None:
 
 def _require_room(corners: Corners, radius: float) -> None:
     half = 0.5 * corners.width
-    taken = np.maximum(half + np.roll(half, -1), _NARROWEST)
+    taken = np.maximum(half + np.roll(half, -1), SETTINGS.narrowest)
     largest = radius * float(np.min(1 + corners.straight / taken))
     needs = f"radius <= {no_more(largest)}, or the corners of a flank overlap"
     require(radius <= largest * (1 + 1e-12), "profile.radius", radius, needs)

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Part, Real, in_64_bits, is_concrete, require, with_nan
+from .settings import SETTINGS
 
 
 class AbstractProfile(Part):
@@ -52,7 +53,7 @@ def require_smooth(name: str, fn: Callable[[Real], Real], points: int) -> None:
     """
     if not is_concrete(fn) or not in_64_bits():
         return
-    inside = 1e-7
+    inside = SETTINGS.inside
     y = jnp.asarray(np.concatenate([np.arange(points) / points, [1.0 - inside]]))
     values = [np.asarray(v) for v in _derivatives(fn, y)]
     for value in values[:3]:
@@ -63,7 +64,7 @@ def require_smooth(name: str, fn: Callable[[Real], Real], points: int) -> None:
         value, slope, size = values[order], values[order + 1], sizes[order]
         seam = float(abs(value[-1] + inside * slope[-1] - value[0]))
         require(
-            seam <= 1e-6 * (size + inside * sizes[order + 1]),
+            seam <= SETTINGS.seam * (size + inside * sizes[order + 1]),
             name,
             f"{label} jumps by {seam:.3g} at the seam y = 0",
             "a 1-periodic C^2 function",
@@ -71,7 +72,7 @@ def require_smooth(name: str, fn: Callable[[Real], Real], points: int) -> None:
         jumps, allowed = _steps(value[:-1], slope[:-1])
         worst = int(np.argmax(jumps - allowed))
         require(
-            jumps[worst] <= allowed[worst] + 1e-9 * size,
+            jumps[worst] <= allowed[worst] + SETTINGS.jump * size,
             name,
             f"{label} jumps by {jumps[worst]:.3g} near y = {worst / points:.4g}",
             "a 1-periodic C^2 function",

@@ -8,9 +8,8 @@ from jaxtyping import Complex
 
 from .._checks import is_masked, known_numbers, numbers_of, require, require_whole
 from .heights import SeriesFit, find_period, fit_heights, require_left
+from .settings import SETTINGS
 from .steepest import SampledWaves
-
-_BLOCKS = 10  # of neighbouring rows, which are not independent of each other
 
 
 def fit_map(
@@ -90,7 +89,7 @@ def mean_waves(fits: Sequence[SeriesFit]) -> SampledWaves:
     that is larger: rows may differ, and neighbours are not independent.
     """
     rows = np.array([_in_phase(fit.waves.c) for fit in fits])
-    blocks = np.array_split(rows, min(_BLOCKS, len(fits)))
+    blocks = np.array_split(rows, min(SETTINGS.blocks, len(fits)))
     means = np.array([block.mean(axis=0) for block in blocks])
     between = np.var(means, axis=0, ddof=1) / (2 * len(blocks))
     own = np.mean([fit.waves.noise**2 for fit in fits], axis=0) / len(fits)

@@ -10,17 +10,8 @@ import numpy as np
 from .._checks import as_text, is_known, known_numbers, require
 from .filtered import taken_off
 from .profile import AbstractProfile
+from .settings import SETTINGS
 from .steepest import SampledWaves, error_of, noise_of, series_values, steepest
-
-_WARNED = 0.1  # of a steepest slope: friction is about as wrong
-_FEWEST = 8  # heights that say anything of what is between them
-_DESIGNED = 16  # heights: fewer are points of a design, whose spline is what is meant
-_SAME = 1e-9  # of the range: an end point that was copied
-_ALIKE = 0.02  # of the range: one that was measured again
-_ENDS = 8  # of heights that are looked for at the other end
-_OTHER = 10.0  # times that they differ: by less than this ends are flat, not repeated
-_CLEARLY = 0.9  # as smooth, but for rounding, is no sign
-_SMOOTHER, _AS_SHARP = 0.3, 2.0  # the seam without the point, in terms of with it
 
 ADVICE = (
     "Straight flanks with corners are profiles.Polyline(x, heights, radius); noise asks "
@@ -68,7 +59,7 @@ class SlopeErrors(NamedTuple):
     @property
     def determined(self) -> bool:
         """Whether both slopes are known to better than 10%."""
-        return self.relative <= _WARNED
+        return self.relative <= SETTINGS.warned
 
     @property
     def message(self) -> str:
@@ -146,7 +137,7 @@ def of_heights(
     fewer than 8 heights.
     """
     count = heights.size
-    if count < _FEWEST:
+    if count < SETTINGS.fewest_heights:
         return None
     c = (2 / count * np.fft.rfft(heights))[1 : (count + 1) // 2]
     noise = np.full(c.size, noise_of(heights) * math.sqrt(2 / count))
@@ -155,10 +146,11 @@ def of_heights(
 
 
 def warn_of(
-    errors: SlopeErrors | None, count: int = _DESIGNED, stacklevel: int = 3
+    errors: SlopeErrors | None, count: int | None = None, stacklevel: int = 3
 ) -> None:
-    """Warn where `count` samples leave a steepest slope open."""
-    if errors is not None and count >= _DESIGNED and not errors.determined:
+    """Warn where `count` samples, or enough of them, leave a steepest slope open."""
+    many = count is None or count >= SETTINGS.designed
+    if errors is not None and many and not errors.determined:
         warnings.warn(errors.message, SlopesUndetermined, stacklevel=stacklevel)
 
 
@@ -178,17 +170,18 @@ def require_once(heights: np.ndarray) -> None:
 def _require_not_on(heights: np.ndarray) -> None:
     """Of several, the most first, as a surface of 8 heights or more has them once."""
     size = np.ptp(heights)
-    for count in range(min(_ENDS, heights.size // 4), 1, -1):
+    for count in range(min(SETTINGS.ends, heights.size // 4), 1, -1):
         first, last = heights[:count], heights[-count:]
         apart, varies = np.max(np.abs(last - first)), np.ptp(first)
-        if apart > _ALIKE * size or varies <= _OTHER * max(apart, _SAME * size):
+        least = SETTINGS.other * max(apart, SETTINGS.same * size)
+        if apart > SETTINGS.alike * size or varies <= least:
             continue
         smoother = _seam(heights[:-count]) / max(_seam(heights), 1e-300)
         said = f"{as_text(first)} at both ends"
         # Without one of several whole periods the seam is as sharp as with it.
-        copied = apart <= _SAME * size and smoother < _CLEARLY
+        copied = apart <= SETTINGS.same * size and smoother < SETTINGS.clearly
         require(not copied, "profile.heights", said, f"one period: {REPEATED}")
-        if smoother < _SMOOTHER:
+        if smoother < SETTINGS.smoother:
             _warn_of_ends(said, count)
             return
 
@@ -201,14 +194,14 @@ def _require_not_again(heights: np.ndarray) -> None:
     corner, or nearly equal and smoother by far, measured again.
     """
     size, apart = np.ptp(heights), np.abs(np.diff(heights, append=heights[0]))
-    if apart[-1] > _ALIKE * size:
+    if apart[-1] > SETTINGS.alike * size:
         return
     smoother = _seam(heights[:-1]) / max(_seam(heights), 1e-300)
-    alone = apart[-1] <= _SAME * size < np.min(apart[:-1])
+    alone = apart[-1] <= SETTINGS.same * size < np.min(apart[:-1])
     said = f"{heights[0]:.6g} and {heights[-1]:.6g} at its ends"
     copied = alone and smoother < 1
     require(not copied, "profile.heights", said, f"one period: {REPEATED}")
-    if smoother < _SMOOTHER or (alone and smoother < _AS_SHARP):
+    if smoother < SETTINGS.smoother or (alone and smoother < SETTINGS.as_sharp):
         _warn_of_ends(said, 1)
 
 

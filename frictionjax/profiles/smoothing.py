@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from .._checks import no_more, require, require_real
-
-_LEAST = 1e-2  # of the fundamental: what a longer filter leaves is no surface any more
+from .settings import SETTINGS
 
 
 def gaussian_gain(length: Any, period: float, harmonics: int) -> np.ndarray:
@@ -19,7 +18,7 @@ def gaussian_gain(length: Any, period: float, harmonics: int) -> np.ndarray:
 
     Raises `ValueError` for a length that is not positive, or longer than 2.5 periods.
     """
-    most = period * math.sqrt(-math.log2(_LEAST))
+    most = period * math.sqrt(-math.log2(SETTINGS.least_left))
     require_real("smoothing", length, "a length > 0", lambda size: size > 0)
     needs = f"smoothing <= {no_more(most)}: a longer one leaves less than 1% of the surface"
     require(float(length) <= most, "smoothing", length, needs)

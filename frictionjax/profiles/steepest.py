@@ -16,16 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-_LADDER = (2, 4, 8)  # of the last harmonic that stands out: how many the windows are of
-_CERTAIN = 2.0  # standard deviations
-_SHARE = 1.1  # of what windows and interpolant differ by: they err a little themselves
-_APART, _MORE = 3.5, 4.0  # standard deviations of a band above its noise, and a little
-_FEW, _TOO_FEW = 3.0, 0.6  # a flank of 2 samples is known to half, one of 1 not at all
-_BEYOND = 1.5  # of the slopes of the last octave of waves: those beyond
-_RESOLVED = 0.5  # of the steepest slope, beyond the waves seen: with more windows decide
-_LET_THROUGH = 0.75  # of the noise of slopes, by windows
-_FINE, _STEPS = 16, 3  # places in the shortest wave, and Newton steps from the best
-_ROUNDING = 1e-15
+from .settings import SETTINGS
 
 
 class SampledWaves(NamedTuple):
@@ -70,13 +61,13 @@ def steepest(waves: SampledWaves, samples: np.ndarray | None = None) -> Steepest
     """
     most, last = waves.c.size, last_of_note(waves)
     found = []
-    for used in sorted({most, *(min(most, factor * last) for factor in _LADDER)}):
+    for used in sorted({most, *(min(most, factor * last) for factor in SETTINGS.ladder)}):
         c, noise = (part[:used] * waves.gain[:used] for part in (waves.c, waves.noise))
         k = np.arange(1, used + 1)
         deviation = 2 * np.pi * math.sqrt(float(np.sum((k * noise) ** 2)))
         whole = samples is not None and used == most
         heights = samples if whole else series_values(c, used + 1)
-        found.append(_by_windows(np.asarray(heights), _LET_THROUGH * deviation))
+        found.append(_by_windows(np.asarray(heights), SETTINGS.let_through * deviation))
         found.append(_by_waves(c, noise, deviation))
     return min(found, key=lambda one: one.error)
 
@@ -91,17 +82,17 @@ def _by_waves(c: np.ndarray, noise: np.ndarray, deviation: float) -> Steepest:
     """
     top = _largest_slope(c)
     rivals = int(np.sum(series_values(c, 2 * c.size, order=1) > top - 2 * deviation))
-    seen = np.maximum(np.abs(c) - _CERTAIN * noise, 0.0)
-    half = c.size // 2
-    beyond = 2 * np.pi * _BEYOND * float(np.sum((np.arange(1, c.size + 1) * seen)[half:]))
-    if beyond > _RESOLVED * top:
+    seen = np.maximum(np.abs(c) - SETTINGS.certain * noise, 0.0)
+    last = 2 * np.pi * float(np.sum((np.arange(1, c.size + 1) * seen)[c.size // 2 :]))
+    beyond = SETTINGS.octaves * last
+    if beyond > SETTINGS.resolved * top:
         return Steepest(top, math.inf)
     return Steepest(top, _of_noise(rivals, deviation) + beyond)
 
 
 def _of_noise(rivals: int, deviation: float) -> float:
     """What noise adds to the largest of so many, and its scatter."""
-    return (math.sqrt(2 * math.log(max(rivals, 1))) + _CERTAIN) * deviation
+    return (math.sqrt(2 * math.log(max(rivals, 1))) + SETTINGS.certain) * deviation
 
 
 def last_of_note(waves: SampledWaves) -> int:
@@ -112,7 +103,8 @@ def last_of_note(waves: SampledWaves) -> int:
     ends = np.minimum(k + np.maximum(1, k // 3), energy.size)
     size = ends - k + 1
     # Of `size` harmonics in noise the energy is 2 size, give or take 2 sqrt(size).
-    stands = summed[ends] - summed[k - 1] > 2 * size + 2 * _APART * np.sqrt(size) + _MORE
+    most = 2 * size + 2 * SETTINGS.apart * np.sqrt(size) + SETTINGS.a_little
+    stands = summed[ends] - summed[k - 1] > most
     return int(max(k[stands], default=1))
 
 
@@ -129,7 +121,7 @@ def _by_windows(heights: np.ndarray, deviation: float) -> Steepest:
         return Steepest(one, math.inf)
     fourth, sixth = (4 * one - two) / 3, 1.5 * one - 0.6 * two + 0.1 * three
     fall = max(0.0, 1 - three / one)
-    lost = 0.5 * one * (_FEW * fall) ** 3 if fall < _TOO_FEW else math.inf
+    lost = 0.5 * one * (SETTINGS.few * fall) ** 3 if fall < SETTINGS.too_few else math.inf
     noise = _of_noise(int(np.sum(slopes[0] > one - 2 * deviation)), deviation)
     return Steepest(sixth, 0.5 * abs(sixth - fourth) + lost + noise)
 
@@ -155,11 +147,11 @@ def slopes_of_waves(c: np.ndarray) -> tuple[float, float]:
 
 
 def _largest_slope(c: np.ndarray) -> float:
-    count = _FINE * max(2, c.size)
+    count = SETTINGS.fine * max(2, c.size)
     slopes = series_values(c, count, order=1)
     turns = 2j * np.pi * np.arange(1, c.size + 1)
     y = int(np.argmax(slopes)) / count
-    for _ in range(_STEPS):
+    for _ in range(SETTINGS.newton):
         waves = c * turns**2 * np.exp(turns * y)
         bend, next_bend = np.sum(waves).real, np.sum(waves * turns).real
         y -= float(np.clip(bend / min(next_bend, -1e-300), -0.5 / count, 0.5 / count))
@@ -168,7 +160,7 @@ def _largest_slope(c: np.ndarray) -> float:
 
 def error_of(slope: float, reference: Steepest) -> float:
     """Error of an interpolant's steepest slope upwards."""
-    return _SHARE * abs(slope - reference.slope) + reference.error
+    return SETTINGS.share * abs(slope - reference.slope) + reference.error
 
 
 def noise_of(samples: np.ndarray) -> float:
@@ -185,4 +177,4 @@ def noise_of(samples: np.ndarray) -> float:
     fine = np.concatenate([samples, samples[:order]])
     scale = 0.6745 * math.sqrt(math.comb(2 * order, order))
     by_differences = float(np.median(np.abs(np.diff(fine, order)))) / scale
-    return max(min(by_waves, by_differences), _ROUNDING * float(np.ptp(samples)))
+    return max(min(by_waves, by_differences), SETTINGS.noise_floor * float(np.ptp(samples)))
