@@ -4,6 +4,6 @@ from .files import Measured as Measured
 from .files import MeasuredWarning as MeasuredWarning
 from .files import heights_of as heights_of
 from .files import read_heights as read_heights
+from .fit import RowCoefficients as RowCoefficients
 from .fit import fit_profile as fit_profile
-from .rows import RowCoefficients as RowCoefficients
-from .rows import row_coefficients as row_coefficients
+from .fit import row_coefficients as row_coefficients

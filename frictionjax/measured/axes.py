@@ -2,9 +2,7 @@
 
 import numpy as np
 
-# Of the step, or the last digit written. Of eight heights or more no flank is as even,
-# unless its neighbour is as straight.
-_EVEN, _EXACT, _MANY = 0.05, 1e-6, 8
+from .settings import SETTINGS
 
 
 def axis_of(block: np.ndarray) -> int | None:
@@ -20,14 +18,14 @@ def _unlike(rows: np.ndarray) -> bool:
     first, second, count = rows[0], rows[1], rows.shape[1]
     if count < 3:
         return False
-    if count >= _MANY:
-        return _step(first, _EVEN) != 0 and not _alike(first, second)
-    if not _step(first, _EXACT) or _alike(first, second):
+    if count >= SETTINGS.many:
+        return _step(first, SETTINGS.even) != 0 and not _alike(first, second)
+    if not _step(first, SETTINGS.exact) or _alike(first, second):
         return False
     # So few heights may rise evenly by chance, but then as their neighbours nearly do.
     apart = np.std(np.diff(rows, axis=0), axis=1)
     others = apart[1:][np.isfinite(apart[1:])]
-    return bool(others.size and apart[0] > 2 * others.max())
+    return bool(others.size and apart[0] > SETTINGS.unlike * others.max())
 
 
 def _step(values: np.ndarray, tolerance: float) -> float:
@@ -42,7 +40,7 @@ def _step(values: np.ndarray, tolerance: float) -> float:
 
 def _rounding(values: np.ndarray, step: float) -> float:
     """How far values lie off a line for the digits that they are written with."""
-    if values.size < _MANY:
+    if values.size < SETTINGS.many:
         return 0.0
     for digits in range(10):
         last = 10.0**-digits
@@ -53,5 +51,6 @@ def _rounding(values: np.ndarray, step: float) -> float:
 
 def _alike(first: np.ndarray, second: np.ndarray) -> bool:
     """Whether both climb as one tilted surface does, the second one less evenly."""
-    step, other = _step(first, _EVEN), _step(second, 1.0)
-    return 0.5 < other / step < 2 if step else False
+    step, other = _step(first, SETTINGS.even), _step(second, 1.0)
+    most = SETTINGS.as_steep
+    return 1 / most < other / step < most if step else False

@@ -5,14 +5,7 @@ import numpy as np
 from .._checks import no_more, require
 from ..profiles import find_period
 from .samples import HeightSamples
-
-# A straight line over a tenth of a period misleads the steepest slopes by 1 to 2% in a
-# trace of 8 periods and 3 to 8% in one of 2 or 3; over a quarter by 7 and 20%. A cubic
-# spline is better on clean heights (0.3%) and lost on noise of 3% (10 to 50%, over a
-# tenth); the periodic fit through the rest likewise (10 to 24% in 2 or 3 periods).
-_LONGEST = 0.1  # of the period, or one sample
-_SHARE = 0.1  # of a row's samples: with more, 10% in a trace of 3 periods
-_HARMONICS = 8
+from .settings import SETTINGS
 
 
 def without_gaps(samples: HeightSamples) -> HeightSamples:
@@ -30,8 +23,9 @@ def without_gaps(samples: HeightSamples) -> HeightSamples:
     share = missing.mean(axis=1)
     worst = int(np.argmax(share))
     where = samples.place(worst, int(np.argmax(missing[worst])))
-    needs = f"at most {_SHARE:.0%} of a row missing"
-    require(share[worst] <= _SHARE, where, f"missing, with {share[worst]:.0%}", needs)
+    most = SETTINGS.most_missing
+    needs = f"at most {most:.0%} of a row missing"
+    require(share[worst] <= most, where, f"missing, with {share[worst]:.0%}", needs)
     filled = _interpolated(samples.x, samples.heights)
     longest = _require_short(samples, missing, filled)
     many = f"{int(missing.sum())} of {missing.size} heights missing, first {place}"
@@ -72,11 +66,11 @@ def _require_short(samples: HeightSamples, missing: np.ndarray, filled: np.ndarr
     after, before = min(start + count, x.size - 1), max(start - 1, 0)
     gap = max(float(x[after] - x[before]) - spacing, count * spacing)
     if count > 1:
-        period = find_period(x, filled, _HARMONICS)
-        most = no_more(_LONGEST * period, 4)
-        needs = f"a gap <= {most} m, a tenth of the period {period:.4g} m"
+        period = find_period(x, filled, SETTINGS.harmonics)
+        most = SETTINGS.longest_gap * period
+        needs = f"a gap <= {no_more(most, 4)} m, a tenth of the period {period:.4g} m"
         said = f"{gap:.4g} m of missing heights"
-        require(gap <= _LONGEST * period, samples.place(row, start), said, needs)
+        require(gap <= most, samples.place(row, start), said, needs)
     return count
 
 

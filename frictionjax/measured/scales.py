@@ -7,11 +7,8 @@ import numpy as np
 
 from .._checks import require
 from .entries import Stated
+from .settings import SETTINGS
 from .units import ALLOWED, metres, require_unit
-
-# What has no unit is read as m where it could be: a trace of at most 1 m, whose mean
-# slope is at most 3. Micrometres beside nanometres make a slope of 0.05 into 50.
-_LONGEST_TRACE, _STEEPEST = 1.0, 3.0
 
 
 class GivenUnits(NamedTuple):
@@ -110,8 +107,8 @@ def require_metres(x: np.ndarray, heights: np.ndarray, place: str) -> None:
     """Raise where numbers without a unit cannot be metres."""
     needs = "length_unit and height_unit (or height_scale): the file states none"
     span = float(np.ptp(x))
-    require(span <= _LONGEST_TRACE, place, f"a trace of {span:.4g} m", needs)
+    require(span <= SETTINGS.longest_trace, place, f"a trace of {span:.4g} m", needs)
     slopes = np.abs(np.diff(heights, axis=1) / np.diff(x))
     known = slopes[np.isfinite(slopes)]
     slope = float(known.mean()) if known.size else 0.0
-    require(slope <= _STEEPEST, place, f"a mean slope of {slope:.4g}", needs)
+    require(slope <= SETTINGS.steepest, place, f"a mean slope of {slope:.4g}", needs)

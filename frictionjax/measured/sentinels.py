@@ -4,6 +4,7 @@ import numpy as np
 
 from .._checks import require
 from .samples import HeightSamples
+from .settings import SETTINGS
 
 _BITS = (32767.0, 32768.0, 65535.0, 2.0**31 - 1, 2.0**31, 2.0**32 - 1)
 _NINES = tuple(10.0**n - 1 for n in range(3, 8))
@@ -12,13 +13,6 @@ _MARKS = (
     *(value / 1e3 for value in _BITS),
     *(value + 0.999 for value in _NINES),
 )
-_HUGE = 1e30  # no height in any unit
-# In ranges of all other heights. Counts of 16 bits that fill half of theirs leave -32768
-# 0.4 ranges away; other values are heights there, a scratch or a particle.
-_FAR_MARK, _FAR = 0.1, 1.0
-_FEWEST = 16  # other heights that show a range
-_FLANK = 0.1  # of that range: a neighbour so far out climbs to what lies apart
-_BULKS = (0.5, 0.75, 0.9, 0.97)  # of all heights, of which more than one value is needed
 
 
 def without_sentinels(samples: HeightSamples, outliers: str | None = None) -> HeightSamples:
@@ -64,12 +58,16 @@ def _marks(heights: np.ndarray, keep: bool) -> list[float]:
     rest = heights[np.isfinite(heights)]
     while rest.size > 2:
         ends = (float(rest.min()), float(rest.max()))
-        marks = [v for v in ends if abs(v) >= _HUGE or (not keep and _is_mark(v, rest))]
+        marks = [v for v in ends if _is_huge(v) or (not keep and _is_mark(v, rest))]
         if not marks:
             break
         found += marks[:1]
         rest = rest[rest != marks[0]]
     return found
+
+
+def _is_huge(value: float) -> bool:
+    return abs(value) >= SETTINGS.huge
 
 
 def _is_mark(value: float, heights: np.ndarray) -> bool:
@@ -78,7 +76,7 @@ def _is_mark(value: float, heights: np.ndarray) -> bool:
     others = heights[heights != value]
     if others.size < 2 or np.ptp(others) == 0:
         return False
-    return float(np.min(np.abs(others - value))) > _FAR_MARK * float(np.ptp(others))
+    return float(np.min(np.abs(others - value))) > SETTINGS.far_mark * float(np.ptp(others))
 
 
 def _alone(heights: np.ndarray) -> np.ndarray:
@@ -93,9 +91,9 @@ def _alone(heights: np.ndarray) -> np.ndarray:
         return far
     near = _grown(far) & known & ~far
     calm = heights[known & ~far & ~near]
-    if calm.size < _FEWEST:
+    if calm.size < SETTINGS.fewest:
         calm = heights[known & ~far]
-    edge = _FLANK * float(np.ptp(calm))
+    edge = SETTINGS.flank * float(np.ptp(calm))
     flanks = near & ((heights < calm.min() - edge) | (heights > calm.max() + edge))
     return far & ~_grown(flanks) & ~_varied(heights, far)
 
@@ -103,16 +101,16 @@ def _alone(heights: np.ndarray) -> np.ndarray:
 def _bulk(values: np.ndarray) -> tuple[float, float]:
     """The interval that heights fill without a gap as wide as what they fill before."""
     everything = -np.inf, np.inf
-    if values.size <= _FEWEST:
+    if values.size <= SETTINGS.fewest:
         return everything
     gaps = np.diff(values)
     for value in (values[0], values[-1]):  # more than half may be one mark
         others = values[values != value]
-        away = np.min(np.abs(others - value)) if others.size > _FEWEST else 0.0
-        if others.size > _FEWEST and away > _FAR * np.ptp(others) > 0:
+        away = np.min(np.abs(others - value)) if others.size > SETTINGS.fewest else 0.0
+        if others.size > SETTINGS.fewest and away > SETTINGS.far * np.ptp(others) > 0:
             return float(others[0]), float(others[-1])
-    for share in _BULKS:
-        count = max(_FEWEST, int(share * values.size)) - 1
+    for share in SETTINGS.bulks:
+        count = max(SETTINGS.fewest, int(share * values.size)) - 1
         widths = values[count:] - values[:-count]
         first = int(np.argmin(widths))
         if widths[first] > 0:
@@ -125,7 +123,7 @@ def _spread(
 ) -> tuple[float, float]:
     """From samples `first` to `last` outwards, to the first gaps wider than all inside."""
     while True:
-        wide = gaps > _FAR * (values[last] - values[first])
+        wide = gaps > SETTINGS.far * (values[last] - values[first])
         below, above = np.flatnonzero(wide[:first]), np.flatnonzero(wide[last:])
         lowest = int(below[-1]) + 1 if below.size else 0
         highest = last + int(above[0]) if above.size else values.size - 1
