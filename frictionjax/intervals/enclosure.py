@@ -14,9 +14,9 @@ from .jet import Jet
 from .logic import LOGIC, select
 from .program import Program
 from .program import TooMuchWorkError as TooMuchWorkError
+from .settings import SETTINGS
 from .shapes import SHAPES, NoRuleError, stack
 
-_LONGEST = 1000  # steps of a loop that are followed
 _CALLS = {
     "jit": "jaxpr",
     "pjit": "jaxpr",
@@ -181,7 +181,7 @@ def _call(closed: Any, operands: list[Jet]) -> list[Jet]:
 def _scan(params: Any, operands: list[Jet]) -> list[Jet]:
     """A loop of known length, step by step."""
     fixed, carried, length = params["num_consts"], params["num_carry"], params["length"]
-    if length > _LONGEST:
+    if length > SETTINGS.longest:
         raise NoRuleError(f"scan of {length} steps")
     held, carry = operands[:fixed], operands[fixed : fixed + carried]
     rows, found = operands[fixed + carried :], []

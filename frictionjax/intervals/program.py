@@ -11,18 +11,9 @@ from . import jet as jets
 from .functions import ELEMENTARY
 from .jet import Jet
 from .logic import LOGIC
+from .settings import SETTINGS
 from .shapes import SHAPES
 
-_UNKNOWN_LOOP = 16  # times that a loop of unknown length is taken to run
-_CALLBACK = 2000  # numbers that take as long as a call of Python
-_STEP = 256  # numbers that take as long as the overhead of a step
-_LARGEST = 2**15  # numbers in one array, which stay in the cache
-_MANY = 32  # terms of a sum among which those that move are looked for
-_PARTS, _FEW = 4, 16
-_LEAF = 2**13  # numbers in one array for which looking for terms that rest saves nothing
-# Of the largest term: widths of values below rounding; slopes and bends that move nothing.
-# (Slopes below 1e-16 still decide the sign between pulses far apart.)
-_KNOWN, _RESTS = 1e-15, 1e-24
 _TERMWISE = {*ELEMENTARY, *LOGIC, "integer_pow", "convert_element_type", "copy"}
 
 Results = Callable[[Any, list[Jet]], list[Jet]]
@@ -103,7 +94,7 @@ class Program:
         sums = {
             k: (np.arange(_terms(step.eqn)), jets.number(np.zeros(())))
             for k, step in enumerate(self._steps)
-            if _terms(step.eqn) >= _MANY
+            if _terms(step.eqn) >= SETTINGS.many
         }
         sizes = [v.aval.size for step in self._steps for v in step.eqn.outvars]
         return Plan({}, sums, max([1, *sizes]))
@@ -113,14 +104,15 @@ class Program:
         return self._in_parts(lo, hi, self._all)
 
     def _in_parts(self, lo: np.ndarray, hi: np.ndarray, plan: Plan) -> list[Jet]:
-        if not self._narrows or lo.size <= _FEW or lo.size * plan.largest <= _LEAF:
-            room = max(_LARGEST // plan.largest, 1)
+        small = lo.size * plan.largest <= SETTINGS.leaf
+        if not self._narrows or lo.size <= SETTINGS.few or small:
+            room = max(SETTINGS.largest // plan.largest, 1)
             places = range(0, max(lo.size, 1), room)
             return [self._run(lo[k : k + room], hi[k : k + room], plan)[0] for k in places]
         around = np.min(lo, keepdims=True), np.max(hi, keepdims=True)
         less = self._narrowed(self._run(*around, plan)[1], plan)
-        edges = np.linspace(0, lo.size, _PARTS + 1).astype(int)
-        if lo.size * less.largest <= _LEAF:
+        edges = np.linspace(0, lo.size, SETTINGS.parts + 1).astype(int)
+        if lo.size * less.largest <= SETTINGS.leaf:
             edges = edges[[0, -1]]
         found = []
         for a, b in pairwise(edges):
@@ -133,12 +125,12 @@ class Program:
         for k, step in enumerate(self._steps):
             if plan.wanted and not any(place in plan.wanted for place in step.write):
                 continue
-            self.spent += lo.size * step.numbers + _STEP * step.steps
+            self.spent += lo.size * step.numbers + SETTINGS.step * step.steps
             if self.spent > self.most:
                 raise TooMuchWorkError
             found = self._found(k, step, known, plan)
             known |= dict(zip(step.write, found, strict=True))
-            self.spent += _STEP + sum(jet.seam.size for jet in found)
+            self.spent += SETTINGS.step + sum(jet.seam.size for jet in found)
             if self.spent > self.most:
                 raise TooMuchWorkError
         out = self._out if isinstance(self._out, Jet) else known[self._out]
@@ -196,7 +188,7 @@ def work_of(jaxpr: Any) -> tuple[int, int]:
     numbers = steps = 0
     for eqn in jaxpr.eqns:
         numbers += sum(getattr(var.aval, "size", 1) for var in eqn.outvars)
-        numbers += _CALLBACK * ("callback" in eqn.primitive.name)
+        numbers += SETTINGS.callback * ("callback" in eqn.primitive.name)
         more = _inside(eqn)
         numbers, steps = numbers + more[0], steps + 1 + more[1]
     return numbers, steps
@@ -204,7 +196,7 @@ def work_of(jaxpr: Any) -> tuple[int, int]:
 
 def _inside(eqn: Any) -> tuple[int, int]:
     parts = [work_of(called) for called in jaxprs_in_params(eqn.params)]
-    unknown = _UNKNOWN_LOOP if eqn.primitive.name == "while" else 1
+    unknown = SETTINGS.unknown_loop if eqn.primitive.name == "while" else 1
     often = eqn.params.get("length", unknown)
     return often * sum(n for n, _ in parts), often * sum(k for _, k in parts)
 
@@ -254,8 +246,9 @@ def _moves(terms: Jet) -> np.ndarray:
         return sizes <= share * np.max(most[np.isfinite(most)], initial=0.0)
 
     value, slope, bend = (part.mapped(lambda a: a[0]) for part in terms[:3])
-    still = rests(value.width, value.size, _KNOWN)
-    still &= rests(slope.size, slope.size, _RESTS) & rests(bend.size, bend.size, _RESTS)
+    still = rests(value.width, value.size, SETTINGS.known)
+    for part in (slope, bend):
+        still &= rests(part.size, part.size, SETTINGS.rests)
     moves = ~still | terms.seam[0]
     moves[0] |= not moves.any()
     return moves

@@ -9,9 +9,7 @@ from jaxtyping import Array, Float, Int
 
 from .._checks import Real
 from .roots import find_root
-
-_BUMPS = 8  # scanned maxima that are polished
-_NEAR = 4  # scanned points of which one is looked at
+from .settings import SETTINGS
 
 
 class Extrema(NamedTuple):
@@ -34,7 +32,7 @@ def _carry(fn: Callable[[Real], Real], side: Real, frozen: Real) -> Real:
     So second derivatives of the value are right too; its first is the envelope theorem.
     """
     slope, curve = jax.jvp(slope_of(fn), (frozen,), (jnp.ones_like(frozen),))
-    known = -side * curve > 1e-8 * jnp.abs(fn(frozen))
+    known = -side * curve > SETTINGS.bent * jnp.abs(fn(frozen))
     step = jnp.where(known, slope / jnp.where(known, curve, 1.0), 0.0)
     return frozen - (step - jax.lax.stop_gradient(step))
 
@@ -94,10 +92,10 @@ def _highest(
     takes 0.1; a scan over argmax the same.
     """
     count = values.shape[1]
-    # No two bumps of a resolved function are that near.
-    near = _NEAR if count % _NEAR == 0 and count > 16 * _NEAR else 1
+    near = SETTINGS.near
+    near = near if count % near == 0 and count > 16 * near else 1
     parts = values.reshape(2, -1, near)
-    heights, part = jax.lax.top_k(jnp.max(parts, axis=2), _BUMPS)
+    heights, part = jax.lax.top_k(jnp.max(parts, axis=2), SETTINGS.bumps)
     inside = jnp.take_along_axis(jnp.argmax(parts, axis=2), part, axis=1)
     return heights, near * part + inside
 

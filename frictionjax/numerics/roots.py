@@ -8,17 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Real
-
-_ROUNDING = 2.0**-51
-_SMALL = 1e-8
-_SHRINK = 32.0
-_MAX_ITERATIONS = 320  # 104 bisections end any bracket, every third; Newton: under 10
-# Newton steps that shrink less than this take turns with bisections: between the flanks
-# of a bump in the slope they go back and forth, inside of the bracket, for ever.
-_SLOW = 0.7
-# Where they are small and no longer shrink (rounding of `f` over a small slope, a flank
-# narrower than that, a multiple root) a step this much longer closes the bracket.
-_BEYOND = 8.0
+from .settings import SETTINGS
 
 
 def find_root(fn: Callable[[Real], Real], lower: Any, upper: Any) -> Any:
@@ -38,24 +28,25 @@ def find_root(fn: Callable[[Real], Real], lower: Any, upper: Any) -> Any:
         newton = x - step
         inside = (slope > 0) & (newton >= low) & (newton <= high)
         size = jnp.abs(newton - x)
-        slow = size > _SLOW * last
+        slow = size > SETTINGS.slow * last
         newton_next = inside & ~slow
         middle = 0.5 * (low + high)
-        beyond = x - _BEYOND * step
-        small = inside & slow & (size <= _SMALL * scale)
-        small &= (beyond > low) & (beyond < high) & (high - low > 4 * _BEYOND * size)
+        beyond = x - SETTINGS.beyond * step
+        small = inside & slow & (size <= SETTINGS.small * scale)
+        small &= (beyond > low) & (beyond < high)
+        small &= high - low > 4 * SETTINGS.beyond * size
         new = jnp.where(newton_next, newton, jnp.where(small, beyond, middle))
         new = jnp.where(jnp.isnan(value), value, new)  # no root where fn is undefined
         # A Newton step below the rounding of the whole bracket leaves an error that is
         # its square, also where the root is near 0.
-        rounding = jnp.maximum(jnp.abs(new), _ROUNDING * scale)
+        rounding = jnp.maximum(jnp.abs(new), SETTINGS.rounding * scale)
         left = jnp.where(newton_next, jnp.abs(new - x) / scale, (high - low) / rounding)
-        done = (left <= _ROUNDING) | (value == 0) | jnp.isnan(value) | (high <= low)
+        done = (left <= SETTINGS.rounding) | (value == 0) | jnp.isnan(value) | (high <= low)
         return low, high, jnp.where(live, new, x), jnp.abs(new - x), live & ~done, count + 1
 
     def go_on(state: tuple) -> Array:
         *_, live, count = state
-        return jnp.any(live) & (count < _MAX_ITERATIONS)
+        return jnp.any(live) & (count < SETTINGS.most_iterations)
 
     far = jnp.full_like(lower, jnp.inf)
     start = (lower, upper, 0.5 * (lower + upper), far, upper > lower, 0)
@@ -99,10 +90,11 @@ def increasing_root(fn: Callable[[Real], Real], guess: Real) -> Real:
     step = 2 * jnp.abs(value) / jnp.where(slope > 0, slope, 1.0)
     start = jax.lax.stop_gradient(jnp.where((slope > 0) & (step < 1e150), step, 1.0))
     width = jax.lax.while_loop(
-        lambda w: ~holds(w) & (w > 0) & (w < 1e150), lambda w: 4 * w, start
+        lambda w: ~holds(w) & (w > 0) & (w < 1e150), lambda w: SETTINGS.growth * w, start
     )
+    less = SETTINGS.shrink
     width = jax.lax.while_loop(
-        lambda w: holds(w / _SHRINK) & (w > 1e-150), lambda w: w / _SHRINK, width
+        lambda w: holds(w / less) & (w > 1e-150), lambda w: w / less, width
     )
     width = jax.lax.stop_gradient(width)
     return bracketed_root(fn, guess - width, guess + width)

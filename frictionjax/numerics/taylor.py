@@ -7,10 +7,10 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import Real
+from .settings import SETTINGS
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1), 0.5 * _WEIGHTS  # on [0, 1]
-_ROUNDING = 8 * float(np.finfo(np.float64).eps)
 
 
 def _derivative(fn: Callable[[Real], Real]) -> Callable[[Real], Real]:
@@ -30,7 +30,7 @@ def increment(fn: Callable[[Real], Real], x: Real) -> Real:
     difference = end - origin
     slopes = jax.vmap(_derivative(fn))(x * _NODES)
     integral = x * jnp.dot(_WEIGHTS, slopes)
-    bound = _ROUNDING * (jnp.abs(end) + jnp.abs(origin))
+    bound = SETTINGS.cancelled * (jnp.abs(end) + jnp.abs(origin))
     agrees = jnp.abs(integral - difference) <= bound
     correction = jnp.where(agrees, integral - difference, 0.0)
     return difference + jax.lax.stop_gradient(correction)
@@ -49,7 +49,7 @@ def second_remainder(fn: Callable[[Real], Real], x: Real) -> Real:
     end, origin, linear = fn(x), fn(zero), _derivative(fn)(zero) * x
     square = jnp.where(x == 0, 1.0, x * x)
     quotient = (end - origin - linear) / square
-    bound = _ROUNDING * (jnp.abs(end) + jnp.abs(origin) + jnp.abs(linear))
+    bound = SETTINGS.cancelled * (jnp.abs(end) + jnp.abs(origin) + jnp.abs(linear))
     agrees = jnp.abs(integral - quotient) * x * x <= bound
     return jnp.where(agrees, integral, quotient)
 
@@ -65,6 +65,6 @@ def mean_slope(fn: Callable[[Real], Real], start: Real, end: Real) -> Real:
     integral = jnp.dot(_WEIGHTS, slopes)
     last, first = fn(end), fn(start)
     quotient = (last - first) / jnp.where(width == 0, 1.0, width)
-    bound = _ROUNDING * (jnp.abs(last) + jnp.abs(first) + jnp.abs(integral))
+    bound = SETTINGS.cancelled * (jnp.abs(last) + jnp.abs(first) + jnp.abs(integral))
     agrees = jnp.abs((integral - quotient) * width) <= bound
     return jnp.where(agrees, integral, quotient)
