@@ -12,18 +12,7 @@ from ..._checks import Real
 from ...bristles import AbstractBristle
 from ...numerics import find_root, slope_of
 from ..common import FreeParameter, OnSlopes, Slopes, on_slopes, quantity_of, side_of
-
-MOST_INTERVALS = 4  # intervals of admissible numbers: slanted springs have three
-_HALVES = slice(MOST_INTERVALS), slice(MOST_INTERVALS, 2 * MOST_INTERVALS)
-TURNS = 6  # extrema of the quantity in one interval
-_GRID = 257
-_BISECTIONS = 64  # a bracket of the grid's width to neighbouring floats
-_TERNARY = 60
-# Nodes of an interval: even inside, and halving towards both ends, where it may have poles.
-_EVEN = np.arange(1, 96) / 96
-_ENDS = 2.0 ** -np.arange(7, 51)
-_POLE = 1e2  # growth from 1e-3 to 1e-9 of the width before an end: that of (1/d)^(1/3)
-_FLAT = 256 * float(np.finfo(np.float64).eps)
+from .settings import SETTINGS
 
 
 class Admissible(NamedTuple):
@@ -75,7 +64,9 @@ def survey(
     now = free.coordinate(bristle, free.now(bristle))
     ends, sides, missed = _pieces(law, low, high, now, pulling)
     found = scan_admissible(lambda x: law(x)[0], ends, sides)
-    half = [jax.tree_util.tree_map(lambda row, i=i: row[i], found) for i in _HALVES]
+    most = SETTINGS.most_intervals
+    halves = slice(most), slice(most, 2 * most)
+    half = [jax.tree_util.tree_map(lambda row, i=i: row[i], found) for i in halves]
     allowed, others = (
         part._replace(missed=jnp.any(part.missed) | more)
         for part, more in zip(half, missed, strict=True)
@@ -90,7 +81,7 @@ def _pieces(
 
     First those that are allowed, then those that pull and are not; whether some miss.
     """
-    grid = low + (high - low) * jnp.arange(_GRID) / (_GRID - 1)
+    grid = low + (high - low) * jnp.arange(SETTINGS.grid) / (SETTINGS.grid - 1)
     grid = grid.at[-1].set(high)
     now = jnp.where(jnp.isfinite(now), jnp.clip(now, low, high), low)
     nodes = jnp.sort(jnp.concatenate([grid, _narrow(law, grid), now[None]]))
@@ -103,14 +94,15 @@ def _pieces(
     after = jnp.concatenate([sides[1:], jnp.zeros(1)])
     opens, closes = (sides != 0) & (sides != before), (sides != 0) & (sides != after)
     wanted = (sides > 0) | pulling, (sides < 0) & ~pulling
-    first = jnp.concatenate([first_places(opens & some, MOST_INTERVALS) for some in wanted])
-    last = jnp.concatenate([first_places(closes & some, MOST_INTERVALS) for some in wanted])
+    most = SETTINGS.most_intervals
+    first = jnp.concatenate([first_places(opens & some, most) for some in wanted])
+    last = jnp.concatenate([first_places(closes & some, most) for some in wanted])
     neighbours = jnp.concatenate([first - 1, last + 1])
     beyond = nodes[jnp.clip(neighbours, 0, nodes.shape[0] - 1)]
     inside = nodes[jnp.concatenate([first, last])]
-    edges = _edges(side, inside, beyond).reshape(2, 2 * MOST_INTERVALS).T
+    edges = _edges(side, inside, beyond).reshape(2, 2 * most).T
     there = first >= 0
-    missed = [jnp.sum(opens & some) > MOST_INTERVALS for some in wanted]
+    missed = [jnp.sum(opens & some) > most for some in wanted]
     return (
         jnp.where(there[:, None], edges, jnp.nan),
         jnp.where(there, sides[first], 0.0),
@@ -150,7 +142,7 @@ def _narrow(law: Callable, grid: Float[Array, " n"]) -> Float[Array, " few"]:
         rises = both[:2] < both[2:]
         return jnp.where(rises, left, low), jnp.where(rises, high, right)
 
-    ends = jax.lax.fori_loop(0, _TERNARY, third, (grid[at - 1], grid[at + 1]))
+    ends = jax.lax.fori_loop(0, SETTINGS.ternary, third, (grid[at - 1], grid[at + 1]))
     return (0.5 * (ends[0] + ends[1])).ravel()
 
 
@@ -168,7 +160,7 @@ def _edges(side: Callable, inside: Array, outside: Array) -> Array:
         return jnp.where(holds, middle, good), jnp.where(holds, bad, middle)
 
     reached = side(outside) == wanted  # the range itself ends inside
-    good, _ = jax.lax.fori_loop(0, _BISECTIONS, halve, (inside, outside))
+    good, _ = jax.lax.fori_loop(0, SETTINGS.bisections, halve, (inside, outside))
     return jnp.where(reached, outside, good)
 
 
@@ -194,23 +186,25 @@ def scan_admissible(
     `missed` of the result is of each interval.
     """
     width = ends[:, 1:] - ends[:, :1]
-    near = jnp.concatenate([jnp.zeros(1), _ENDS[::-1], _EVEN[_EVEN < 0.5]])
+    even = np.arange(1, SETTINGS.even) / SETTINGS.even
+    halved = 2.0 ** -np.arange(*SETTINGS.halvings)
+    near = jnp.concatenate([jnp.zeros(1), halved[::-1], even[even < 0.5]])
     left, right = ends[:, :1] + width * near, ends[:, 1:] - width * near[::-1]
     middle = ends[:, :1] + 0.5 * width
     nodes = jnp.sort(jnp.concatenate([left, middle, right], axis=1), axis=1)
     every = jax.jit(jax.vmap(jax.vmap(fn)))
     values, slopes = jax.jvp(every, (nodes,), (jnp.ones_like(nodes),))
     size = jnp.max(jnp.abs(values), axis=1)
-    flat = jnp.max(values, axis=1) - jnp.min(values, axis=1) <= _FLAT * size
+    flat = jnp.max(values, axis=1) - jnp.min(values, axis=1) <= SETTINGS.flat * size
     places, more = _turns(every, nodes, slopes)
-    steps = width * jnp.array([1e-3, 1e-9])
+    steps = width * jnp.array(SETTINGS.asides)
     asides = jnp.concatenate([ends[:, :1] + steps, ends[:, 1:] - steps], axis=1)
     turned = jnp.isfinite(places)
     # Empty places go to the end of the interval, where they repeat its last node.
     places = jnp.where(turned, places, ends[:, 1:])
     added = every(jnp.concatenate([places, asides], axis=1))
-    every_value = jnp.concatenate([values, added[:, :TURNS]], axis=1)
-    low, high = _range(every_value, added[:, TURNS:], width[:, 0])
+    every_value = jnp.concatenate([values, added[:, : SETTINGS.turns]], axis=1)
+    low, high = _range(every_value, added[:, SETTINGS.turns :], width[:, 0])
     none = jnp.zeros(nodes.shape, bool)
     columns = (
         jnp.concatenate([nodes, places], axis=1),
@@ -223,10 +217,10 @@ def scan_admissible(
 
 
 def _turns(every: Callable, nodes: Array, slopes: Array) -> tuple[Array, Array]:
-    """Zeros of the slope between nodes (PIECES, TURNS), NaN where there are fewer."""
+    """Zeros of the slope between nodes (PIECES, turns), NaN where there are fewer."""
     left, right = slopes[:, :-1], slopes[:, 1:]
     turns = (left * right < 0) | ((left == 0) & (right != 0))
-    cells = first_places(turns, TURNS)
+    cells = first_places(turns, SETTINGS.turns)
     before = jnp.take_along_axis(left, cells, axis=1)
     low = jnp.take_along_axis(nodes, cells, axis=1)
     high = jnp.take_along_axis(nodes, cells + 1, axis=1)
@@ -234,20 +228,20 @@ def _turns(every: Callable, nodes: Array, slopes: Array) -> tuple[Array, Array]:
     slope = slope_of(every)
     roots = find_root(lambda x: side * slope(x), low, high)
     roots = jnp.where(before == 0, low, roots)
-    return jnp.where(cells >= 0, roots, jnp.nan), jnp.sum(turns, axis=1) > TURNS
+    return jnp.where(cells >= 0, roots, jnp.nan), jnp.sum(turns, axis=1) > SETTINGS.turns
 
 
 def _range(values: Array, asides: Array, width: Array) -> tuple[Array, Array]:
     """Least and largest value of each interval; infinite where it grows to a pole.
 
-    `asides` (PIECES, 4): the quantity at 1e-3 and 1e-9 of the width from either end.
+    `asides` (PIECES, 4): the quantity at `asides` from either end.
     """
     low, high = jnp.min(values, axis=1), jnp.max(values, axis=1)
     for far, close in (asides[:, :2].T, asides[:, 2:].T):
-        pole = (jnp.abs(close) > _POLE * jnp.abs(far)) & (width > 0)
+        pole = (jnp.abs(close) > SETTINGS.pole * jnp.abs(far)) & (width > 0)
         low = jnp.where(pole & (close < 0), -jnp.inf, low)
         high = jnp.where(pole & (close > 0), jnp.inf, high)
-        zero = (_POLE * jnp.abs(close) < jnp.abs(far)) & (width > 0)
+        zero = (SETTINGS.pole * jnp.abs(close) < jnp.abs(far)) & (width > 0)
         low = jnp.where(zero, jnp.minimum(low, 0.0), low)
         high = jnp.where(zero, jnp.maximum(high, 0.0), high)
     return low, high

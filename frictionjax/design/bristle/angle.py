@@ -34,11 +34,10 @@ from ..common import (
 from .admissible import Admissible, survey
 from .inverse import Pulled, solve_targets
 from .result import AngleFit, intervals_text
+from .settings import SETTINGS
 from .status import GOOD, FitStatus
 
 _NO_BOUNDS = np.full(2, np.nan)
-_ROOM = 8, 8  # smallest piece of a batch, and by how much the next size is larger
-_MOST = 512  # targets side by side: 7 KB each of comparisons at every node
 
 
 class _Range(NamedTuple):
@@ -87,7 +86,7 @@ def _in_sizes(target: Real, fit: Any) -> Any:
     """`fit` of targets in pieces of a few sizes, so that few programs are compiled."""
     targets = jnp.atleast_1d(target)
     count = targets.shape[0]
-    size = min(padded_size(count, *_ROOM), _MOST)
+    size = min(padded_size(count, *SETTINGS.room), SETTINGS.side_by_side)
     padded = jnp.pad(targets, (0, -count % size), mode="edge")
     parts = [fit(padded[at : at + size]) for at in range(0, count, size)]
 

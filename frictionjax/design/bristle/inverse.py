@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from ..._checks import Real
@@ -13,19 +12,15 @@ from ...bristles import AbstractBristle
 from ...numerics import find_root
 from ..common import FreeParameter, OnSlopes, Slopes, on_slopes, quantity_of
 from .admissible import Admissible, first_places
+from .settings import SETTINGS
 from .status import FitStatus
-
-ROOTS = 8  # solutions of one target that are kept
-_ULP = float(np.finfo(np.float64).eps)
-_TOUCH = 64 * _ULP  # of the target: an extremum that near it is a solution
-_MET = 1e-9
 
 
 class Solutions(NamedTuple):
     """What one target gave; a batch has a leading axis.
 
     `x`: coordinate of the solution nearest to the bristle as it was, of the number that
-    comes nearest to the target where there is none. `roots` (ROOTS,): all, increasing,
+    comes nearest to the target where there is none. `roots` (roots,): all, increasing,
     NaN where there are fewer. `achieved`: the quantity at `x`; `alpha`: F'(0) there, N.
     `code`: a `FitStatus`.
     """
@@ -48,7 +43,7 @@ class Pulled(NamedTuple):
 
 
 class RootBrackets(NamedTuple):
-    """Where the solutions of one target are, (ROOTS,), in the order of their coordinates.
+    """Where the solutions of one target are, (roots,), in the order of their coordinates.
 
     `there`: whether there is one. `simple`: the quantity crosses the target, from below
     where it `rises`; else it touches it, at `lower`. `side`: sign of alpha in the interval
@@ -116,7 +111,7 @@ def _pressing_alike(known: RootBrackets, alpha: Float[Array, "n roots"]) -> Root
 
 def _brackets(found: Admissible, aim: Real, now: Real) -> RootBrackets:
     rest = found.values - aim
-    touches = found.turns & (jnp.abs(rest) <= _TOUCH * jnp.abs(aim))
+    touches = found.turns & (jnp.abs(rest) <= SETTINGS.touch * jnp.abs(aim))
     rest = jnp.where(touches, 0.0, rest)
     cells, count = _cells(rest)
     nodes, sides = found.nodes.ravel(), jnp.sign(rest).ravel()
@@ -140,7 +135,7 @@ def _chosen(roots: Array, known: RootBrackets, now: Real) -> tuple[Real, Array]:
     """The solution nearest to `now`, or what stands for it, and all of them."""
     away = jnp.where(known.there, jnp.abs(roots - now), jnp.inf)
     x = jnp.where(known.number > 0, roots[jnp.argmin(away)], known.best)
-    only = jnp.where(jnp.arange(ROOTS) == 0, known.level, jnp.nan)
+    only = jnp.where(jnp.arange(SETTINGS.roots) == 0, known.level, jnp.nan)
     roots = jnp.where(known.constant, only, jnp.where(known.there, roots, jnp.nan))
     return jnp.where(known.constant, known.level, x), roots
 
@@ -149,7 +144,7 @@ def _code(
     found: Admissible, known: RootBrackets, x, roots, achieved, aim
 ) -> Int[Array, ""]:
     """The `FitStatus` of one target; the first that holds."""
-    met = jnp.abs(achieved - aim) <= _MET * jnp.abs(aim)
+    met = jnp.abs(achieved - aim) <= SETTINGS.met * jnp.abs(aim)
     touched = jnp.any((roots == x) & known.there & ~known.simple)
     ways = (
         (jnp.all(jnp.isnan(found.values)), FitStatus.INADMISSIBLE),
@@ -157,7 +152,7 @@ def _code(
         (known.number == 0, FitStatus.UNREACHABLE),
         (~met, FitStatus.ROUNDED),
         (touched, FitStatus.TANGENT),
-        ((known.number > ROOTS) | found.missed, FitStatus.MORE),
+        ((known.number > SETTINGS.roots) | found.missed, FitStatus.MORE),
     )
     code = jnp.asarray(int(FitStatus.OK))
     for holds, status in reversed(ways):
@@ -173,11 +168,11 @@ def _cells(rest: Float[Array, "pieces n"]) -> tuple[Int[Array, " roots"], Real]:
     follows = jnp.zeros(sign.shape, bool).at[:, 1:].set(sign[:, :-1] == 0)
     hits = (sign == 0) & ~follows
     found = (crosses | hits).ravel()
-    return first_places(found, ROOTS), jnp.sum(found)
+    return first_places(found, SETTINGS.roots), jnp.sum(found)
 
 
 def _polished(quantity: Callable, targets: Array, known: RootBrackets) -> Array:
-    """Roots in brackets (n, ROOTS), to rounding; the places of touches as they are.
+    """Roots in brackets (n, roots), to rounding; the places of touches as they are.
 
     All in one loop, differentiated implicitly: their equations do not see each other.
     """
@@ -201,7 +196,7 @@ def _polished(quantity: Callable, targets: Array, known: RootBrackets) -> Array:
 
 def _constant(found: Admissible, aim: Real, now: Real) -> tuple[Real, Bool[Array, ""]]:
     """A coordinate in the intervals where the quantity is the target throughout."""
-    same = found.flat & (jnp.abs(found.values[:, 0] - aim) <= _MET * jnp.abs(aim))
+    same = found.flat & (jnp.abs(found.values[:, 0] - aim) <= SETTINGS.met * jnp.abs(aim))
     inside = (found.ends[:, 0] <= now) & (now <= found.ends[:, 1])
     place = jnp.where(inside, now, jnp.mean(found.ends, axis=1))
     away = jnp.where(same, jnp.abs(place - now), jnp.inf)

@@ -19,8 +19,7 @@ from ..common import (
     quantity_of,
     slopes_of,
 )
-
-_ROOM = 8, 8  # batches come in few sizes, so that few programs are compiled
+from .settings import SETTINGS
 
 
 class Sensitivities(eqx.Module):
@@ -75,7 +74,7 @@ def sensitivities_of(fit: Any) -> Sensitivities:
         return Sensitivities(*found)
     free = free_parameter(fit[0].bristle, fit.free)
     count = fit.value.shape[0]
-    more = padded_size(count, *_ROOM) - count
+    more = padded_size(count, *SETTINGS.room) - count
 
     def padded(leaf: Any) -> Any:
         if not eqx.is_array(leaf):

@@ -10,12 +10,9 @@ from jaxtyping import Array, Float
 
 from ..._checks import Real, as_text, is_known, known_numbers, require
 from ...bristles import AbstractBristle, AngularSpring
+from .settings import SETTINGS
 
-_DECADES = 1e4  # an unbounded number is looked for up to this many times its own size
-_TINY = 1e-12  # of its own size: where a positive number starts if bounds say 0
 _RIGHT = 0.5 * np.pi
-_ALIKE = 1e-5  # relative: six digits look the same
-_ROUNDED = 4 * np.finfo(float).eps  # relative: how far a bound may be off its range
 
 # Of a rod: it is as long as its height at least, and near theta_lim = 0 hardly longer.
 _OF_RODS = {"height": "limit_by_height", "length": "limit_by_length"}
@@ -75,21 +72,22 @@ class FreeParameter(eqx.Module):
     def coordinate(self, bristle: AbstractBristle, value: Real) -> Real:
         """`x` of a number, that of the nearest end where the number has none."""
         if self.kind == "positive":
-            return jnp.log(jnp.maximum(value / self._size(bristle), _TINY))
+            return jnp.log(jnp.maximum(value / self._size(bristle), SETTINGS.tiny))
         if self.kind == "line":
             return jnp.arcsinh(value / self._size(bristle))
         if isinstance(bristle, AngularSpring) and self.kind == "limit_by_height":
             return jnp.arccos(jnp.clip(value / bristle.length, 0.0, 1.0))
         if isinstance(bristle, AngularSpring) and self.kind == "limit_by_length":
-            return jnp.arccos(jnp.clip(bristle.height / jnp.maximum(value, _TINY), 0, 1.0))
+            share = bristle.height / jnp.maximum(value, SETTINGS.tiny)
+            return jnp.arccos(jnp.clip(share, 0, 1.0))
         return value
 
     def range(self) -> tuple[float, float]:
         """Ends of the coordinate where no bounds are given."""
-        if self.kind == "positive":
-            return -float(np.log(_DECADES)), float(np.log(_DECADES))
-        if self.kind == "line":
-            return -float(np.arcsinh(_DECADES)), float(np.arcsinh(_DECADES))
+        if self.kind in ("positive", "line"):
+            scale = np.log if self.kind == "positive" else np.arcsinh
+            most = float(scale(SETTINGS.decades))
+            return -most, most
         return (-_RIGHT if self.kind == "angle" else 0.0), _RIGHT
 
     @property
@@ -201,9 +199,9 @@ def require_bounds(
     if is_known(bristle):
         low, high = free.range_of(bristle)
     # By rounding alone: 1.5708 is beyond pi/2, and so is what a bristle would make of it.
-    slack = _ROUNDED * np.abs([low, high])
+    slack = SETTINGS.rounded * np.abs([low, high])
     inside = low - slack[0] <= known[0] and known[1] <= high + slack[1]
-    nearly = np.allclose(np.clip(known, low, high), known, rtol=_ALIKE, atol=0)
+    nearly = np.allclose(np.clip(known, low, high), known, rtol=SETTINGS.alike, atol=0)
     ends = ", ".join(f"{end:.12g}" if nearly else as_text(end) for end in (low, high))
     needs = f"a part of ({ends}), where {free.name} can be"
     require(inside, label, known, needs)

@@ -17,9 +17,9 @@ from ...profiles import AbstractProfile
 from .aligned_text import aligned
 from .free_numbers import FreeParameter, entries_of, free_parameter, with_arrays
 from .quantities import QUANTITIES, on_slopes, quantity_of, side_of, slopes_of
+from .settings import SETTINGS
 
 _QUANTILES = (0.025, 0.25, 0.5, 0.75, 0.975)
-_CHUNK = 4096  # samples of one compiled call
 
 
 class _Spread(NamedTuple):
@@ -179,7 +179,7 @@ def _dataset(profile, bristle, spread, samples, seed, levels) -> xr.Dataset:
     stds = np.array([s.std for s in spread])
     draws = np.random.default_rng(seed).standard_normal((samples, len(spread)))
     values = np.vstack([own, own + stds * draws])
-    size = min(_CHUNK, samples)
+    size = min(SETTINGS.chunk, samples)
     short = np.pad(values, ((0, -len(values) % size), (0, 0)), mode="edge")
     parts = [
         _sampled(numbers, where, bristle, profile, short[at : at + size])

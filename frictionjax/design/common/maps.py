@@ -24,10 +24,9 @@ from ...model import coefficients_jit, potential
 from ...profiles import AbstractProfile, Fourier
 from .free_numbers import FreeParameter, free_parameter, with_arrays
 from .quantities import Slopes, on_slopes, quantity_of, side_of
+from .settings import SETTINGS
 
 SURFACE = ("asymmetry", "steepness")
-_SMALL = 1e-13  # of the first harmonic: the last one of an asymmetric profile
-_MOST = 512
 _DEFAULTS = {
     "asymmetry": np.geomspace(1 / 3, 3, 121),
     "steepness": np.linspace(0.02, 0.6, 117),
@@ -66,8 +65,9 @@ def asymmetric_profile(steepness: float, asymmetry: float) -> Fourier:
     for name, value in (("steepness", steepness), ("asymmetry", asymmetry)):
         require_real(name, value, f"{name} > 0", lambda v: v > 0)
     lean = (asymmetry - 1) / (asymmetry + 1)
-    needed = 1 if lean == 0 else 1 + int(np.ceil(np.log(_SMALL) / np.log(abs(lean))))
-    require(needed <= _MOST, "asymmetry", asymmetry, f"at most {_MOST} harmonics")
+    more = np.log(SETTINGS.smallest_wave) / np.log(abs(lean)) if lean else 0
+    needed, most = 1 + int(np.ceil(more)), SETTINGS.most_waves
+    require(needed <= most, "asymmetry", asymmetry, f"at most {most} harmonics")
     order = np.arange(1, needed + 1)
     slopes = steepness * (1 - lean**2) * float(lean) ** (order - 1.0)
     return Fourier(jnp.zeros(needed), jnp.asarray(slopes / (2 * np.pi * order)))

@@ -4,12 +4,12 @@ from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 
 from ..._checks import Real
 from ...bristles import AbstractBristle, AngularSpring
 from ...numerics import periodic_extrema, slope_of
 from ...profiles import AbstractProfile
+from .settings import SETTINGS
 
 QUANTITIES = ("rho_plus", "rho_minus", "ratio", "difference")
 MEANING = {
@@ -18,7 +18,6 @@ MEANING = {
     "ratio": "-rho_plus/rho_minus",
     "difference": "rho_plus + rho_minus, N",
 }
-_NOISE = 4 * float(np.finfo(np.float64).eps)
 
 
 class Slopes(NamedTuple):
@@ -83,7 +82,7 @@ def side_of(bristle: AbstractBristle, found: OnSlopes) -> Real:
     alpha counts as 0 within its own rounding, as in `require_admissible`.
     """
     curvature = _slope(lambda eta: _slope(bristle.energy, eta), jnp.zeros(()))
-    noise = _NOISE * jnp.abs(curvature) * getattr(bristle, "height", 0.0)
+    noise = SETTINGS.no_force * jnp.abs(curvature) * getattr(bristle, "height", 0.0)
     presses = jnp.abs(found.alpha) > noise
     known = jnp.isfinite(found.rho_plus) & jnp.isfinite(found.rho_minus)
     good = presses & known & (found.margin > 0)

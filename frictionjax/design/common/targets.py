@@ -17,13 +17,13 @@ from ..._compile import Program
 from ...bristles import AbstractBristle, pulling_text
 from ...model import BristlePotential, require_admissible, rounding_of_alpha
 from ...profiles import Sine
-
-_GENTLE: Any = 1e-9
+from .settings import SETTINGS
 
 
 def _on_nearly_flat(bristle: AbstractBristle) -> BristlePotential:
     """Made when asked for: at import JAX may still be in 32 bits."""
-    return BristlePotential(Sine(_GENTLE), bristle)
+    gentle: Any = SETTINGS.hardly_wavy
+    return BristlePotential(Sine(gentle), bristle)
 
 
 class Target(NamedTuple):
@@ -142,7 +142,8 @@ def _require_pressing(name: str, bristle: AbstractBristle, pulling: bool) -> Geo
     *found, noise = np.asarray(_alone(bristle))
     known = Geometry(*found)
     presses = np.isfinite(known.alpha) and abs(known.alpha) > noise
-    if not (presses and known.lower < -_GENTLE and known.upper > _GENTLE):
+    gentle = SETTINGS.hardly_wavy
+    if not (presses and known.lower < -gentle and known.upper > gentle):
         try:
             require_admissible(_on_nearly_flat(bristle))
         except ValueError as problem:

@@ -8,6 +8,7 @@ import pytest
 from samples import Formula, bristle, central, profile
 
 import frictionjax as fx
+from frictionjax.design.bristle import angle
 from frictionjax.design.bristle.status import FitStatus
 from frictionjax.design.common.quantities import (
     QUANTITIES,
@@ -230,7 +231,8 @@ def test_a_batch_equals_its_lanes_alone():
 
 
 def test_more_targets_than_are_solved_side_by_side(monkeypatch):
-    monkeypatch.setattr("frictionjax.design.bristle.angle._MOST", 8)
+    few = angle.SETTINGS._replace(side_by_side=8)
+    monkeypatch.setattr(angle, "SETTINGS", few)
     targets = np.linspace(0.56, 0.97, 21)
     many = fx.fit_angle(SINE, ANGULAR, ratio=targets)
     some = fx.fit_angle(SINE, ANGULAR, ratio=targets[14:18])
