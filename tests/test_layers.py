@@ -48,7 +48,7 @@ FLOORS = {
     ],
     "design": [{"common"}, {"bristle", "surface"}, {"slide", "measured_trace"}, {"trace"}],
     "design.surface": [
-        {"barrier", "status"},
+        {"barrier", "settings", "status"},
         {"starts", "open_directions", "reachable", "history"},
         {"multistart"},
         {"least_bent", "result"},

@@ -26,10 +26,8 @@ from .least_bent import least_bent
 from .multistart import StartRuns, descended
 from .report import report_fit
 from .result import ProfileFit
-from .starts import SHARES, places
-
-_KEPT = 1000  # steps that there is room for: other budgets compile nothing new
-_FIRM = 50.0  # above every multiplier of the extreme slopes, which their ratio raises
+from .settings import SETTINGS
+from .starts import places
 
 
 class SurfaceProblem(NamedTuple):
@@ -102,10 +100,11 @@ def _descended(problem: SurfaceProblem, apart: Any, seed: int, max_steps: int) -
     """From random surfaces and free parameters to the optimum of each start."""
     layout, law, starts = problem.layout, problem.law, apart.size
     keys: Any = jax.random.split(jax.random.PRNGKey(seed), starts)
-    shares: Any = np.random.default_rng(seed).uniform(*SHARES, size=(starts, layout.free))
+    size = starts, layout.free
+    shares: Any = np.random.default_rng(seed).uniform(*SETTINGS.shares, size=size)
     if isinstance(law, FreeLaw):
-        shares[0] = np.clip(np.asarray(law.shares()), *SHARES)
-    kept = padded_size(max_steps, _KEPT)
+        shares[0] = np.clip(np.asarray(law.shares()), *SETTINGS.shares)
+    kept = padded_size(max_steps, SETTINGS.kept)
     return descended(layout, problem.task, apart, keys, shares, kept, max_steps)
 
 
@@ -149,7 +148,7 @@ def surface_problem(
         height=array(np.inf if amplitude is None else float(amplitude) / slope),
         slope=array(slope),
         energy=array(free_energy(plus / slope, minus / slope, harmonics)),
-        firm=array(_FIRM * min(uneven, float(harmonics))),
+        firm=array(SETTINGS.firm * min(uneven, float(harmonics))),
     )
     given = {
         "smallest_radius": None if radius is None else float(radius),
@@ -161,14 +160,15 @@ def surface_problem(
 def _expected(wanted: np.ndarray, known: Geometry) -> tuple[float, float]:
     """Slopes of about the size asked for, inside what the bristles can follow."""
     plus, minus = extreme_slopes(wanted[:, 0], wanted[:, 1], known.a, known.alpha)
-    highest, lowest = 0.9 * np.min(known.upper), -0.9 * np.max(known.lower)
+    share, most = SETTINGS.follows, SETTINGS.uneven
+    highest, lowest = share * np.min(known.upper), -share * np.max(known.lower)
     mean_plus, mean_minus = (
         float(np.mean(np.minimum(np.where(side > 0, side, np.inf), limit)))
         for side, limit in ((plus, highest), (-minus, lowest))
     )
     finite = [side for side in (mean_plus, mean_minus) if np.isfinite(side)]
     other = max(finite, default=1.0)
-    return min(mean_plus, 1e3 * other), min(mean_minus, 1e3 * other)
+    return min(mean_plus, most * other), min(mean_minus, most * other)
 
 
 def _law(

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..common import FixedLaw, Geometry, coefficients_of, extreme_slopes
+from .barrier import SETTINGS as BARRIER_SETTINGS
 from .barrier import (
-    LAST,
-    ROW_MARGIN,
     FitShape,
     FitTask,
     Iterates,
@@ -22,8 +21,7 @@ from .barrier import (
     kernel_ratio,
 )
 from .multistart import StartRuns, repeated
-
-_EXACT = 1e-12  # of the targets, weighted: rounding of coefficients
+from .settings import SETTINGS
 
 
 def least_bent(layout: FitShape, task: FitTask, starts: int) -> StartRuns | None:
@@ -45,8 +43,8 @@ def least_bent(layout: FitShape, task: FitTask, starts: int) -> StartRuns | None
     waves = _waves(layout.harmonics, plus, minus)
     sharpest = _curvature(layout, waves)
     steep = np.stack([plus * task.slope / law.upper, minus * task.slope / -law.lower])
-    met = np.all(np.abs(left) <= _EXACT) and np.all(steep < 1)
-    if not (met and sharpest <= ROW_MARGIN * task.curvature):
+    met = np.all(np.abs(left) <= SETTINGS.agreed) and np.all(steep < 1)
+    if not (met and sharpest <= BARRIER_SETTINGS.row_margin * task.curvature):
         return None
     room = {"slopes": 1 - np.max(steep)}
     if layout.sharp:
@@ -101,7 +99,7 @@ def _found(
     path = Iterates(
         x=array([[*waves, plus, plus, minus, minus]]),
         loss=np.sum(waves**2, keepdims=True) / task.energy,
-        weight=array([LAST]),
+        weight=array([BARRIER_SETTINGS.last]),
         decrement=array([0.0]),
         steps=array(1),
         done=true,

@@ -21,11 +21,8 @@ from .barrier import (
     rooms,
     settle,
 )
+from .settings import SETTINGS
 from .starts import random_start
-
-TARGET_MET = 1e-9  # relative error of a coefficient that counts as met
-_SMALL = 1000  # numbers that are copied sooner than spread, which takes 5 us
-_PROVEN = 5e-3  # of the energy: barriers leave 1e-4, with bounds on curvature 1.4e-3
 
 
 class StartRuns(NamedTuple):
@@ -48,7 +45,7 @@ def repeated(starts: int, row: StartRuns) -> StartRuns:
     """`StartRuns` of one start, without their axis, that stands for the others too."""
 
     def spread(leaf: Any) -> np.ndarray:
-        if np.size(leaf) < _SMALL:
+        if np.size(leaf) < SETTINGS.small:
             return np.asarray(leaf)[None].repeat(starts, 0)
         return np.broadcast_to(leaf, (starts, *np.shape(leaf)))
 
@@ -95,14 +92,14 @@ def _proven(task: FitTask, found: StartRuns) -> bool:
     if not (ended and targets_met(task, found.settled.residuals)[0]):
         return False
     energy = np.sum(found.settled.waves**2)
-    return bool(energy <= (1 + _PROVEN) * found.bound[0])
+    return bool(energy <= (1 + SETTINGS.proven) * found.bound[0])
 
 
 def targets_met(task: FitTask, residuals: Any) -> np.ndarray:
     """Whether scaled residuals of starts, (n, rows), are of coefficients that are met."""
     shape = len(residuals), *np.shape(task.coefficients)
     errors = np.reshape(residuals, shape) / task.factors / task.coefficients
-    return np.max(np.abs(errors), axis=(1, 2)) <= TARGET_MET
+    return np.max(np.abs(errors), axis=(1, 2)) <= SETTINGS.target_met
 
 
 @eqx.filter_jit

@@ -11,9 +11,7 @@ from jaxtyping import Array
 from ..._checks import Real
 from ..common import AbstractLaw
 from .barrier import at, peaks, reach, waves_of_heights, with_extreme_slopes
-
-_RANK = 1e-9  # of the largest singular value
-_HALVINGS = 6
+from .settings import SETTINGS
 
 
 class CoefficientIdentifiability(NamedTuple):
@@ -51,7 +49,7 @@ def identifiability(law: AbstractLaw, cos: Array, sin: Array, free: Array):
     """What the coefficients see at this surface and these parameters."""
     pulls = np.asarray(_sensitivities(law, cos, sin, free))
     _, values, vectors = np.linalg.svd(pulls)
-    rank = int(np.sum(values > _RANK * values[0]))
+    rank = int(np.sum(values > SETTINGS.rank * values[0]))
     unseen = vectors[rank:]
     stiffness = np.zeros(pulls.shape[1])
     count = np.size(cos)
@@ -80,13 +78,13 @@ def members(
         way = jax.random.normal(key, (waves.size,)) / decay
         way = way - span @ (span.T @ way)
         way = size * jnp.linalg.norm(waves) * way / jnp.linalg.norm(way)
-        steps = 0.5 ** jnp.arange(_HALVINGS)
+        steps = 0.5 ** jnp.arange(SETTINGS.halvings)
         tries = jax.vmap(lambda part: with_extreme_slopes(waves + part * way, plus, minus))(
             steps
         )
         reached = jax.vmap(reach)(tries)
         exact = jnp.abs(reached.plus - plus) + jnp.abs(reached.minus - minus)
-        good = exact <= 1e-12 * (plus + minus)
+        good = exact <= SETTINGS.exact * (plus + minus)
         good &= (reached.curvature <= curvature) & (reached.height <= height)
         first = jnp.argmax(good)
         return tries[first], good[first]

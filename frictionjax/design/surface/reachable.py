@@ -8,9 +8,7 @@ import numpy as np
 from ..._checks import as_text, no_less, no_more
 from ..common import AbstractLaw, FreeLaw, Geometry, extreme_slopes
 from .barrier import ORDERS, FitShape, basis
-
-_SAMPLES = 512  # of free numbers within their bounds, ends not counted
-_CORNERS = 6  # free numbers of which every combination of ends is looked at
+from .settings import SETTINGS
 
 
 def slopes_asked(known: Geometry, coefficients: np.ndarray) -> np.ndarray:
@@ -35,8 +33,9 @@ def limits_of(law: AbstractLaw, free: Any) -> list[tuple[float, float]]:
     if not isinstance(law, FreeLaw):
         return [coefficient_limits(one) for one in _each(law.at(free))]
     own, count = np.asarray(law.shares()), len(law.free)
-    shares = np.random.default_rng(0).uniform(size=(_SAMPLES, count))
-    corners = np.indices((2,) * count).reshape(count, -1).T if count <= _CORNERS else own
+    shares = np.random.default_rng(0).uniform(size=(SETTINGS.samples, count))
+    few = count <= SETTINGS.corners
+    corners = np.indices((2,) * count).reshape(count, -1).T if few else own
     shares = np.concatenate([own[None], np.atleast_2d(free), shares, corners])
     known = Geometry(*map(np.asarray, jax.jit(jax.vmap(law.at))(shares)))
     rows = []
@@ -71,7 +70,8 @@ def _mu(a: float, omega: float) -> float:
     if np.isinf(omega):
         return 1 / a if a * omega > 0 else omega
     stretch = 1 + a * omega
-    return omega / stretch if stretch > 1e-12 else float(np.copysign(np.inf, omega))
+    bounded = stretch > SETTINGS.no_stretch
+    return omega / stretch if bounded else float(np.copysign(np.inf, omega))
 
 
 def reachable_share(

@@ -10,9 +10,10 @@ from ..._compile import Program
 from ...model import coefficients_jit, potential
 from ...profiles import Fourier
 from ..common import FreeLaw, Geometry
-from .barrier import EDGE, ROW_MARGIN, bending_energy, heights_of_waves
+from .barrier import SETTINGS as BARRIER_SETTINGS
+from .barrier import bending_energy, heights_of_waves
 from .history import History, Start
-from .multistart import TARGET_MET, StartRuns, targets_met
+from .multistart import StartRuns, targets_met
 from .open_directions import identifiability
 from .reachable import (
     followed,
@@ -23,11 +24,8 @@ from .reachable import (
     slopes_asked,
 )
 from .result import ProfileFit
+from .settings import SETTINGS
 from .status import ProfileStatus
-
-_SURE = 0.99  # of random targets that agree with one surface have a smaller chi2
-_TIE = 1e-9  # relative difference of losses that counts as none
-_NEAR = 1e-3  # share of a bound that counts as reached
 
 
 def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
@@ -88,7 +86,7 @@ def _sorted(losses: np.ndarray, energies: np.ndarray) -> np.ndarray:
     """Best first: by loss, and by bending energy among losses that tie."""
     filled = np.where(np.isfinite(losses), losses, np.inf)
     level = np.min(filled)
-    tied = filled <= level * (1 + _TIE) + TARGET_MET**2
+    tied = filled <= level * (1 + SETTINGS.tie) + SETTINGS.target_met**2
     return np.lexsort((np.where(tied, energies, filled), ~tied))
 
 
@@ -137,7 +135,7 @@ def _freedom(problem: Any) -> int:
 def _likely(freedom: int) -> float:
     from scipy.stats import chi2  # 0.5 s, for targets with uncertainties only
 
-    return float(chi2.ppf(_SURE, max(freedom, 1)))
+    return float(chi2.ppf(SETTINGS.sure, max(freedom, 1)))
 
 
 def _bound_reached(problem: Any, runs: StartRuns, index: int) -> ProfileStatus:
@@ -145,9 +143,9 @@ def _bound_reached(problem: Any, runs: StartRuns, index: int) -> ProfileStatus:
     fixed = not problem.layout.free
     if fixed and not followed(problem.law.known, _asked(problem, runs, index)):
         return ProfileStatus.INADMISSIBLE
-    if room["slopes"] < _NEAR + EDGE:
+    if room["slopes"] < SETTINGS.near + BARRIER_SETTINGS.edge:
         return ProfileStatus.INADMISSIBLE
-    margin = 1 - ROW_MARGIN + _NEAR
+    margin = 1 - BARRIER_SETTINGS.row_margin + SETTINGS.near
     if room.get("curvature", 1.0) < margin:
         return ProfileStatus.TOO_SHARP
     if room.get("height", 1.0) < margin:

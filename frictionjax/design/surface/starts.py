@@ -14,10 +14,7 @@ from .barrier import (
     heights_of_waves,
     waves_of_heights,
 )
-
-_GENTLE = 0.3  # of the nearest bound, at most
-SHARES = (0.02, 0.98)  # of the bounds of free parameters
-_PLACES = (1 / 2, 1 / 3, 1 / 4, 1 / 5, 2 / 5, 1 / 6, 3 / 8, 1 / 8)
+from .settings import SETTINGS
 
 
 def places(layout: FitShape, count: int) -> list[float]:
@@ -26,7 +23,8 @@ def places(layout: FitShape, count: int) -> list[float]:
     Half a period is best unless the height is bounded: then a surface of several bumps
     can be lower.
     """
-    wanted = [_PLACES[i % len(_PLACES)] if layout.high else 0.5 for i in range(count)]
+    known = SETTINGS.places
+    wanted = [known[i % len(known)] if layout.high else 0.5 for i in range(count)]
     return [round(place * layout.points) / layout.points for place in wanted]
 
 
@@ -52,15 +50,15 @@ def random_start(
         for order in ORDERS
     ]
     scale = jnp.min(jnp.stack([a / s for a, s in zip(allowed, sizes, strict=True)]))
-    waves = _GENTLE * scale * waves
+    waves = SETTINGS.gentle * scale * waves
     slopes, heights = (
         jnp.asarray(basis(harmonics, layout.points, order)) @ waves for order in (0, -1)
     )
-    pad = 0.1 * (jnp.max(slopes) - jnp.min(slopes))
+    pad = SETTINGS.pad * (jnp.max(slopes) - jnp.min(slopes))
     spread = jnp.stack([-pad, pad])
     plus, minus = jnp.max(slopes) + spread, -jnp.min(slopes) + spread
     minus = minus.at[0].set(jnp.min(-slopes) - pad)
-    reach = 1.1 * jnp.stack([jnp.max(heights), -jnp.min(heights)])
+    reach = SETTINGS.above * jnp.stack([jnp.max(heights), -jnp.min(heights)])
     return Unknowns(waves, plus, minus, reach[: 2 * layout.high], free)
 
 
@@ -75,7 +73,7 @@ def _moved(waves: Array, shift: Real) -> Array:
 def _pressing(task: FitTask, share: Array, own: Array) -> Array:
     """The nearest to `share` on the way from `own` at which bristles press as they do."""
     before = task.law.at(own).alpha
-    steps = jnp.linspace(1.0, 0.0, 16)
-    ways = jnp.clip(own + steps[:, None] * (share - own), *SHARES)
+    steps = jnp.linspace(1.0, 0.0, SETTINGS.towards)
+    ways = jnp.clip(own + steps[:, None] * (share - own), *SETTINGS.shares)
     good = jax.vmap(lambda free: jnp.all(task.law.at(free).alpha * before > 0))(ways)
     return ways[jnp.argmax(good)]

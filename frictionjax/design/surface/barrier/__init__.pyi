@@ -2,7 +2,6 @@ from .bending import bending_energy as bending_energy
 from .bending import free_energy as free_energy
 from .bending import kernel_ratio as kernel_ratio
 from .constraints import ORDERS as ORDERS
-from .constraints import ROW_MARGIN as ROW_MARGIN
 from .constraints import FitShape as FitShape
 from .constraints import Unknowns as Unknowns
 from .constraints import at as at
@@ -13,8 +12,6 @@ from .extreme_slopes import Reach as Reach
 from .extreme_slopes import peaks as peaks
 from .extreme_slopes import reach as reach
 from .extreme_slopes import with_extreme_slopes as with_extreme_slopes
-from .iterates import EDGE as EDGE
-from .iterates import LAST as LAST
 from .iterates import FitTask as FitTask
 from .iterates import Iterates as Iterates
 from .iterates import barrier_of as barrier_of
@@ -24,3 +21,4 @@ from .lower_bound import energy_bound as energy_bound
 from .polish import Settled as Settled
 from .polish import rooms as rooms
 from .polish import settle as settle
+from .settings import SETTINGS as SETTINGS

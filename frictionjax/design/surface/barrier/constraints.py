@@ -8,9 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-POINTS = 32  # rows a wave: between two of them a series rises by 0.48% of its range more
-ROW_MARGIN = math.cos(math.pi / POINTS)
-"""Largest value on the rows over the largest value anywhere (Ehlich and Zeller, 1964)."""
+from .settings import SETTINGS
 
 
 class Unknowns(NamedTuple):
@@ -41,7 +39,7 @@ class FitShape(NamedTuple):
     @property
     def points(self) -> int:
         """Rows over a period."""
-        return POINTS * self.harmonics
+        return SETTINGS.rows * self.harmonics
 
     def split(self, x: Float[Array, " n"]) -> Unknowns:
         """A flat vector by name."""
@@ -77,9 +75,9 @@ class FitShape(NamedTuple):
         count = self.points
         ends = [jnp.zeros(2 * count)]
         if self.sharp:
-            ends += [jnp.full(2 * count, ROW_MARGIN * curvature)]
+            ends += [jnp.full(2 * count, SETTINGS.row_margin * curvature)]
         if self.high:
-            ends += [jnp.zeros(2 * count), ROW_MARGIN * jnp.atleast_1d(height)]
+            ends += [jnp.zeros(2 * count), SETTINGS.row_margin * jnp.atleast_1d(height)]
         ends += [jnp.zeros(self.free), jnp.ones(self.free)]
         return jnp.concatenate(ends)
 

@@ -8,10 +8,8 @@ from jaxtyping import Array
 
 from ...._checks import Real
 from ....numerics import find_root
-from .constraints import POINTS, at, basis, derivatives
-
-_STEPS = 64
-_EXACT = 2e-15  # of the range of slopes
+from .constraints import at, basis, derivatives
+from .settings import SETTINGS
 
 
 class Reach(NamedTuple):
@@ -37,7 +35,8 @@ def peaks(waves: Array) -> Peaks:
     16 waves; here nobody differentiates.
     """
     harmonics = waves.shape[-1] // 2
-    values = jnp.asarray(basis(harmonics, POINTS * max(4, harmonics))) @ waves
+    count = SETTINGS.rows * max(SETTINGS.fewest_waves, harmonics)
+    values = jnp.asarray(basis(harmonics, count)) @ waves
     sides = jnp.array([1.0, -1.0])
     return jax.vmap(lambda side: _peak(waves, side, side * values))(sides)
 
@@ -80,13 +79,13 @@ def with_extreme_slopes(waves: Array, plus: Real, minus: Real) -> Array:
         gap = wanted - found.values
         bump = side * _fejer(found.places[steeper], waves.size // 2)
         pulls = jnp.stack([found.values, at(bump, found.places)], axis=1)
-        scale, push = jnp.linalg.pinv(pulls, rtol=1e-9) @ gap
-        exact = jnp.max(jnp.abs(gap)) <= _EXACT * (plus + minus)
+        scale, push = jnp.linalg.pinv(pulls, rtol=SETTINGS.rank) @ gap
+        exact = jnp.max(jnp.abs(gap)) <= SETTINGS.exact_slopes * (plus + minus)
         moved = (1 + scale) * waves + push * bump
         return jnp.where(exact, waves, moved), exact, count + 1
 
     def go_on(state: tuple) -> Array:
-        return ~state[1] & (state[2] < _STEPS)
+        return ~state[1] & (state[2] < SETTINGS.slope_steps)
 
     return jax.lax.while_loop(go_on, body, (waves, False, 0))[0]
 

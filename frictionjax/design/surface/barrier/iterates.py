@@ -19,18 +19,7 @@ from jaxtyping import Array, Float
 from ...._checks import Real
 from ...common import AbstractLaw
 from .constraints import FitShape, Unknowns, at, flat
-
-FIRST, LAST, SHRINK = 1.0, 1e-7, 0.05  # weights of the barrier
-CENTRED = 3.0  # squared decrement in units of the weight at which the next one is taken
-FIRM = 1e4  # weight of the squared misfit, energy 1; settling removes what it leaves
-_WALL = 0.99  # share of the way to the nearest wall that a step goes at most
-_BACKTRACKS = 40
-EDGE = 1e-3
-"""Share of the slopes allowed that free bristles keep away from their ends.
-
-The least bent surface of a free bristle is often the one at which it hardly follows: an
-open end, from which the last digits (5e-5 in slopes) could not be settled.
-"""
+from .settings import SETTINGS
 
 
 class FitTask(eqx.Module):
@@ -69,7 +58,7 @@ def _misfit(task: FitTask, point: Unknowns) -> Float[Array, " rows"]:
 def _bristle_room(task: FitTask, start: Array, point: Unknowns) -> Float[Array, " rows"]:
     """> 0 where every bristle can follow the slopes and presses the way it did."""
     known, before = task.law.at(point.free), task.law.at(start)
-    kept = (1 - EDGE if point.free.size else 1.0) / task.slope
+    kept = (1 - SETTINGS.edge if point.free.size else 1.0) / task.slope
     upper = kept * known.upper - point.plus[1]
     lower = -kept * known.lower - point.minus[1]
     rows = jnp.concatenate([upper, lower, known.alpha / before.alpha])
@@ -103,12 +92,8 @@ class Barrier(NamedTuple):
         return energy + self.task.firm * gaps - self.weight * _logs(room), jnp.all(room > 0)
 
     def misfit(self, x: Array) -> Real:
-        """Half the squared residuals, by their weight.
-
-        Constant: a weight that grows as the barrier's falls moves the optimum between two
-        barriers so far that targets out of reach take 200 steps where 60 do.
-        """
-        return 0.5 * FIRM * jnp.sum(_misfit(self.task, self.layout.split(x)) ** 2)
+        """Half the squared residuals, by their weight."""
+        return 0.5 * SETTINGS.firm * jnp.sum(_misfit(self.task, self.layout.split(x)) ** 2)
 
     def value(self, x: Array) -> Real:
         """Energy, misfit and barrier; infinite outside."""
@@ -160,7 +145,7 @@ def newton() -> optax.GradientTransformationExtraArgs:
         hessian = barrier.hessian(params)
         scale = 1 / jnp.sqrt(jnp.abs(jnp.diag(hessian)))
         values, vectors = jnp.linalg.eigh(hessian * scale * scale[:, None])
-        values = jnp.maximum(jnp.abs(values), 1e-13 * values[-1])
+        values = jnp.maximum(jnp.abs(values), SETTINGS.flattest * values[-1])
         along = (vectors.T @ (scale * updates)) / values
         return -scale * (vectors @ along), state
 
@@ -173,7 +158,7 @@ def stop_before_walls() -> optax.GradientTransformationExtraArgs:
     def update(
         updates: Array, state: Any, params: Any = None, *, barrier: Barrier, **_: Any
     ) -> tuple[Array, Any]:
-        way = barrier.room(params, updates) / _WALL
+        way = barrier.room(params, updates) / SETTINGS.wall
         return updates / jnp.maximum(way, 1.0), state
 
     return optax.GradientTransformationExtraArgs(lambda _: optax.EmptyState(), update)
@@ -182,7 +167,10 @@ def stop_before_walls() -> optax.GradientTransformationExtraArgs:
 def optimiser() -> optax.GradientTransformationExtraArgs:
     """Damped Newton that stays inside, as an optax chain."""
     backtracking = optax.scale_by_backtracking_linesearch(
-        _BACKTRACKS, decrease_factor=0.5, increase_factor=jnp.inf, max_learning_rate=1.0
+        SETTINGS.backtracks,
+        decrease_factor=0.5,
+        increase_factor=jnp.inf,
+        max_learning_rate=1.0,
     )
     return optax.chain(newton(), stop_before_walls(), backtracking)
 
@@ -204,7 +192,7 @@ class Iterates(NamedTuple):
 def barrier_of(layout: FitShape, task: FitTask, place: Real, start: Unknowns) -> Barrier:
     """The last barrier of a start."""
     rows, ends = jnp.asarray(layout.rows()), layout.ends(task.curvature, task.height)
-    return Barrier(layout, rows, ends, task, place, start.free, jnp.asarray(LAST))
+    return Barrier(layout, rows, ends, task, place, start.free, jnp.asarray(SETTINGS.last))
 
 
 def follow_barrier(
@@ -236,10 +224,10 @@ def follow_barrier(
             barrier=barrier,
         )
         decrement = -jnp.sum(slope * step)
-        centred = decrement <= CENTRED * weight
+        centred = decrement <= SETTINGS.centred * weight
         path = _noted(path, x + step, loss, weight, decrement)
-        path = path._replace(done=centred & (weight <= LAST))
-        lower = jnp.maximum(weight * SHRINK, LAST)
+        path = path._replace(done=centred & (weight <= SETTINGS.last))
+        lower = jnp.maximum(weight * SETTINGS.shrink, SETTINGS.last)
         return x + step, memory, jnp.where(centred, lower, weight), path
 
     def go_on(state: tuple) -> Array:
@@ -248,7 +236,7 @@ def follow_barrier(
 
     empty = jnp.full(kept, jnp.nan)
     path = Iterates(jnp.full((kept, first.size), jnp.nan), empty, empty, empty, 0, False)
-    state = (first, optimise.init(first), jnp.asarray(FIRST), path)
+    state = (first, optimise.init(first), jnp.asarray(SETTINGS.first), path)
     final, _, _, path = jax.lax.while_loop(go_on, body, state)
     return final, path
 

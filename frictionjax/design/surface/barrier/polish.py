@@ -10,11 +10,7 @@ from ...._checks import Real
 from .constraints import FitShape
 from .extreme_slopes import Reach, peaks, reach, with_extreme_slopes
 from .iterates import FitTask, coefficient_residuals
-
-_STEPS = 40
-_NEAR = 0.03  # of the slopes: how far the last digits may move them
-_EXACT = 1e-12  # of the slopes: how well the surface has to have them
-_RANK = 1e-9  # of the largest singular value: directions that the targets do not see
+from .settings import SETTINGS
 
 
 class Settled(NamedTuple):
@@ -53,16 +49,17 @@ def settle(layout: FitShape, task: FitTask, x: Array) -> Settled:
 
     def gauss_newton(_: Any, z: Array) -> Array:
         pull = jax.jacfwd(misfit)(z) * scale
-        return z - scale * (jnp.linalg.pinv(pull, rtol=_RANK) @ misfit(z))
+        return z - scale * (jnp.linalg.pinv(pull, rtol=SETTINGS.rank) @ misfit(z))
 
-    best = jax.lax.fori_loop(0, _STEPS, gauss_newton, wanted)
-    near = jnp.all(jnp.abs(best - wanted) <= _NEAR * jnp.maximum(jnp.abs(wanted), 0.1))
+    best = jax.lax.fori_loop(0, SETTINGS.polish_steps, gauss_newton, wanted)
+    sizes = jnp.maximum(jnp.abs(wanted), SETTINGS.smallest)
+    near = jnp.all(jnp.abs(best - wanted) <= SETTINGS.near * sizes)
     safe = jnp.where(near, best, wanted)
     both = jnp.stack([point.waves, with_extreme_slopes(point.waves, safe[0], safe[1])])
     reached = jax.vmap(reach)(both)
     old, new = (jax.tree_util.tree_map(lambda v, i=i: v[i], reached) for i in (0, 1))
     gap = jnp.abs(new.plus - safe[0]) + jnp.abs(new.minus - safe[1])
-    good = near & (gap <= _EXACT * (safe[0] + safe[1]))
+    good = near & (gap <= SETTINGS.exact * (safe[0] + safe[1]))
     good &= least_room(layout, task, new, safe[2:]) >= 0
     waves = jnp.where(good, both[1], both[0])
     free = jnp.where(good, safe[2:], point.free)
