@@ -18,6 +18,7 @@ from ...supports import Spring
 from ..bristle import AngleFit, FitStatus, fit_angle, intervals_text
 from ..common import QUANTITIES, DesignResult, FreeParameter, free_parameter, quantity_of
 from .scan import Scan, crossings, scan_slides, sliding, touching
+from .settings import SETTINGS
 from .slide_friction import (
     SLIDE,
     SLIDE_FORCES,
@@ -27,9 +28,6 @@ from .slide_friction import (
     slide_at,
     spring_of,
 )
-
-_TOGETHER = 11  # slides of a call, which wait for the slowest: those near poles take 5x
-
 
 _PAIRS = Form(read=lambda rows: jnp.asarray(np.array(rows, float).reshape(-1, 2)))
 
@@ -241,7 +239,7 @@ def fit_slide(
 
     def shown(places: np.ndarray) -> np.ndarray:
         fixed = free, limit.bristle, profile, asked
-        return in_chunks(_quantities, _TOGETHER, fixed, (places,))
+        return in_chunks(_quantities, SETTINGS.together, fixed, (places,))
 
     def alone(x: Any) -> _Slide:
         return _alone(free, limit.bristle, profile, asked, np.asarray(x))

@@ -6,15 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-_EVEN = np.linspace(0, 1, 33)
-_NEAR = 10.0 ** -np.arange(2, 7)  # of an interval: towards ends, where forces have poles
-_SHARES = np.unique(np.concatenate([_EVEN, _NEAR, 1 - _NEAR]))
-_SIDES = np.linspace(0, 1, 257)  # where sliding is looked for, at no cost
-_HALVINGS = 50
-_TURN = 1e-6  # of a bracket: how well an extremum's place is found, its value to 1e-12
-_FLAT = 1e-9  # of a value: smaller bumps are rounding
-_TOUCH = 1e-9  # of the target: an extremum that near to it is a solution
-_WIDTH = 1e-13
+from .settings import SETTINGS
 
 Shown = Callable[[np.ndarray], np.ndarray]
 
@@ -51,7 +43,7 @@ class Scan(NamedTuple):
         if not lost.any() or lost.all():
             return self.nodes[lost]
         first, last = np.flatnonzero(~lost)[[0, -1]]
-        width = _NEAR[0] * (self.nodes[-1] - self.nodes[0])
+        width = 10.0 ** -SETTINGS.decades[0] * (self.nodes[-1] - self.nodes[0])
         left, right = np.arange(count) < first, np.arange(count) > last
         if self.nodes[first] - self.nodes[0] <= width:
             lost &= ~left | _grows(self.values[first : first + 3], target)
@@ -68,23 +60,24 @@ def _grows(values: np.ndarray, target: float) -> bool:
     if values.size < 3:
         return True
     last, before = values[0] - values[1], values[1] - values[2]
-    return bool(last * (target - values[0]) > 0 and abs(last) > 0.5 * abs(before))
+    towards = last * (target - values[0]) > 0
+    return bool(towards and abs(last) > SETTINGS.grows * abs(before))
 
 
 def sliding(
     follows: Callable[[np.ndarray], np.ndarray], low: float, high: float
 ) -> list[tuple[float, float]]:
     """The parts of an interval where `follows` holds, its ends to rounding."""
-    nodes = low + (high - low) * _SIDES
+    nodes = low + (high - low) * np.linspace(0, 1, SETTINGS.sides)
     nodes[-1] = high
     good = follows(nodes)
     changes = np.flatnonzero(good[1:] != good[:-1])
     inside = np.where(good[changes], nodes[changes], nodes[changes + 1])
     outside = np.where(good[changes], nodes[changes + 1], nodes[changes])
     # Padded, so that intervals of any number of parts share one compilation.
-    pad = (0, _SIDES.size - changes.size)
+    pad = (0, nodes.size - changes.size)
     inside, outside = (np.pad(ends, pad, constant_values=low) for ends in (inside, outside))
-    for _ in range(_HALVINGS if changes.size else 0):
+    for _ in range(SETTINGS.halvings if changes.size else 0):
         middle = 0.5 * (inside + outside)
         holds = follows(middle)
         inside, outside = np.where(holds, middle, inside), np.where(holds, outside, middle)
@@ -97,7 +90,9 @@ def scan_slides(
     shown: Shown, slope: Callable[[float], float], low: float, high: float
 ) -> Scan:
     """Look over an interval: nodes that crowd towards its ends, extrema polished."""
-    nodes = low + (high - low) * _SHARES
+    near = 10.0 ** -np.arange(*SETTINGS.decades)
+    shares = np.concatenate([np.linspace(0, 1, SETTINGS.even), near, 1 - near])
+    nodes = low + (high - low) * np.unique(shares)
     nodes[-1] = high
     values = shown(nodes)
     brackets = [(nodes[i - 1], nodes[i + 1]) for i in _bumps(values)]
@@ -107,13 +102,13 @@ def scan_slides(
         values = np.concatenate([values, shown(turns)])
         nodes = np.concatenate([nodes, turns])
     order = np.argsort(nodes, kind="stable")
-    return Scan(nodes[order], values[order], order >= _SHARES.size)
+    return Scan(nodes[order], values[order], order >= nodes.size - turns.size)
 
 
 def _bumps(values: np.ndarray) -> np.ndarray:
     """Inner places above or below both neighbours, by more than rounding."""
     before, here, after = values[:-2], values[1:-1], values[2:]
-    least = _FLAT * np.abs(here)
+    least = SETTINGS.flat * np.abs(here)
     high = np.minimum(here - before, here - after)
     low = np.minimum(before - here, after - here)
     return 1 + np.flatnonzero((high > least) | (low > least))
@@ -122,7 +117,7 @@ def _bumps(values: np.ndarray) -> np.ndarray:
 def _turn(slope: Callable[[float], float], low: float, high: float) -> float | None:
     """Where the slope changes its sign; None where it is the same at both ends."""
     try:
-        return brentq(slope, low, high, xtol=_TURN * (high - low))
+        return brentq(slope, low, high, xtol=SETTINGS.turn * (high - low))
     except ValueError:  # a step between nodes, or no slide: nodes stand for themselves
         return None
 
@@ -132,12 +127,13 @@ def crossings(gap: Callable[[float], float], found: Scan, target: float) -> np.n
     nodes, away = found.nodes, found.values - target
     roots = nodes[away == 0].tolist()
     for i in np.flatnonzero(away[:-1] * away[1:] < 0):
-        size = _WIDTH * max(1.0, abs(nodes[i]))
-        roots.append(brentq(gap, nodes[i], nodes[i + 1], xtol=size, rtol=1e-14))
+        size = SETTINGS.width * max(1.0, abs(nodes[i]))
+        digits = {"xtol": size, "rtol": SETTINGS.relative_width}
+        roots.append(brentq(gap, nodes[i], nodes[i + 1], **digits))
     return np.sort(np.array(roots))
 
 
 def touching(found: Scan, target: float) -> np.ndarray:
     """Where the quantity turns at the target, or a rounding from it."""
-    near = np.abs(found.values - target) <= _TOUCH * abs(target)
+    near = np.abs(found.values - target) <= SETTINGS.touch * abs(target)
     return found.nodes[near & found.turned]

@@ -34,11 +34,9 @@ from .periodic_orbit import (
     least_pull,
     slide_forces,
 )
+from .settings import SETTINGS
 
 SLIDE_FORCES = ("mean", "peak")  # of a slide, that designs may ask for
-_LANES = 4  # eps at least that are solved at once: one program for a few of them
-_OPEN = 1e-7  # of log D over a period: mean forces right to that
-_ADDED = 1e-5  # of the force: more than that by a viscosity that floats resolve is told
 
 
 class SteadySlide(CodedResult, eqx.Module):
@@ -143,9 +141,9 @@ def _forces(
 
 
 def _code(period: PeriodicOrbit, mean: Real, added: Real) -> Real:
-    closed = period.closed <= _OPEN
+    closed = period.closed <= SETTINGS.open
     known = jnp.where(
-        added <= _ADDED * jnp.abs(mean), int(Status.OK), int(Status.STEP_TOO_SMALL)
+        added <= SETTINGS.added * jnp.abs(mean), int(Status.OK), int(Status.STEP_TOO_SMALL)
     )
     code = jnp.where(closed, known, int(Status.SOLVER_FAILED))
     code = jnp.where(~closed & (period.used >= STEPS), int(Status.MAX_STEPS), code)
@@ -199,7 +197,8 @@ def steady_slide(
     numbers = as_real(gamma), as_real(rate), support.stiffness
     several = jnp.atleast_1d(sizes)
     count = several.shape[0]
-    padded = jnp.pad(several, (0, padded_size(count, _LANES, 2) - count), mode="edge")
+    more = padded_size(count, SETTINGS.lanes, 2) - count
+    padded = jnp.pad(several, (0, more), mode="edge")
     found = _forces(wiggle, padded, *numbers)
     wanted = slice(count) if sizes.ndim else 0
     return _joined(sizes, jax.tree_util.tree_map(lambda leaf: leaf[wanted], found))

@@ -13,6 +13,7 @@ from ...profiles import Fourier
 from ...supports import Spring
 from ..common import DesignResult, Target, require_targets
 from ..surface import MET, ProfileFit, ProfileStatus, fit_profile
+from .settings import SETTINGS
 from .slide_friction import (
     SLIDE,
     SteadySlide,
@@ -22,10 +23,6 @@ from .slide_friction import (
     steady_slide,
 )
 
-_SETTLED = 1e-6  # of log forces; slides are right to 1e-7
-_DESIGNS = 30
-_FAR = 0.5  # of log forces, the longest step
-_HALVINGS = 6
 _DESIGNED = (*MET, ProfileStatus.CONTRADICTORY)
 
 
@@ -215,10 +212,10 @@ def _status(last: _Trial, wanted: np.ndarray) -> ProfileStatus:
         return last.fit.status
     if not last.known:
         return ProfileStatus.NO_SLIDE
-    if last.apart > _SETTLED:
+    if last.apart > SETTINGS.settled:
         return ProfileStatus.NOT_SETTLED
     # What several slides show is right to that: the limit design takes it for a conflict.
-    met = np.max(np.abs(last.shown - np.log(np.abs(wanted)))) <= _SETTLED
+    met = np.max(np.abs(last.shown - np.log(np.abs(wanted)))) <= SETTINGS.settled
     return ProfileStatus.MET if met else last.fit.status
 
 
@@ -231,10 +228,10 @@ def _settled(
     the design that could not be made is the answer.
     """
     pull, history = -np.eye(last.at.size), [last.apart]
-    while last.known and last.apart > _SETTLED and len(history) < _DESIGNS:
+    while last.known and last.apart > SETTINGS.settled and len(history) < SETTINGS.designs:
         move = np.linalg.solve(pull, -last.off)
-        move *= min(1.0, _FAR / np.max(np.abs(move)))
-        for _ in range(_HALVINGS):
+        move *= min(1.0, SETTINGS.far / np.max(np.abs(move)))
+        for _ in range(SETTINGS.step_halvings):
             found = tried(last.at + move)
             history.append(found.apart)
             if found.known:

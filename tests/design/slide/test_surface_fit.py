@@ -111,7 +111,8 @@ def test_weights_and_uncertainties_are_those_of_the_slides_forces():
 
 
 def test_designs_and_slides_that_do_not_come_together_say_so(monkeypatch):
-    monkeypatch.setattr(slide_profile, "_DESIGNS", 2)
+    few = slide_profile.SETTINGS._replace(designs=2)
+    monkeypatch.setattr(slide_profile, "SETTINGS", few)
     found = fx.fit_slide_profile(TARGET, EPS)
     assert found.status == ProfileStatus.NOT_SETTLED
     assert not found.success

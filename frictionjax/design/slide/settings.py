@@ -1,0 +1,41 @@
+"""How steady slides are searched, and when designs for them have settled."""
+
+from typing import NamedTuple
+
+
+class Settings(NamedTuple):
+    """Of slides at several eps, of searches along a number, of designs."""
+
+    # Slides (`slide_friction.py`).
+    lanes: int = 4  # eps at least that are solved at once: one program for a few of them
+    open: float = 1e-7  # of log D over a period: mean forces right to that
+    # Of the force: more than that by a viscosity that floats resolve is told.
+    added: float = 1e-5
+
+    # Searches along a number (`scan.py`), in shares of an interval.
+    even: int = 33  # values of a slide, the ends with them
+    # More by decades towards ends, where forces have poles: 10^-2 to 10^-6.
+    decades: tuple[int, int] = (2, 7)
+    sides: int = 257  # places where sliding is looked for, at no cost
+    halvings: int = 50
+    # Of a change to the one before: an end that the quantity grows towards.
+    grows: float = 0.5
+    # Of a bracket: how well an extremum's place is found, its value to 1e-12.
+    turn: float = 1e-6
+    flat: float = 1e-9  # of a value: smaller bumps are rounding
+    touch: float = 1e-9  # of the target: an extremum that near to it is a solution
+    width: float = 1e-13  # of a solution
+    relative_width: float = 1e-14
+
+    # Bristles (`bristle_fit.py`).
+    # Slides of a call, which wait for the slowest: those near poles take 5x.
+    together: int = 11
+
+    # Surfaces (`surface_fit.py`), in log forces.
+    settled: float = 1e-6  # slides are right to 1e-7
+    designs: int = 30
+    far: float = 0.5  # the longest step
+    step_halvings: int = 6
+
+
+SETTINGS = Settings()
