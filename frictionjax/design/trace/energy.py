@@ -12,11 +12,7 @@ import numpy as np
 
 from ..measured_trace import Trace, forces_at
 from .problem import TraceProblem, states_under
-
-_SAMPLES = 2  # in a way of whole wells, or more. With 8, kN for N was not seen any more
-_STARTS = 2000  # ways looked at
-_SPIKE = 8.0  # scatters
-_FEW = 0.02  # of the samples: fewer ways that gain energy are outliers
+from .settings import SETTINGS
 
 
 class TraceStates(NamedTuple):
@@ -59,7 +55,8 @@ def _without_spikes(values: np.ndarray) -> np.ndarray:
     """Single samples far off both neighbours replaced by the nearer one."""
     middle = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)
     middle = np.concatenate([values[:1], middle, values[-1:]])
-    return np.where(np.abs(values - middle) > _SPIKE * scatter_of(values), middle, values)
+    most = SETTINGS.spike * scatter_of(values)
+    return np.where(np.abs(values - middle) > most, middle, values)
 
 
 def scatter_of(values: np.ndarray) -> float:
@@ -75,7 +72,7 @@ def share_gained(seen: TraceStates, eps: float, within: float = 0.0) -> float:
     """
     work, length = ways(seen.z, seen.force, eps)
     gains = work[work < -within * seen.scatter * length]
-    if gains.size <= _FEW * seen.z.size:
+    if gains.size <= SETTINGS.few * seen.z.size:
         return 0.0
     return float(-np.sum(gains) / np.sum(np.abs(work)))
 
@@ -86,10 +83,11 @@ def ways(z: np.ndarray, force: np.ndarray, eps: float) -> tuple[np.ndarray, floa
     That is whole wells, so many that a way holds some samples.
     """
     pace = float(np.median(np.abs(np.diff(z)))) / eps
-    length = eps * max(1.0, float(np.ceil(_SAMPLES * pace)))
+    length = eps * max(1.0, float(np.ceil(SETTINGS.samples * pace)))
     steps = 0.5 * (force[1:] + force[:-1]) * np.diff(z)
     done = np.concatenate([[0.0], np.cumsum(steps)])
-    starts = np.unique(np.linspace(0, z.size - 1, min(z.size, _STARTS)).astype(int))
+    count = min(z.size, SETTINGS.starts_of_ways)
+    starts = np.unique(np.linspace(0, z.size - 1, count).astype(int))
     found = [np.zeros(0)]
     for lag in range(1, z.size):
         starts = starts[starts + lag < z.size]

@@ -18,18 +18,9 @@ from .problem import TraceProblem, trace_problem
 from .programs import compiled_beside
 from .report import explains, report_trace, without_fit
 from .result import TraceFit
+from .settings import SETTINGS
 from .start import start_numbers
 from .status import TraceStatus
-
-# Starts: bounded by passages or not, and the size of the prior. Of 10 surfaces at 3e-4 N
-# the bounded ones do for 9, and the last for the one left over.
-_STARTS = ((True, 10.0), (True, 1.0), (True, 0.1), (True, 0.01), (False, 0.01))
-_SPREAD = 0.3  # of coefficients, of starts drawn at random
-_TRIES = 10_000  # of which some are admissible
-# Steps of all trajectories, some 10 s: once they were taken no other descent is begun. With
-# three times the steps a trajectory, fits that needed 6 descents took 1.6e6, and failing
-# ones went on to 27e6, three minutes.
-_WORK = 1_500_000
 
 
 @with_nan
@@ -131,7 +122,7 @@ def _descent(
     known = _starts(problem, ready)
     every = itertools.islice(itertools.chain(known, _drawn(problem, known)), starts)
     for index, (held, numbers, flow) in enumerate(every):
-        if work.steps > _WORK:
+        if work.steps > SETTINGS.work:
             return best, f"tried {index} of {starts} starts, after {work.steps:.1e} steps"
         programs = Programs(work.run, problem.read, problem.admissible, held)
         found = gauss_newton(problem.observed(), numbers, flow, programs, most, progress)
@@ -163,7 +154,8 @@ def _starts(problem: TraceProblem, ready: Callable[[], object]) -> list[tuple]:
     """
     begun, known = [], []
     zero = np.zeros(problem.penalty.size)
-    for bounded, factor in _STARTS:
+    bounded_starts = [(True, size) for size in SETTINGS.priors]
+    for bounded, factor in [*bounded_starts, (False, SETTINGS.unbounded_prior)]:
         held = problem.held if bounded else unbounded
         parts = problem.rough, problem.scene, problem.eps
         penalty = factor * problem.penalty
@@ -172,7 +164,8 @@ def _starts(problem: TraceProblem, ready: Callable[[], object]) -> list[tuple]:
     ready()
     for bounded, held, numbers in begun:
         found = problem.run(numbers)
-        off = np.minimum(np.abs(found.z - problem.reading.z), 0.25 * float(problem.eps))
+        edge = SETTINGS.well * float(problem.eps)
+        off = np.minimum(np.abs(found.z - problem.reading.z), edge)
         known.append((not bounded, float(np.mean(off)), held, numbers, found))
     known = sorted((k for k in known if np.isfinite(k[1])), key=lambda k: k[:2])
     return [k[2:] for k in known]
@@ -182,8 +175,8 @@ def _drawn(problem: TraceProblem, known: list[tuple]) -> Iterator[tuple]:
     """Starts at random about the best of those known."""
     rng = np.random.default_rng(0)
     for held, best, _ in known[:1]:
-        for _ in range(_TRIES):
-            numbers = best * (1 + _SPREAD * rng.normal(size=best.size))
+        for _ in range(SETTINGS.tries):
+            numbers = best * (1 + SETTINGS.spread * rng.normal(size=best.size))
             if not problem.admissible(numbers):
                 continue
             found = problem.run(numbers)

@@ -6,18 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .flow import Flow
+from .settings import SETTINGS
 from .start import Read
-
-_FAST = 10.0  # sliding speeds: half a percent of a slip period moves z by 0.05 eps
-_WELL = 0.25  # eps: samples further off are in another well
-_CUT = 3.0  # robust standard deviations from which on residuals count linearly
-# Samples are first taken to be as rough as this, in eps, then less and less so. At once as
-# good as they are, sharp bends fit some slips, and 2 of the first 3 trials ended there.
-_BLURS = (0.1, 0.03, 0.01, 0.003, 0.0)
-_ENOUGH = (1.0, 1.0, 1.0, 1.0, 1e-2)  # decreases of the objective that end each of them
-_HELD = 0.01  # of the range of forces
-_PATIENCE = 6  # steps without a better objective: weights change back and forth
-_DAMPING, _MOST, _LEAST = 1e-3, 1e4, 1e-9
 
 
 class TraceSamples(NamedTuple):
@@ -96,9 +86,9 @@ def weigh(seen: TraceSamples, flow: Flow, blur: float = 0.0) -> View:
     pace = np.abs(np.asarray(flow.speed)) / seen.sliding
     # Smooth: with a sharp end at 10 samples went in and out for ever.
     blurred = np.hypot(seen.sd, blur * seen.eps)
-    sd = blurred * (1 + (pace / _FAST) ** 4)
-    clear = pace < _FAST
-    used = clear & (np.abs(away) < _WELL * seen.eps)
+    sd = blurred * (1 + (pace / SETTINGS.fast) ** 4)
+    clear = pace < SETTINGS.fast
+    used = clear & (np.abs(away) < SETTINGS.well * seen.eps)
     scale = 1.0
     if used.any():
         scale = max(scale, 1.5 * float(np.median(np.abs(away / sd)[used])))
@@ -106,12 +96,12 @@ def weigh(seen: TraceSamples, flow: Flow, blur: float = 0.0) -> View:
 
 
 def _huber(r: np.ndarray) -> np.ndarray:
-    size = np.abs(r)
-    return np.where(size < _CUT, size**2, _CUT * (2 * size - _CUT))
+    size, cut = np.abs(r), SETTINGS.linear
+    return np.where(size < cut, size**2, cut * (2 * size - cut))
 
 
 def _weights(r: np.ndarray) -> np.ndarray:
-    return _CUT / np.maximum(np.abs(r), _CUT)
+    return SETTINGS.linear / np.maximum(np.abs(r), SETTINGS.linear)
 
 
 def _objective(
@@ -132,7 +122,7 @@ def _objective(
     away = np.abs(np.asarray(flow.z) - seen.z)
     if not np.all(np.isfinite(away)):
         return np.inf
-    edge = _WELL * seen.eps
+    edge = SETTINGS.well * seen.eps
     costs = _huber(np.minimum(away, edge) / now.sd / now.scale)
     costs = costs + np.where(away > edge, _huber(read.r / force_sd / now.scale), 0.0)
     return float(np.sum(costs) + np.sum(seen.penalty * numbers**2) + np.sum(_huber(over)))
@@ -140,7 +130,7 @@ def _objective(
 
 def _equations(seen: TraceSamples, now: View, flow: Flow, read: Read, numbers, over):
     """Gauss-Newton's matrix and slope: trajectory in the right well, equation elsewhere."""
-    inside = np.abs(now.away) <= _WELL * seen.eps
+    inside = np.abs(now.away) <= SETTINGS.well * seen.eps
     force_sd = read.deviation(now.blurred)
     r = np.where(inside, now.away / now.sd, read.r / force_sd) / now.scale
     by = np.where(inside, np.asarray(flow.by) / now.sd, read.by.T / force_sd)
@@ -167,13 +157,13 @@ def gauss_newton(
     """
     steps: list[Step] = []
     converged, read = False, programs.read(numbers)
-    for blur, enough in zip(_BLURS, _ENOUGH, strict=True):
-        damping, growth, best, since = _DAMPING, 2.0, np.inf, 0
+    for blur, enough in zip(SETTINGS.blurs, SETTINGS.enough, strict=True):
+        damping, growth, best, since = SETTINGS.damping, 2.0, np.inf, 0
         converged = False
         while not converged and len(steps) < most:
             now = weigh(seen, flow, blur)
             force_sd = read.deviation(now.blurred)
-            rough = max(blur, _HELD)
+            rough = max(blur, SETTINGS.held)
             over = programs.held(numbers, rough)
             before = _objective(seen, now, flow, read, force_sd, numbers, over[0])
             steps.append(_step(seen, now, before, damping, blur))
@@ -191,15 +181,16 @@ def gauss_newton(
             gain = (before - after) / max(promised, 1e-300)
             if after < before:
                 numbers, flow, read = trial, tried, tried_read
-                damping = max(damping * max(0.1, 1 - (2 * gain - 1) ** 3), _LEAST)
+                damping *= max(0.1, 1 - (2 * gain - 1) ** 3)
+                damping = max(damping, SETTINGS.least_damping)
                 growth = 2.0
                 converged = before - after < enough
             else:
-                converged = promised < enough or damping >= _MOST
-                damping, growth = min(damping * growth, _MOST), 2 * growth
-            converged = converged or since >= _PATIENCE
+                converged = promised < enough or damping >= SETTINGS.most_damping
+                damping, growth = min(damping * growth, SETTINGS.most_damping), 2 * growth
+            converged = converged or since >= SETTINGS.patience
     now = weigh(seen, flow)
-    over = programs.held(numbers, _HELD)
+    over = programs.held(numbers, SETTINGS.held)
     last = _objective(seen, now, flow, read, read.deviation(seen.sd), numbers, over[0])
     steps.append(_step(seen, now, last, damping, 0.0))
     return Descent(numbers, flow, steps, converged)

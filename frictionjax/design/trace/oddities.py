@@ -9,19 +9,9 @@ from ..measured_trace import Trace
 from .energy import TraceStates, seen_as, share_gained
 from .outliers import outliers_of
 from .problem import TraceProblem
+from .settings import SETTINGS
 from .status import TraceStatus
 
-# Of the work on ways over wells. 0.0000 in 132 traces without noise (nine scenes, three
-# gamma, 30 to 600 samples); kN for N is 0.03 to 0.15 where a load turns, a sign 0.8 to 1.
-_GAINED = 0.01
-_EXPLAINED = 3.0  # scatters: what noise may gain on a way
-_MENDED = 0.02  # gained by a trace in the right unit, noise and all
-_ROUGH, _ROUGHEST = 0.5, 1.5  # eps: scatter of neighbours; two slips a sample reach 1.1
-_BLIND = 0.1  # eps: a known error of z that hides where in its well a tip is
-_DROWNED = 1.5  # times the noise, which the force has to exceed (root mean square)
-_SURE = 6.0  # standard deviations
-_FOLLOWS = 0.5  # correlation of z and force in a well: 1 without noise
-_BEYOND = 3.0  # times the force that the load can build up
 _SMALLER, _LARGER = (1e-3, 1e-6, 1e-9), (1e3, 1e6, 1e9)  # the nearest first
 _GAINS = (
     "its tip would gain energy over whole wells, {:.0%} of its work, as with another load, "
@@ -44,22 +34,26 @@ def oddity_of(trace: Trace, problem: TraceProblem) -> Oddity | None:
     """
     eps, own = float(problem.eps), seen_as(problem, trace)
     size = float(np.percentile(np.abs(own.force), 98))
-    large = size > _BEYOND * own.most > 0
+    large = size > SETTINGS.too_large * own.most > 0
     noise = _noise(own, eps)
     if large:
         built = f"{as_text(size)} N, where the load can build up {as_text(own.most)} N"
         why = Oddity(TraceStatus.IMPOSSIBLE, f"its force reaches {built}")
         return _mended(problem, trace, _SMALLER) or noise or why
-    gained = share_gained(own, eps, _EXPLAINED)
+    gained = share_gained(own, eps, SETTINGS.explained)
     if noise:
         return noise
-    gains = gained > _GAINED
+    gains = _gains(gained)
     mended = _mended(problem, trace, (*_LARGER, 1.0)) if gains else None
     if mended or (outliers := _outliers(trace)):
         return mended or outliers
     if gains:
         return Oddity(TraceStatus.IMPOSSIBLE, _GAINS.format(gained))
     return _still(own, eps) or _elsewhere(own, problem)
+
+
+def _gains(share: float) -> bool:
+    return share > SETTINGS.gained
 
 
 def _outliers(trace: Trace) -> Oddity | None:
@@ -83,7 +77,7 @@ def _still(seen: TraceStates, eps: float) -> Oddity | None:
     if high - low >= eps:
         return None
     z, force = seen.z - np.mean(seen.z), seen.force - np.mean(seen.force)
-    if z @ force > _FOLLOWS * np.linalg.norm(z) * np.linalg.norm(force):
+    if z @ force > SETTINGS.follows * np.linalg.norm(z) * np.linalg.norm(force):
         return None
     size = as_text(np.ptp(seen.force))
     told = f"z is constant while the force changes by {size} N, as if it were the load"
@@ -99,7 +93,7 @@ def _elsewhere(seen: TraceStates, problem: TraceProblem) -> Oddity | None:
     way = min(after * 2 * size / drag, seen.most / seen.stiffness + eps)
     sd = seen.sd or seen.scatter / seen.stiffness  # slips scatter too
     away = float(seen.z[0]) - z0
-    if abs(away) <= way + max(_SURE * sd, _BLIND * eps):
+    if abs(away) <= way + max(SETTINGS.sure * sd, SETTINGS.blind * eps):
         return None
     told = (
         f"at t = {as_text(after)} s z is {as_text(seen.z[0])} m, where the scene starts at "
@@ -118,7 +112,7 @@ def _mended(problem: TraceProblem, trace: Trace, factors: tuple) -> Oddity | Non
         other = seen_as(problem, trace, factor)
         if not np.all(np.isfinite(other.z)) or _noise(other, eps):
             continue
-        if share_gained(other, eps) <= _MENDED:
+        if share_gained(other, eps) <= SETTINGS.mended:
             return _told(trace.quantity, factor)
     return None
 
@@ -141,12 +135,12 @@ def _noise(seen: TraceStates, eps: float) -> Oddity | None:
     size = float(np.sqrt(np.mean(seen.force**2)))
     sd = max(seen.sd, scatter)
     told = f"noise of {as_text(sd * seen.stiffness)} N, {as_text(sd / eps)} eps of z"
-    if seen.sd > _BLIND * eps:
+    if seen.sd > SETTINGS.blind * eps:
         return Oddity(TraceStatus.NOISE, f"it has, by its uncertainty, {told}")
-    if size <= _DROWNED * seen.stiffness * seen.sd:
+    if size <= SETTINGS.drowned * seen.stiffness * seen.sd:
         return Oddity(TraceStatus.NOISE, f"a friction of {as_text(size)} N with {told}")
     # Slips between samples scatter too, but gain no energy.
-    rough = scatter > _ROUGH * eps or size < _DROWNED * seen.scatter
-    if scatter > _ROUGHEST * eps or (rough and share_gained(seen, eps) > _GAINED):
+    rough = scatter > SETTINGS.rough * eps or size < SETTINGS.drowned * seen.scatter
+    if scatter > SETTINGS.roughest * eps or (rough and _gains(share_gained(seen, eps))):
         return Oddity(TraceStatus.NOISE, f"neighbouring samples scatter, {told}")
     return None

@@ -2,9 +2,7 @@
 
 import numpy as np
 
-_SCATTERS = 8.0  # of all samples, and of those around: in slips neighbours differ
-_AROUND = 10  # samples to either side
-_BEYOND = 0.5  # of the range of all others, beyond it
+from .settings import SETTINGS
 
 
 def outliers_of(values: np.ndarray) -> np.ndarray:
@@ -14,15 +12,16 @@ def outliers_of(values: np.ndarray) -> np.ndarray:
     inside the range may be right.
     """
     low, high = np.percentile(values, [2, 98])
-    beyond = np.maximum(low - values, values - high) > _BEYOND * (high - low)
+    beyond = np.maximum(low - values, values - high) > SETTINGS.beyond_others * (high - low)
     bends = np.abs(np.diff(values, 2, prepend=values[:1], append=values[-1:])) / np.sqrt(
         6.0
     )
     scatter = 1.4826 * float(np.median(bends))
     found = []
     for index in np.flatnonzero(beyond):
-        near = slice(max(0, index - _AROUND), index + _AROUND + 1)
+        near = slice(max(0, index - SETTINGS.around), index + SETTINGS.around + 1)
         others = values[near][~beyond[near]]
-        if others.size and np.min(np.abs(others - values[index])) > _SCATTERS * scatter:
+        most = SETTINGS.scatters * scatter
+        if others.size and np.min(np.abs(others - values[index])) > most:
             found.append(index)
     return np.array(found, dtype=int)

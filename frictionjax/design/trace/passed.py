@@ -7,12 +7,8 @@ import numpy as np
 from ..._compile import padded_size
 from ...model import Scene
 from ..measured_trace import forces_at
+from .settings import SETTINGS
 from .start import wiggle
-
-_APART = 1 / 24  # eps: between two places of a way
-_SURE = 4.0  # standard deviations of z: ways are shorter by this at both ends
-_MOST = 4096  # places
-_ROOM = 128
 
 
 class Passages(NamedTuple):
@@ -44,20 +40,22 @@ def passages_of(scene: Any, ts: np.ndarray, z: np.ndarray, sd: np.ndarray, eps: 
     states, bounds, sides = [], [], []
     for i in range(ts.size - 1):
         side = np.sign(z[i + 1] - z[i])
-        begin, end = z[i] + side * _SURE * sd[i], z[i + 1] - side * _SURE * sd[i + 1]
-        count = int(np.floor(side * (end - begin) / (_APART * eps)))
+        less = side * SETTINGS.shorter
+        begin, end = z[i] + less * sd[i], z[i + 1] - less * sd[i + 1]
+        count = int(np.floor(side * (end - begin) / (SETTINGS.apart * eps)))
         if count < 1:
             continue
-        count = min(count, _MOST)  # of a trace in nm, 1e9
+        count = min(count, SETTINGS.most_places)  # of a trace in nm, 1e9
         states.append(np.linspace(begin, end, count + 1))
         bounds.append(np.full(count + 1, highest[i] if side > 0 else lowest[i]))
         sides.append(np.full(count + 1, side))
     if not states:
         return Passages(np.zeros(0), np.zeros(0), np.zeros(0), 0)
     every = [np.concatenate(parts) for parts in (states, bounds, sides)]
-    keep = np.linspace(0, every[0].size - 1, min(every[0].size, _MOST)).astype(int)
+    count = min(every[0].size, SETTINGS.most_places)
+    keep = np.linspace(0, every[0].size - 1, count).astype(int)
     places, loads, side = (part[keep] for part in every)
-    more = padded_size(keep.size, _ROOM, 2) - keep.size
+    more = padded_size(keep.size, SETTINGS.room_of_places, 2) - keep.size
     padded = np.pad(places, (0, more), mode="edge")
     force = np.asarray(forces_at(scene, np.zeros_like(padded), padded)[1])[: keep.size]
     return Passages(padded, loads - force, side, keep.size)

@@ -14,16 +14,9 @@ from ..measured_trace import Trace, forces_at
 from .flow import Flow, bumped_flow, flow, plan_of, waves_of_numbers, with_profile
 from .gauss_newton import TraceSamples
 from .passed import Passages, held, passages_of
+from .settings import SETTINGS
 from .start import Read, Reading, read, read_residuals
 from .weights import bumps_of
-
-# Of the force range: the start explains forces no better, or folds appear where the trace
-# does not look (at 0 the first trial without noise began with 386 of 401 samples in other
-# wells).
-_ROUGH = 0.01
-_BENT = 0.5  # prior: bending energy over that of a sine with the range of slopes seen
-_ROOM = 64  # times, by fours: few different programs
-_STRETCH = 0.02  # smallest G of an iterate
 
 
 class TraceProblem(NamedTuple):
@@ -41,8 +34,9 @@ class TraceProblem(NamedTuple):
     passages: Passages
     half: float
 
-    def held(self, numbers: np.ndarray, rough: float = _ROUGH):
+    def held(self, numbers: np.ndarray, rough: float | None = None):
         """Excess over what passages allow, and its derivative, in `rough` of the forces."""
+        rough = SETTINGS.start_rough if rough is None else rough
         found = held(self.passages, self.scene, self.eps, numbers)
         return found.r / (rough * self.half), found.by / (rough * self.half)
 
@@ -109,8 +103,8 @@ def _follows(numbers: Array, scene: Scene, eps: Any) -> Array:
     slopes = jax.vmap(jax.grad(waves))(grid)
     ends = potential.bristle.slope_bounds()
     inside = (slopes > ends.lower) & (slopes < ends.upper)
-    good = (stretch > _STRETCH) & (1 + potential.a() * slopes > _STRETCH) & inside
-    return jnp.all(good)
+    least = jnp.minimum(stretch, 1 + potential.a() * slopes)
+    return jnp.all((least > SETTINGS.stretch) & inside)
 
 
 @Program
@@ -128,7 +122,7 @@ def states_under(scene: Scene, forces: Any) -> Array:
 @Program
 def _fastest(scene: Scene) -> Array:
     """Largest |l'|/Phi'' without wiggles, m/s."""
-    ts = scene.duration * (jnp.arange(1024) + 0.5) / 1024
+    ts = scene.duration * (jnp.arange(SETTINGS.times) + 0.5) / SETTINGS.times
     states = jax.vmap(lambda t: scene.support.state_of(scene.load(t)))(ts)
     speeds = jax.vmap(scene.load.slope)(ts) / jax.vmap(scene.support.stiffness_at)(states)
     return jnp.max(jnp.abs(speeds))
@@ -160,15 +154,16 @@ def trace_problem(
         sd = np.hypot(sd, own)
     rest = load - force
     alpha = abs(float(scene.potential.alpha()))
-    half = max(0.5 * float(np.ptp(np.percentile(rest, [2, 98]))), alpha * 1e-6)
+    half = max(0.5 * float(np.ptp(np.percentile(rest, [2, 98]))), alpha * SETTINGS.no_force)
     reading = read(ts, z, sd, rest, eps**gamma, stiffness)
-    drag_sd = np.hypot(reading.drag_sd, _ROUGH * half)
+    drag_sd = np.hypot(reading.drag_sd, SETTINGS.start_rough * half)
     turns = np.tile((2 * np.pi * np.arange(1, harmonics + 1)) ** 4, 2)
     bending = 0.5 * (2 * np.pi * half / alpha) ** 2
-    padded = np.pad(ts, (0, padded_size(ts.size, _ROOM) - ts.size), mode="edge")
+    more = padded_size(ts.size, SETTINGS.room_of_times) - ts.size
+    padded = np.pad(ts, (0, more), mode="edge")
     numbers = np.asarray(eps), np.asarray(gamma), np.asarray(as_real(accuracy))
     rough = reading._replace(drag_sd=drag_sd)
-    penalty = 0.5 * turns / (_BENT * bending)
+    penalty = 0.5 * turns / (SETTINGS.bent * bending)
     passages = passages_of(scene, ts, z, sd, eps)
-    more: Any = padded, reading, rough, sliding, penalty, passages, half
-    return TraceProblem(scene, *numbers, *more)
+    found: Any = padded, reading, rough, sliding, penalty, passages, half
+    return TraceProblem(scene, *numbers, *found)

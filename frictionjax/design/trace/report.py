@@ -10,18 +10,10 @@ from .flow import Flow
 from .gauss_newton import Descent, Step, View, weigh
 from .problem import TraceProblem
 from .result import TraceFit, TraceHistory
+from .settings import SETTINGS
 from .status import TraceStatus
 from .weights import TraceIdentifiability, identify
 
-# Both: 5 standard deviations of chi2, and half more than expected, which small errors of
-# eps, gamma or the stiffness may add at thousands of samples.
-_SIGMAS, _TOO_MUCH = 5.0, 1.5
-_DOUBTFUL = 3.0  # standard deviations of chi2 from which on other starts are tried
-# Of the samples may be in other wells, as outliers: at 1% an optimum with one of 201 there
-# passed, its slopes 23 standard errors off.
-_DISPUTED = 0.002
-_ROUGHEST = 0.1  # eps: residuals of unknown uncertainty that still show a phase
-_LITTLE = 0.05  # of the period
 _UNTRUSTED = (TraceStatus.MISFIT, TraceStatus.OTHER_SLIPS, TraceStatus.MAX_STEPS)
 
 
@@ -90,7 +82,8 @@ def explains(trace: Trace, problem: TraceProblem, found: Descent) -> bool:
     if trace.uncertainty is None:
         good = excess <= 1 or not (found.drawn or _patterned(r, tips))
     else:
-        good = excess <= 1 + (0 if found.drawn else _DOUBTFUL) * np.sqrt(2 / freedom)
+        allowed = 0 if found.drawn else SETTINGS.doubtful
+        good = excess <= 1 + allowed * np.sqrt(2 / freedom)
     return bool(found.converged and good and not now.disputed.any())
 
 
@@ -98,11 +91,11 @@ def _patterned(r: np.ndarray, tips: np.ndarray) -> bool:
     """Whether residuals hang together along the surface (J. von Neumann's ratio)."""
     along = r[np.argsort(tips)]
     ratio = np.sum(np.diff(along) ** 2) / (2 * max(float(np.sum(along**2)), 1e-300))
-    return bool(ratio < 1 - _SIGMAS / np.sqrt(r.size))
+    return bool(ratio < 1 - SETTINGS.sigmas / np.sqrt(r.size))
 
 
 def _high(chi2: float, freedom: int) -> bool:
-    return chi2 > max(_TOO_MUCH, 1 + _SIGMAS * np.sqrt(2 / freedom))
+    return chi2 > max(SETTINGS.too_much, 1 + SETTINGS.sigmas * np.sqrt(2 / freedom))
 
 
 def _status(
@@ -116,12 +109,12 @@ def _status(
     samples, eps = now.used.size, float(problem.eps)
     disputed = int(np.sum(now.disputed))
     known = (
-        (high or np.median(sd) > _ROUGHEST * eps, TraceStatus.MISFIT),
-        (disputed > 0.2 * samples, TraceStatus.MISFIT),
-        (disputed > _DISPUTED * samples, TraceStatus.OTHER_SLIPS),
+        (high or np.median(sd) > SETTINGS.no_phase * eps, TraceStatus.MISFIT),
+        (disputed > SETTINGS.misfit * samples, TraceStatus.MISFIT),
+        (disputed > SETTINGS.disputed * samples, TraceStatus.OTHER_SLIPS),
         (not found.converged, TraceStatus.MAX_STEPS),
         (np.ptp(problem.reading.z) < eps, TraceStatus.NO_SLIDE),
-        (judged.share < _LITTLE, TraceStatus.UNDETERMINED),
+        (judged.share < SETTINGS.little, TraceStatus.UNDETERMINED),
     )
     return next((status for bad, status in known if bad), TraceStatus.FITTED)
 

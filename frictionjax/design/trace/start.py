@@ -10,10 +10,7 @@ from jaxtyping import Array
 from ..._compile import Program
 from ...model import Scene
 from .flow import waves_of_numbers, with_profile
-
-_ROUNDS = 12
-_SETTLED = 1e-3
-_CUT = 3.0  # robust standard deviations at which a sample counts half
+from .settings import SETTINGS
 
 
 class Reading(NamedTuple):
@@ -96,13 +93,13 @@ def start_numbers(
     follow. `held(numbers)`: excess over bounds and its derivative, in deviations. Samples
     off the curve (in slips) count little: weights `1/(1 + (r/3s)^2)`, s the median.
     """
-    for _ in range(_ROUNDS):
+    for _ in range(SETTINGS.rounds):
         found = read_residuals(reading, scene, eps, numbers)
         over, over_by = held(numbers)
         sd = found.deviation(reading.sd)
         r, rows = found.r / sd, found.by / sd[:, None]
         scale = max(1.0, 1.5 * float(np.median(np.abs(r))))
-        weight = 1 / (1 + (r / (_CUT * scale)) ** 2)
+        weight = 1 / (1 + (r / (SETTINGS.half_at * scale)) ** 2)
         normal = (
             (rows.T * weight) @ rows / scale**2 + np.diag(penalty) + over_by.T @ over_by
         )
@@ -111,6 +108,6 @@ def start_numbers(
         while not admissible(numbers + step):
             step = 0.5 * step
         numbers = numbers + step
-        if np.linalg.norm(step) <= _SETTLED * np.linalg.norm(numbers):
+        if np.linalg.norm(step) <= SETTINGS.settled * np.linalg.norm(numbers):
             break
     return numbers

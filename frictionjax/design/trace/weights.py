@@ -4,13 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-_PHASES = 256
-_UNSEEN = 1e-14  # of the largest squared singular value: below, a direction is not seen
-# Of a bump's width, either way: dips of the error narrower than this are the work of first
-# derivatives. A fold that slips time is known 10 times as well as what is beside it, but
-# where it is moves with that: 1 of 10 fits was 6 standard errors off there.
-_DIP = 0.25
-_REACH = 0.5  # widths: bumps this near to a phase are steep there
+from .settings import SETTINGS
 
 
 class TraceIdentifiability(NamedTuple):
@@ -90,20 +84,21 @@ def identify(
     `by`: (unknowns, samples); `by_bumps`: (bumps, samples); `tips`: phases of the samples.
     """
     harmonics = numbers.size // 2
-    phases = np.arange(_PHASES) / _PHASES
+    phases = np.arange(SETTINGS.phases) / SETTINGS.phases
     known = slopes_by(phases, harmonics)
     _, values, directions = np.linalg.svd(by.T, full_matrices=True)
     seen = np.zeros(numbers.size)
     seen[: values.size] = values
-    floor = max(_UNSEEN * seen[0] ** 2, 1e-300)
+    floor = max(SETTINGS.unseen * seen[0] ** 2, 1e-300)
     variance = 1 / np.maximum(seen**2, floor)
     series = np.sqrt(np.sum((known @ directions.T) ** 2 * variance, axis=1))
     centres, width = bumps_of(harmonics)
     with np.errstate(divide="ignore"):
         alone = 1 / np.linalg.norm(by_bumps, axis=1)
     distance = np.abs(_around(phases[:, None] - centres))
-    local = np.max(np.where(distance <= _REACH * width, alone, 0.0), axis=1)
-    error = _without_dips(np.maximum(series, local), int(np.ceil(_DIP * width * _PHASES)))
+    local = np.max(np.where(distance <= SETTINGS.reach * width, alone, 0.0), axis=1)
+    dip = int(np.ceil(SETTINGS.dip * width * SETTINGS.phases))
+    error = _without_dips(np.maximum(series, local), dip)
     slope = known @ numbers
     size = float(np.linalg.norm(numbers))
     near = np.abs(_around(phases[:, None] - tips)) <= 0.5 * width
@@ -117,7 +112,7 @@ def identify(
         visited=visited,
         singular_values=seen,
         directions=directions,
-        rank=int(np.sum(seen * 0.1 * size > 1)),
+        rank=int(np.sum(seen * SETTINGS.seen * size > 1)),
         covariance=(directions.T * variance) @ directions,
     )
 
