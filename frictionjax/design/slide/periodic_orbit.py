@@ -24,6 +24,7 @@ from jaxtyping import Array, Float, Int
 from ..._checks import Real
 from ...model import AbstractPotential
 from ...wiggly import RODAS5P, combine, dense_output
+from .settings import SETTINGS
 
 STEPS = 2048  # of one period; 50 to 600 are needed, plateaus of nearly equal folds: 1200
 _TABLEAU = RODAS5P
@@ -33,11 +34,6 @@ _TIMES = np.array(_TABLEAU.times)
 _TOLERANCE, _LOOSEST = 1e-9, 1e-3
 _FIRST, _SHORTEST = 1e-4, 1e-60
 _LARGEST = 0.02  # of the period: a step must not look over a fold
-_NEWTON, _AGAIN = 30, 12
-_ROUGH, _CLOSED = 1e-2, 1e-12  # of log D over a period
-# Of the steepest wiggle, squared: a smaller c is replaced by it. Narrower landings than
-# floats near 1 resolve do not replay. `least_pull` tells what that adds to forces.
-_LEAST = 2e-15
 _FOLD = 2.338  # first zero of Ai(-x): how late a fold is left, in its own scale
 _X, _W = np.polynomial.legendre.leggauss(4)
 _SHARES = 0.5 * (_X + 1)
@@ -90,7 +86,7 @@ def least_pull(slide: SlideScene) -> tuple[SlideScene, Real]:
     """
     still = jax.lax.stop_gradient(slide)
     start, steepest, _ = survey_ground(still)
-    least = _LEAST * steepest**2
+    least = SETTINGS.least_pull * steepest**2
     resolved = jnp.maximum(still.pull, least)
     (stretch, _), (_, bend) = jax.jvp(still.terrain, (start,), (jnp.ones_like(start),))
     sharp = jnp.maximum(-bend, 1e-300) ** (-1 / 3)
@@ -249,8 +245,9 @@ def find_periodic_orbit(slide: SlideScene) -> PeriodicOrbit:
 
         return jax.lax.while_loop(go_on, body, (period, 0))[0]
 
-    rough = iterated(remeshed, _ROUGH, _NEWTON, begin)
-    return iterated(lambda p: p, _CLOSED, _AGAIN, rough._replace(closed=far))
+    rough = iterated(remeshed, SETTINGS.rough, SETTINGS.newton, begin)
+    again = rough._replace(closed=far)
+    return iterated(lambda p: p, SETTINGS.closed, SETTINGS.newton_again, again)
 
 
 def _newton(slide: SlideScene, period: PeriodicOrbit, limit: Real) -> PeriodicOrbit:

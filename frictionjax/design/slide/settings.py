@@ -6,6 +6,15 @@ from typing import NamedTuple
 class Settings(NamedTuple):
     """Of slides at several eps, of searches along a number, of designs."""
 
+    # Periods (`periodic_orbit.py`).
+    newton: int = 30  # steps, with a period's steps chosen anew each time
+    newton_again: int = 12  # on the last of those
+    rough: float = 1e-2  # of log D over a period: ends the first
+    closed: float = 1e-12  # ends the others
+    # Of the steepest wiggle, squared: a smaller c is replaced by it. Narrower landings than
+    # floats near 1 resolve do not replay. `least_pull` tells what that adds to forces.
+    least_pull: float = 2e-15
+
     # Slides (`slide_friction.py`).
     lanes: int = 4  # eps at least that are solved at once: one program for a few of them
     open: float = 1e-7  # of log D over a period: mean forces right to that
