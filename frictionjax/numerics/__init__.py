@@ -1,4 +1,4 @@
-"""Mathematics that knows nothing of friction: roots, extrema, remainders, whole turns."""
+"""What knows nothing of friction: roots, extrema, remainders, whole turns, columns."""
 
 import lazy_loader
 

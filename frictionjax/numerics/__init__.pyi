@@ -4,6 +4,9 @@ from .extrema import slope_of as slope_of
 from .extrema import smallest as smallest
 from .hermite import cubic as cubic
 from .hermite import cubic_slope as cubic_slope
+from .records import concatenated as concatenated
+from .records import rows_of as rows_of
+from .records import stacked as stacked
 from .roots import bracketed_root as bracketed_root
 from .roots import find_root as find_root
 from .roots import increasing_root as increasing_root

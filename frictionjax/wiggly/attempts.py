@@ -2,11 +2,11 @@
 
 from typing import Any, NamedTuple
 
-import jax
 import numpy as np
 
 from .._compile import WORKERS
 from ..model import Scene
+from ..numerics import concatenated, rows_of
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import (
     BracketContext,
@@ -32,10 +32,6 @@ class Cellwise(NamedTuple):
     cells: LaneCells
     brief: np.ndarray
     needs: Requirements
-
-
-def rows_of(parts: Any, chosen: np.ndarray) -> Any:
-    return jax.tree_util.tree_map(lambda v: np.asarray(v)[chosen], parts)
 
 
 def _with_rows(column: np.ndarray, chosen: np.ndarray, rows: Any) -> np.ndarray:
@@ -79,8 +75,10 @@ class SoFar(NamedTuple):
 
     def with_cells(self, some: Cellwise, chosen: np.ndarray) -> "SoFar":
         """Other needs of some cells, for later attempts too."""
-        rows = zip(self.cells.needs, some.needs, strict=True)
-        needs = Requirements(*(_with_rows(old, chosen, new) for old, new in rows))
+        needs = Requirements._make(
+            _with_rows(old, chosen, new)
+            for old, new in zip(self.cells.needs, some.needs, strict=True)
+        )
         return self._replace(cells=self.cells._replace(needs=needs))
 
 
@@ -131,12 +129,11 @@ class AttemptContext(NamedTuple):
         answers = evaluate(
             scene=self.scene,
             path=self.path,
-            eps=some.eps,
+            ground=some.ground,
             ts=self.ts,
             layout=layout,
             found=found,
             wanted=self.wanted,
-            start=(some.ground.start_well, some.ground.start_tip),
             accuracy=self.accuracy,
         )
         open_ = np.isin(np.arange(some.eps.size), layout.windows.cell[left])
@@ -154,13 +151,14 @@ class AttemptContext(NamedTuple):
 def merged(every: Cellwise, *parts: tuple[np.ndarray, SoFar]) -> SoFar:
     """All cells from attempts at some of them each, in their order."""
     order = np.argsort(np.concatenate([which for which, _ in parts]))
-    columns = zip(*(part.answers for _, part in parts), strict=True)
-    answers = CellResults(*(np.concatenate(column)[order] for column in columns))
-    open_ = np.concatenate([part.open_ for _, part in parts])[order]
-    slides = np.concatenate([part.cells.ground.fast_slides for _, part in parts])[order]
-    needs = zip(*(part.cells.needs for _, part in parts), strict=True)
-    cells = every._replace(
-        ground=every.ground._replace(fast_slides=slides),
-        needs=Requirements(*(np.concatenate(column)[order] for column in needs)),
+    attempts = [part for _, part in parts]
+    slides = np.concatenate([part.cells.ground.fast_slides for part in attempts])
+    needs = concatenated([part.cells.needs for part in attempts])
+    return SoFar(
+        cells=every._replace(
+            ground=every.ground._replace(fast_slides=slides[order]),
+            needs=rows_of(needs, order),
+        ),
+        answers=rows_of(concatenated([part.answers for part in attempts]), order),
+        open_=np.concatenate([part.open_ for part in attempts])[order],
     )
-    return SoFar(cells, answers, open_)

@@ -8,7 +8,8 @@ import numpy as np
 from .._checks import quiet_where_extreme, viscosity_of
 from .._compile import WORKERS, crew
 from ..model import Scene
-from .attempts import AttemptContext, Cellwise, SoFar, merged, rows_of
+from ..numerics import rows_of
+from .attempts import AttemptContext, Cellwise, SoFar, merged
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import Report, find_fast_slides
 from .equation import Status

@@ -108,9 +108,15 @@ def _solve(
 
 def _through_lanes(scene, eps, gamma, ts, accuracy, method, balanced) -> Solution | None:
     """The solution by lanes; None where the scene has no room for the load's turns."""
-    cell = np.atleast_1d(float(eps)), np.atleast_1d(float(gamma))
     found = integrate_cells(
-        scene, *cell, np.asarray(ts), accuracy, method, balanced, suprema=False
+        scene=scene,
+        eps=np.atleast_1d(float(eps)),
+        gamma=np.atleast_1d(float(gamma)),
+        ts=np.asarray(ts),
+        accuracy=accuracy,
+        method=method,
+        balanced=balanced,
+        suprema=False,
     )
     if found is None:
         return None
@@ -199,8 +205,15 @@ def solve(
     require_told_apart(scene, eps)
     plain = adjoint is None and max_steps == MAX_STEPS
     if plain and is_ours(method) and is_concrete(scene, eps, gamma, ts, accuracy):
-        through = float(as_real(accuracy)), str(method), bool(dissipation)
-        found = _through_lanes(scene, eps, gamma, ts, *through)
+        found = _through_lanes(
+            scene=scene,
+            eps=eps,
+            gamma=gamma,
+            ts=ts,
+            accuracy=float(as_real(accuracy)),
+            method=str(method),
+            balanced=bool(dissipation),
+        )
         if found is not None:
             return found
     return _solve(

@@ -18,7 +18,7 @@ from frictionjax.cost.machine_cost import (
 )
 from frictionjax.report.job import read_job
 from frictionjax.report.study import expectation, expected_cost, within_budget
-from frictionjax.wiggly.enclosure import close as rounds
+from frictionjax.wiggly.enclosure import marching
 from frictionjax.wiggly.enclosure.layout import lay_out
 from frictionjax.wiggly.limit_path.find_path import path_of
 from frictionjax.wiggly.plan import lane_scene, planned
@@ -132,14 +132,14 @@ def test_many_short_slides_are_no_matter_for_slip_maps(periods, alone):
     ],
 )
 def test_the_rows_of_tables_are_foreseen(monkeypatch, eps, gamma, times, method):
-    rows, plans = np.zeros(2), rounds.plan_brackets
+    rows, plans = np.zeros(2), marching.plan_brackets
 
     def plan(*parts):
         found = plans(*parts)
         rows[:] += found.jobs.cell.size, found.legs.start.size
         return found
 
-    monkeypatch.setattr(rounds, "plan_brackets", plan)
+    monkeypatch.setattr(marching, "plan_brackets", plan)
     cells = cells_of(np.array(eps), np.array(gamma))
     work = workload(scene_of(), *cells, times, 1e-3, method)
     fx.sweep(scene_of(), eps, gamma, np.linspace(0.0, 3.0, times), 1e-3, method)

@@ -11,7 +11,7 @@ from scipy import integrate as scipy_integrate
 import frictionjax as fx
 from frictionjax.cost.scipy_solvers import run_scipy, told
 from frictionjax.cost.step_record import StepRecord
-from frictionjax.wiggly.enclosure import close as rounds
+from frictionjax.wiggly.enclosure import marching
 
 EPS, TIMES = 0.2, np.linspace(0.0, 3.0, 5)
 SCENE = fx.Scene(
@@ -29,14 +29,14 @@ SCENE = fx.Scene(
 )
 def test_steps_of_lanes_are_all_steps(monkeypatch, eps, gamma, accuracy):
     """Also those of surveys that were made again, and of lanes that look for slip maps."""
-    every, marches = np.zeros(2), rounds.march
+    every, marches = np.zeros(2), marching.march
 
     def march(*parts):
         found = marches(*parts)
         every[:] += np.nansum(found.steps), np.nansum(found.rejected)
         return found
 
-    monkeypatch.setattr(rounds, "march", march)
+    monkeypatch.setattr(marching, "march", march)
     found = fx.solve(SCENE, eps, gamma, np.linspace(0, 3, 61), accuracy)
     assert found.ok
     assert (found.stats["steps"], found.stats["rejected"]) == tuple(every)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...model import Scene
+from ...numerics import rows_of
 from ..lanes import Lanes, Segments
 from ..limit_path import Path, slopes_at, states_at
 from .settings import SETTINGS
@@ -32,8 +33,13 @@ class Brackets(NamedTuple):
         mine = place[self.owner] >= 0
         owner, stop = place[self.owner[mine]], self.stop[mine]
         order = np.argsort(owner, kind="stable")
-        rows = self.cell[which], self.begin[which], self.paired[which]
-        return Brackets(*rows, owner[order], stop[order])
+        return Brackets(
+            cell=self.cell[which],
+            begin=self.begin[which],
+            paired=self.paired[which],
+            owner=owner[order],
+            stop=stop[order],
+        )
 
 
 class BracketPlan(NamedTuple):
@@ -95,7 +101,7 @@ def plan_brackets(
     lanes = [_lane_legs(windows, starts, kinks, every)]
     second = np.flatnonzero(~starts.known)
     some = windows.chosen(second)
-    part = Starts(*(a[second] for a in starts))
+    part = rows_of(starts, second)
     lanes.append(_lane_legs(some, part, kinks, some.paired))
     owner, start, end, mark = (np.concatenate(c) for c in zip(*lanes, strict=True))
     split = lanes[0][0].size
@@ -138,14 +144,23 @@ def plan_brackets(
     chosen = chosen[np.argsort(windows.owner[chosen], kind="stable")]
     ahead[chosen[mark[two & (mark >= 0)]]] = index[two & (mark >= 0)]
     meet_ahead[second[owner[two & (mark == -1)]]] = index[two & (mark == -1)]
-    marks = behind, ahead, meet_behind, meet_ahead
     last = np.full(count, -np.inf)
     np.maximum.at(last, windows.owner, windows.stop)
     inside = last <= starts.until
     brief = np.concatenate([inside, inside[second]])
     brief &= np.bincount(job, wells, brief.size) <= SETTINGS.brief
-    calm = _calm(path, ground, jobs, legs)
-    return BracketPlan(jobs, legs, *marks, starts.known, starts.from_slide, brief, calm)
+    return BracketPlan(
+        jobs=jobs,
+        legs=legs,
+        behind=behind,
+        ahead=ahead,
+        meet_behind=meet_behind,
+        meet_ahead=meet_ahead,
+        known=starts.known,
+        from_slide=starts.from_slide,
+        brief=brief,
+        calm=_calm(path, ground, jobs, legs),
+    )
 
 
 def _calm(path: Path, ground: CellBounds, jobs: Lanes, legs: Segments) -> np.ndarray:

@@ -22,8 +22,9 @@ from ..slip_map import (
     asking_for_slides,
 )
 from .brackets import BracketPlan, Brackets
-from .close import BracketContext, BracketRound, Effort, no_effort, run_ups
+from .close import run_ups
 from .closeness import wells_between
+from .marching import BracketContext, BracketRound, Effort, no_effort
 from .requirements import Requirements
 from .settings import SETTINGS
 from .starts import Starts
@@ -104,7 +105,7 @@ def _seen(
     begins = np.minimum(wanted.begins, wanted.stops)
     windows = Brackets(wanted.cells, begins, paired, one, wanted.stops)
     wells, back = run_ups(looks, windows, needs.run_up), np.ones(count)
-    found, open_ = FoundTips(*np.empty((3, count))), one
+    found, open_ = FoundTips._make(np.empty((3, count))), one
     for _ in range(SETTINGS.rounds):
         some = windows.chosen(open_)
         plan, arrived, effort = looks.run(some, wells[open_], back[open_])
@@ -182,7 +183,10 @@ def _measuring(
         drift = np.abs(sign * place / np.maximum(pace, 1e-300) - off) / count
         ends = np.cumsum(sizes)[:-1]
         parts = zip(slides, np.split(drift, ends), np.split(pace, ends), gaps, strict=True)
-        return [_summed(rounds, *part) for part in parts]
+        return [
+            _summed(rounds, slide, drift=own_drift, pace=own_pace, gap=gap)
+            for slide, own_drift, own_pace, gap in parts
+        ]
 
     return lanes, [lambda k=k: summed()[k] for k in range(len(slides))]
 

@@ -70,7 +70,7 @@ def _rounding_of(path: Path) -> float:
 
 def _legs_between(cut: Cut) -> tuple[np.ndarray, np.ndarray]:
     """Starts and ends in s of the legs between stops."""
-    opens = cut.opening[segments_of(*cut)]
+    opens = cut.opening[segments_of(cut.opening, cut.stops)]
     starts = np.maximum(opens, np.concatenate([[0.0], cut.stops[:-1]]))
     long = cut.stops > starts
     return starts[long], cut.stops[long]

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...model import Scene
+from ...numerics import rows_of
 from ..equation import WiggleFolds
 from ..limit_path import Path, slopes_at, states_at, times_at
 from ..slip_map import FastSlide, ManyTransitTimes, last_begun
@@ -117,14 +118,30 @@ def starts_of(
     share = np.ones(begin.size)
     share[slide] = slow_share(scene, path, time[slide], level[slide])
     share = np.where(lag > SETTINGS.long_lag * eps, share, 1.0)
-    before = slides, which = last_begun(ground.fast_slides, cell, begin)
+    slides, which = last_begun(ground.fast_slides, cell, begin)
     lagging = _still_lagging(path, slides, which, time)
     share = np.where(lagging, 1.0, share)
-    lanes = _brackets(ground, cell, direction, level, known, share)
-    none = np.zeros(begin.size, dtype=bool)
-    plain = Starts(time, known, none, lagging, np.full(begin.size, -np.inf), *lanes)
+    behind, ahead, tip = _bracket(ground, cell, direction, level, known, share)
+    plain = Starts(
+        time=time,
+        known=known,
+        from_slide=np.zeros(begin.size, dtype=bool),
+        lagging=lagging,
+        until=np.full(begin.size, -np.inf),
+        behind_well=behind,
+        behind_tip=tip,
+        ahead_well=ahead,
+        ahead_tip=tip,
+    )
+    # Way in m that a lane of the bracket goes until the window begins, its lag included.
     reach = wells * eps + 2 * share * lag
-    return _from_slides(scene, path, before, begin, plain, back, reach, measured)
+    some = np.flatnonzero(which >= 0)
+    if some.size == 0:
+        return plain
+    near, inside = _on_slides(slides, which[some], begin[some], back[some], measured)
+    late, early = np.split(way_at(scene, path, np.append(begin[some], near.time)), 2)
+    nearer = known[some] | inside | (late - early <= reach[some])
+    return _replaced(plain, some[nearer], rows_of(near, nearer))
 
 
 def _still_lagging(
@@ -144,25 +161,12 @@ def _still_lagging(
     return lagging
 
 
-def _from_slides(
-    scene: Scene, path: Path, before: tuple, begin, plain: Starts, back, way, measured: bool
-) -> Starts:
-    """The same starts, from the last fast slide where it holds the window or ends nearer.
-
-    `before`: as `last_begun` says. `way` (W,): m that a lane of the bracket goes until the
-    window begins, its lag included.
-    """
-    slides, which = before
-    some = np.flatnonzero(which >= 0)
-    if some.size == 0:
-        return plain
-    near, inside = _on_slides(slides, which[some], begin[some], back[some], measured)
-    late, early = np.split(way_at(scene, path, np.append(begin[some], near.time)), 2)
-    nearer = plain.known[some] | inside | (late - early <= way[some])
-    starts = Starts(*(column.copy() for column in plain))
-    for column, row in zip(starts, near, strict=True):
-        column[some[nearer]] = row[nearer]
-    return starts
+def _replaced(starts: Starts, which: np.ndarray, others: Starts) -> Starts:
+    """The starts with others in the rows `which`."""
+    found = Starts._make(column.copy() for column in starts)
+    for column, other in zip(found, others, strict=True):
+        column[which] = other
+    return found
 
 
 def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured: bool):
@@ -179,10 +183,18 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
     if measured:
         errors = np.concatenate([slide.error for slide in slides])
         error = sign * errors[curves.panel_of(which, number)]
-    time = np.minimum(curves.time_of(which, number), begin)
     none, well = np.zeros(which.size, dtype=bool), well + sign * number
-    lanes = well, tip - error, well, tip + error
-    starts = Starts(time, none, ~none, none, end, *lanes)
+    starts = Starts(
+        time=np.minimum(curves.time_of(which, number), begin),
+        known=none,
+        from_slide=~none,
+        lagging=none,
+        until=end,
+        behind_well=well,
+        behind_tip=tip - error,
+        ahead_well=well,
+        ahead_tip=tip + error,
+    )
     return starts, begin <= end
 
 
@@ -199,8 +211,8 @@ def slow_share(scene: Scene, path: Path, time: np.ndarray, state: np.ndarray) ->
     return np.minimum(SETTINGS.faster * share**2, 1.0)
 
 
-def _brackets(ground: CellBounds, cell, direction, level, known, share):
-    """Well and tip of the lanes behind and ahead of the edge at `level`."""
+def _bracket(ground: CellBounds, cell, direction, level, known, share):
+    """Wells of the lanes behind and ahead of the edge at `level`, and the tip of both."""
     up, eps, folds = direction > 0, ground.eps[cell], ground.folds
 
     def side(plus, minus) -> np.ndarray:
@@ -216,10 +228,8 @@ def _brackets(ground: CellBounds, cell, direction, level, known, share):
     ahead = np.ceil(at + shift / eps + SETTINGS.gap)
     behind = np.floor(at - (shift + lag) / eps - SETTINGS.gap) - 1
     start_well, start_tip = ground.start_well[cell], ground.start_tip[cell]
-    tip = np.where(known, start_tip, place)
     return (
         np.where(known, start_well, sign * behind),
-        tip,
         np.where(known, start_well, sign * ahead),
-        tip,
+        np.where(known, start_tip, place),
     )

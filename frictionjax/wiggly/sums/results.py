@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...model import Scene
-from ..enclosure import BracketValues, Layout
+from ..enclosure import BracketValues, CellBounds, Layout
 from ..equation import Status
 from ..lanes import Sums
 from ..limit_path import Path, states_at
@@ -61,22 +61,29 @@ def _dissipation_of_path(path: Path, times: np.ndarray, states: np.ndarray) -> n
 def evaluate(
     scene: Scene,
     path: Path,
-    eps: np.ndarray,
+    ground: CellBounds,
     ts: np.ndarray,
     layout: Layout,
     found: BracketValues,
     wanted: Sums,
-    start: tuple[np.ndarray, np.ndarray],
     accuracy: float,
 ) -> CellResults:
     """Values of all cells from what was found at the stops of the layout.
 
     Suprema are NaN where no extremes were `wanted`.
     """
+    eps = ground.eps
     stops = stop_values_of(scene, layout, found, eps)
     count = eps.size
     guide = np.full(count, path.states[0])
-    z_start, energy0, _ = states_at_stops(scene, eps, *start, np.zeros(count), guide)
+    z_start, energy0, _ = states_at_stops(
+        scene=scene,
+        eps=eps,
+        well=ground.start_well,
+        tip=ground.start_tip,
+        t=np.zeros(count),
+        guide=guide,
+    )
     guides = states_at(scene, path, ts)
     of_path = _dissipation_of_path(path, ts, guides)
     whole = float(path.travel[-1])

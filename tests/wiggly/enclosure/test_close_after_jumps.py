@@ -5,7 +5,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.wiggly.enclosure.brackets import BracketPlan
-from frictionjax.wiggly.enclosure.close import BracketContext, no_effort
+from frictionjax.wiggly.enclosure.marching import BracketContext, no_effort
 from frictionjax.wiggly.enclosure.settings import SETTINGS
 from frictionjax.wiggly.enclosure.starts import CellBounds
 from frictionjax.wiggly.lanes.queue import Lanes, SegmentEnds, Segments

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.wiggly.enclosure.close import _batches, _seats
+from frictionjax.wiggly.enclosure.marching import _batches, _seats
 from frictionjax.wiggly.lanes.lane import LaneCells, Sums
 from frictionjax.wiggly.lanes.loops import (
     Room,

@@ -8,8 +8,7 @@ from fast_slides import BRISTLES, PROFILES, SCENES, SINE, TIMES
 
 import frictionjax as fx
 from frictionjax.wiggly import batch as engine
-from frictionjax.wiggly.enclosure import close as rounds
-from frictionjax.wiggly.enclosure import finder, layout
+from frictionjax.wiggly.enclosure import chains, finder, marching
 from frictionjax.wiggly.limit_path.find_path import path_of
 from frictionjax.wiggly.slip_map.fast_slides import FastSlide
 from frictionjax.wiggly.slip_map.transit_times import TransitTimes
@@ -42,7 +41,7 @@ def test_a_slide_of_a_hundred_million_wells_is_followed_to_its_end(monkeypatch):
 def test_lanes_on_fast_slides_have_tolerances_of_their_own(monkeypatch):
     """Errors of two wells hardly add up; those of a long lane do."""
     marched = []
-    march = rounds.march
+    march = marching.march
 
     def spy(lanes, cells, jobs, legs, *rest):
         way = np.abs(legs.guide1 - legs.guide0)
@@ -56,7 +55,7 @@ def test_lanes_on_fast_slides_have_tolerances_of_their_own(monkeypatch):
             marched.append((own, wells, slow, quick))
         return march(lanes, cells, jobs, legs, *rest)
 
-    monkeypatch.setattr(rounds, "march", spy)
+    monkeypatch.setattr(marching, "march", spy)
     cell = np.array([1.3e-6]), np.array([0.4]), TIMES, 1e-3
     found = engine.integrate_cells(SCENES["sine"], *cell, "windowed")
     assert found.status == fx.Status.OK
@@ -81,8 +80,8 @@ def test_tiles_end_on_fast_slides():
     )
     slide = FastSlide(curve, 1.0, 0.0, 0.0, 0, lambda: none[:, 0])
     times = np.array([0.0, 1.0, 1.15, 1.17, 1.33, 1.9, 2.0, 5.0])
-    assert layout._on_slides((slide,), times).tolist() == [0, 0, 0, 1, 2, 5, 6, 6]
-    assert layout._on_slides((), times).tolist() == [0] * 8
+    assert chains._on_slides((slide,), times).tolist() == [0, 0, 0, 1, 2, 5, 6, 6]
+    assert chains._on_slides((), times).tolist() == [0] * 8
 
 
 @pytest.mark.slow

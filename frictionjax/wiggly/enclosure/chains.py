@@ -1,0 +1,159 @@
+"""The chain of a cell: everything outside the inner parts of slides, in tiles."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .bracket_rows import BracketRows
+from .requirements import wells_a_leg
+from .sampled_parts import CellSlides, Parts, uneven_pieces
+from .segment_ends import Cut, follow_path, segments_of
+from .settings import SETTINGS
+from .starts import way_at
+
+
+class Chains(NamedTuple):
+    """Stops of each cell that follow each other, and at which of them requested times are.
+
+    `stops`: their numbers, in time, for each cell. `hit` (cells, n): the stop at each
+    requested time, -1 at none.
+    """
+
+    stops: list[np.ndarray]
+    hit: np.ndarray
+
+
+def chains_of(
+    slides: CellSlides,
+    parts: Parts,
+    ts: np.ndarray,
+    accuracy: float,
+    summed: bool,
+    rows: BracketRows,
+) -> Chains:
+    """Tiles outside the inner `parts` of slides, which are added to `rows`."""
+    path, eps, needs = slides.path, slides.eps, slides.needs
+    fast_slides = slides.fast_slides
+    output = np.full((eps.size, ts.size), -1)
+    # Beside fast slides windows of a few wells each lead to the times.
+    chained = [c for c in range(eps.size) if summed or not fast_slides[c]]
+    # Guides of long legs are coarse, which counts in sums only: long lanes need no stops.
+    stopped = [c for c in chained if summed or np.isfinite(needs.tile[c])]
+    lattice_cell, lattice_time = _lattice(slides, parts, stopped)
+    edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
+    steep = np.unique(path.probes.times[uneven_pieces(path)])
+    apart = np.diff(steep, prepend=-np.inf) > SETTINGS.apart * path.edges[-1]
+    fixed = np.unique(np.concatenate([edges, ts, steep[apart]]))
+    cuts = [
+        _cut(parts, cell, fixed, lattice_time[lattice_cell == cell]) for cell in chained
+    ]
+    if summed:
+        cuts = follow_path(slides.scene, path, eps[chained], accuracy, cuts)
+    # Of all cells at once: a call each took 0.1 ms.
+    times = [t for cut in cuts for t in cut]
+    every = way_at(slides.scene, path, np.concatenate([*times, np.zeros(0)]))
+    ways = np.split(every, np.cumsum([t.size for t in times]))
+    chain = [np.zeros(0, dtype=int)] * eps.size
+    for k, (cell, (opening, own)) in enumerate(zip(chained, cuts, strict=True)):
+        segment = segments_of(opening, own)
+        since = (ways[2 * k + 1] - ways[2 * k][segment]) / eps[cell]
+        tile = np.floor(since / needs.tile[cell] - 1e-9) + _on_slides(
+            fast_slides[cell], own
+        )
+        tile += np.searchsorted(path.edges[1:][needs.restarts[cell]], own)
+        begins = own > opening[segment]
+        own, segment, tile = own[begins], segment[begins], tile[begins]
+        tiles = _tiles(segment, tile)
+        if not summed:
+            wanted = np.isin(own, ts)
+            tiles = [group for group in tiles if wanted[group].any()]
+        numbers = [np.zeros(0, dtype=int)]
+        for group in tiles:
+            first = group[0]
+            fresh = first == 0 or segment[first] != segment[first - 1]
+            begin = opening[segment[first]] if fresh else own[first - 1]
+            numbers.append(rows.add(cell, begin, False, own[group]))
+        own = own[np.concatenate([*tiles, np.zeros(0, dtype=int)])]
+        chain[cell] = np.concatenate(numbers)
+        which = np.searchsorted(own, ts)
+        hit = np.append(own, np.nan)[which] == ts
+        output[cell, hit] = chain[cell][which[hit]]
+    return Chains(chain, output)
+
+
+def _lattice(slides: CellSlides, parts: Parts, chosen: list[int]):
+    """Cell and time of every leg's end on slides of chosen cells, outside inner parts."""
+    path, eps = slides.path, slides.eps
+    legs = wells_a_leg(path, eps)
+    lows, highs = (slides.states_at(times) for times in (parts.low, parts.high))
+    cells, pieces, wells = [], [], []
+    for cell in chosen:
+        leg = float(legs[cell])
+        own = parts.cell == cell
+        for piece in np.flatnonzero(path.direction).tolist():
+            way = abs(path.states[piece + 1] - path.states[piece]) / eps[cell]
+            way -= slides.needs.lattice_offset[cell, piece]
+            mine = own & (parts.low < path.edges[piece + 1])
+            mine &= parts.high > path.touch[piece]
+            origin = path.states[piece]
+            edges = (path.states[piece], path.states[piece + 1])
+            low, high = (
+                np.abs(np.clip(side[mine], min(edges), max(edges)) - origin) / eps[cell]
+                for side in (lows, highs)
+            )
+            at = _outside(leg, way, low, high)
+            cells.append(np.full(at.size, cell))
+            pieces.append(np.full(at.size, piece))
+            wells.append(at)
+    if not cells:
+        return np.zeros(0, dtype=int), np.zeros(0)
+    whose = np.concatenate(cells)
+    return whose, slides.times_at_wells(
+        whose, np.concatenate(pieces), np.concatenate(wells)
+    )
+
+
+def _outside(leg: float, way: float, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Wells of a slide at which legs end: none inside its inner parts, in wells too."""
+    if low.size == 0:
+        return np.arange(leg, way, leg)
+    order = np.argsort(low)
+    opens = np.concatenate([[0.0], high[order]])
+    closes = np.concatenate([low[order], [way]])
+    gaps = [
+        np.arange(np.ceil(a) + leg, b - 0.5, leg)
+        for a, b in zip(opens, closes, strict=True)
+    ]
+    return np.concatenate(gaps)
+
+
+def _cut(parts: Parts, cell: int, fixed: np.ndarray, lattice: np.ndarray) -> Cut:
+    """A cell's chain. Inner parts are left out: a segment begins where one ends."""
+    mine = np.flatnonzero(parts.cell == cell)
+    mine = mine[np.argsort(parts.low[mine])]
+    low, high = parts.low[mine], parts.high[mine]
+    # Where one hole follows another there is nothing to be measured between.
+    own = np.unique(np.concatenate([fixed, lattice, low[~np.isin(low, high)]]))
+    hole = np.searchsorted(low, own) - 1  # of those that begin before
+    inside = (hole >= 0) & (own < np.append(high, 0.0)[hole])
+    own = own[~inside & (own > 0)]
+    return Cut(np.concatenate([[0.0], high]), own)
+
+
+def _tiles(segment: np.ndarray, tile: np.ndarray) -> list[np.ndarray]:
+    """Stops of a chain that one window holds: of one segment and one tile of it."""
+    cut = (np.diff(segment) != 0) | (np.diff(tile) > 0)
+    return np.split(np.arange(segment.size), np.flatnonzero(cut) + 1)
+
+
+def _on_slides(slides: tuple, times: np.ndarray) -> np.ndarray:
+    """Blocks of wells on fast slides that are passed before each time.
+
+    Tiles end there: lanes set off from fast slides anywhere, and what waits for the longest
+    tile at gamma = 1/4, eps = 1e-8 took 7 s of 9.
+    """
+    passed = np.zeros(times.size)
+    for slide in slides:
+        held = np.clip(times, slide.begin, slide.end)
+        passed += np.floor(slide.curve.number_at(held) / SETTINGS.most_wells_a_leg)
+    return passed

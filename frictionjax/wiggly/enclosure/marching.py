@@ -1,0 +1,231 @@
+"""Brackets through the lanes, dealt to the cores: what lanes find, and what they took."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ..._compile import WORKERS, crew
+from ...model import Scene
+from ...numerics import concatenated, rows_of
+from ..equation import Status
+from ..lanes import SETTINGS as LANE_SETTINGS
+from ..lanes import LaneCells, Lanes, LaneScene, SegmentEnds, Segments, Sums, march
+from ..limit_path import Path
+from ..rosenbrock import Tableau
+from .brackets import BracketPlan, Brackets, plan_brackets
+from .settings import SETTINGS
+from .starts import CellBounds, Starts, starts_of
+
+Report = Callable[[float], None]
+
+
+def _seats(count: int, seats: int) -> np.ndarray:
+    """Seats dealt there and back, so that none gets all the lanes behind of brackets."""
+    row, seat = np.divmod(np.arange(count), seats)
+    return np.where(row % 2 == 0, seat, seats - 1 - seat)
+
+
+def _batches(work: np.ndarray, workers: int) -> int:
+    """Batches of jobs, as often as a report is wanted and lanes do not idle.
+
+    They do where a batch has less than two jobs a lane, or is done in hardly more time than
+    its longest takes. (Every slip of 48 cells, the tiles of gamma = 1/2 in four batches:
+    1.2 to 1.5 times as long. Fewer than need be: larger tables, and another loop to
+    compile.)
+    """
+    lanes = workers * LANE_SETTINGS.width
+    longest = SETTINGS.longest_job * work.max(initial=1.0)
+    most = min(work.size // (2 * lanes), int(work.sum() / (lanes * longest)))
+    return max(min(int(np.ceil(work.sum() / SETTINGS.batch)), most), 1)
+
+
+def _of_jobs(plan: BracketPlan, of_legs: np.ndarray) -> np.ndarray:
+    """Sums over the legs of each job, (jobs,)."""
+    so_far = np.concatenate([[0.0], np.cumsum(of_legs)])
+    return so_far[plan.jobs.past_leg] - so_far[plan.jobs.first_leg]
+
+
+class Effort(NamedTuple):
+    """What lanes have taken so far, shape (cells,).
+
+    `steps`, `rejected`: of all lanes. `waited`: those of `SETTINGS.patience`.
+    """
+
+    steps: np.ndarray
+    rejected: np.ndarray
+    waited: np.ndarray
+
+    def more(self, other: "Effort") -> "Effort":
+        """That of both."""
+        return Effort._make(a + b for a, b in zip(self, other, strict=True))
+
+
+def no_effort(count: int) -> Effort:
+    """Of so many cells, before the first lane."""
+    return Effort._make(np.zeros((3, count)))
+
+
+class BracketRound(NamedTuple):
+    """What one round of windows has found, and what has been taken up to then."""
+
+    plan: BracketPlan
+    found: SegmentEnds
+    effort: Effort
+
+
+class BracketContext(NamedTuple):
+    """What all rounds of one sweep share.
+
+    `brief` (cells,): tolerances of lanes on fast slides through a few wells; None: those of
+    the others. `workers`: queues at once. `effort`: what lanes have taken before.
+    `lanes_run` is called as lanes set off.
+    """
+
+    scene: Scene
+    lanes: LaneScene
+    path: Path
+    ground: CellBounds
+    cells: LaneCells
+    tableau: Tableau
+    wanted: Sums
+    accuracy: float
+    report: Report
+    effort: Effort
+    brief: np.ndarray | None
+    workers: int = WORKERS
+    lanes_run: Callable[[], None] = lambda: None
+
+    def run(self, windows: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
+        """March all windows, from `wells` of the path or `back` of a fast slide before."""
+        starts = starts_of(
+            scene=self.scene,
+            path=self.path,
+            ground=self.ground,
+            cell=windows.cell,
+            begin=windows.begin,
+            wells=wells,
+            back=back,
+        )
+        return self.march_from(windows, starts)
+
+    def march_from(self, windows: Brackets, starts: Starts) -> BracketRound:
+        """March all windows from their starts."""
+        return self.through(self.planned(windows, starts))
+
+    def planned(self, windows: Brackets, starts: Starts) -> BracketPlan:
+        """What lanes are to do for windows, from their starts."""
+        return plan_brackets(self.scene, self.path, self.ground, windows, starts)
+
+    def through(self, plan: BracketPlan) -> BracketRound:
+        """March all windows of a plan."""
+        able, plan = self._within_patience(plan)
+        found = self._march(plan, able)
+        return BracketRound(plan, found, self.effort.more(self._taken(plan, found)))
+
+    def _taken(self, plan: BracketPlan, found: SegmentEnds) -> Effort:
+        """What the lanes of a plan took."""
+        owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
+        count = self.ground.eps.size
+        steps, rejected = (
+            np.bincount(owner, np.nan_to_num(each), count)
+            for each in (found.steps, found.rejected)
+        )
+        return Effort(steps, rejected, self._waited(plan, found))
+
+    def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
+        """Which jobs their cells can still wait for, and the plan with what is left."""
+        jobs, legs = plan.jobs, plan.legs
+        left = np.where(
+            self._alone(plan), np.inf, SETTINGS.patience - self.effort.waited[jobs.cell]
+        )
+        owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
+        wells = np.abs(legs.guide1 - legs.guide0) / self.ground.eps[jobs.cell[owner]]
+        allowed = left[owner] + SETTINGS.path_steps * wells
+        legs = legs._replace(budget=np.minimum(legs.budget, allowed))
+        return left > 0, plan._replace(legs=legs)
+
+    def _waited(self, plan: BracketPlan, found: SegmentEnds) -> np.ndarray:
+        """What the longest lane has taken beyond its share, for each cell.
+
+        Of one that gave up everything counts: it would take its share again in each march.
+        """
+        cell, steps = plan.jobs.cell, _of_jobs(plan, np.nan_to_num(found.steps))
+        beyond = np.maximum(steps - SETTINGS.path_steps * self._wells(plan), 0.0)
+        gave_up = _of_jobs(plan, np.nan_to_num(found.code)) > 0
+        beyond = np.where(gave_up, steps, beyond)
+        longest = np.zeros(self.ground.eps.size)
+        np.maximum.at(longest, cell, np.where(self._alone(plan), 0.0, beyond))
+        return longest
+
+    def _alone(self, plan: BracketPlan) -> np.ndarray:
+        """Jobs from a known start, in cells that one lane can go through, (jobs,)."""
+        known = np.zeros(plan.jobs.cell.size, dtype=bool)
+        known[: plan.known.size] = plan.known
+        wells = self.path.travel[-1] / self.ground.eps[plan.jobs.cell]
+        return known & (wells <= SETTINGS.affordable)
+
+    def _wells(self, plan: BracketPlan) -> np.ndarray:
+        """Wells of the path that jobs go through, (jobs,)."""
+        ways = _of_jobs(plan, np.abs(plan.legs.guide1 - plan.legs.guide0))
+        return ways / self.ground.eps[plan.jobs.cell]
+
+    def _march(self, plan: BracketPlan, able: np.ndarray) -> SegmentEnds:
+        """Deal the jobs that are `able` to the cores, the longest first.
+
+        Others end as lanes do that give up.
+        """
+        jobs, legs = plan.jobs, plan.legs
+        work = self._wells(plan) + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
+        work = np.where(plan.brief, SETTINGS.fast, 1.0) * work
+        jobs, cells = self._steered(jobs, plan.brief | plan.calm)
+        order = np.argsort(-work, kind="stable")
+        order = order[able[order]]
+        batches = _batches(work[able], self.workers)
+        found = np.full((len(SegmentEnds._fields), legs.start.size), np.nan)
+        # Overwritten by lanes that run.
+        found[SegmentEnds._fields.index("code")] = int(Status.MAX_STEPS)
+        seat = _seats(order.size, batches * self.workers)
+        for batch in range(batches):
+            queues = [order[seat == batch + i * batches] for i in range(self.workers)]
+            for rows, part in self._through(cells, jobs, legs, queues, work):
+                found[:, rows] = part
+            self.report(1 / batches)
+        return SegmentEnds._make(found)
+
+    def _steered(self, jobs: Lanes, brief: np.ndarray) -> tuple[Lanes, LaneCells]:
+        """Jobs that are `brief` in cells of their own, with their tolerance."""
+        if self.brief is None or not brief.any():
+            return jobs, self.cells
+        loosest = np.maximum(self.brief, self.cells.loosest)
+        others = self.cells._replace(tolerance=self.brief, loosest=loosest)
+        moved = jobs.cell + brief * self.brief.size
+        return jobs._replace(cell=moved), concatenated([self.cells, others])
+
+    def _through(self, cells: LaneCells, jobs: Lanes, legs: Segments, queues: list, work):
+        """Legs of each queue and what is found there; the first is run by this thread.
+
+        Beside other cells' lanes two of the pool's would wait for each other.
+        """
+
+        def run(chosen: np.ndarray) -> tuple[np.ndarray, SegmentEnds]:
+            return self._queue(cells, jobs, legs, chosen, work)
+
+        queues = [queue for queue in queues if queue.size]
+        self.lanes_run()
+        beside = [crew("lanes").submit(run, queue) for queue in queues[1:]]
+        found = [run(queue) for queue in queues[:1]]
+        return found + [part.result() for part in beside]
+
+    def _queue(self, cells, jobs, legs, chosen: np.ndarray, work: np.ndarray) -> tuple:
+        """Legs of some jobs, and what is found there."""
+        mine = rows_of(jobs, chosen)
+        # Rows of this queue's legs only, in the order of its jobs.
+        count = mine.past_leg - mine.first_leg
+        past = np.cumsum(count)
+        rows = np.repeat(mine.first_leg - (past - count), count) + np.arange(count.sum())
+        mine = mine._replace(first_leg=past - count, past_leg=past)
+        own = rows_of(legs, rows)
+        return rows, march(
+            self.lanes, cells, mine, own, self.tableau, self.wanted, work[chosen]
+        )
