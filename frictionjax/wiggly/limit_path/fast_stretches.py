@@ -52,8 +52,8 @@ def probes_of(
         np.clip(wanted, SETTINGS.suspects * samples, SETTINGS.most_suspects * samples)
     )
     suspects = np.argpartition(-gaps, count, axis=1)[:, :count]
-    ends = (np.take_along_axis(edges, suspects + k, axis=1) for k in (0, 1))
-    found = [middles, _zoomed(scene, path, *ends)]
+    early, late = (np.take_along_axis(edges, suspects + k, axis=1) for k in (0, 1))
+    found = [middles, _zoomed(scene, path, early, late)]
     known = getattr(scene.load, "steepest", None)
     if known is not None:
         times = np.full((low.size, 1), float(known))
@@ -71,8 +71,8 @@ def nodes_inside(
         nodes_of(0.0, 1.0, SETTINGS.nodes), SETTINGS.inside, 1 - SETTINGS.inside
     )
     times = low[:, None] + (high - low)[:, None] * share
-    ends = np.nextafter(low, high), np.nextafter(high, low)
-    return np.clip(times, *(end[:, None] for end in ends))
+    after, before = np.nextafter(low, high), np.nextafter(high, low)
+    return np.clip(times, after[:, None], before[:, None])
 
 
 def strictly_between(

@@ -17,15 +17,16 @@ def _turns(scene: Scene) -> Array:
 
 def _looked_at(scene: Scene, path: Path) -> Path:
     """With the largest speed on slides, probed, and the smallest stiffness there."""
-    ends = path.touch, path.edges[1:]
-    times = np.concatenate([probes_of(scene, path, *ends), nodes_inside(*ends)], axis=1)
+    low, high = path.touch, path.edges[1:]
+    probes = probes_of(scene, path, low, high)
+    times = np.concatenate([probes, nodes_inside(low, high)], axis=1)
     flat = times.ravel()
     states = states_at(scene, path, flat)
     speeds = slopes_at(scene, path, flat, states).reshape(times.shape)
     count = times.shape[1] - SETTINGS.nodes
     times, seen, known = times[:, :count], speeds[:, :count], speeds[:, count:]
-    unseen = unseen_of(*ends, known, times, seen)
-    long = (path.direction != 0) & (ends[1] - ends[0] > SETTINGS.brief * path.edges[-1])
+    unseen = unseen_of(low, high, known, times, seen)
+    long = (path.direction != 0) & (high - low > SETTINGS.brief * path.edges[-1])
     return path._replace(
         speed=float(np.max(np.abs(speeds))),
         stiffness=float(np.min(stiffness_at(scene, states))),

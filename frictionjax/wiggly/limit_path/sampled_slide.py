@@ -169,22 +169,20 @@ def sampled_slides_of(
     work = primitives[:, WORK] @ basis.T
     tails = _tails(series, fits)
     errors = 2 * half[:, None] * tails[:, :RESIDUAL] / count
-    extreme, surplus = tails[:, 3:6].max(axis=1), tails[:, 6:].max(axis=1)
     return [
-        SampledSlide(*row)
-        for row in zip(
-            low.tolist(),
-            high.tolist(),
-            primitives,
-            whole,
-            times,
-            residual,
-            work,
-            fine,
-            errors[:, WORK].tolist(),
-            errors[:, VISCOUS].tolist(),
-            extreme.tolist(),
-            surplus.tolist(),
-            strict=True,
+        SampledSlide(
+            low=float(low[k]),
+            high=float(high[k]),
+            primitives=primitives[k],
+            whole=whole[k],
+            times=times[k],
+            residual=residual[k],
+            work=work[k],
+            extremes=fine[k],
+            error_work=float(errors[k, WORK]),
+            error_viscous=float(errors[k, VISCOUS]),
+            error_extreme=float(tails[k, 3:6].max()),
+            error_surplus=float(tails[k, 6:].max()),
         )
+        for k in range(low.size)
     ]

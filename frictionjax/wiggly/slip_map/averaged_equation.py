@@ -15,7 +15,8 @@ from jaxtyping import Array
 from ..._compile import Program, in_chunks
 from ...model import Scene
 from .settings import SETTINGS
-from .transit import WellPull, steady_transit_times
+from .transit import steady_transit_times
+from .well_pull import WellPull
 
 _RANGE = np.log(SETTINGS.table_forces)
 
@@ -113,5 +114,5 @@ def lags_of(
     table = np.log(steady_transit_times(track, viscosity, np.exp(logs)))
     number = _grid(wells)
     columns = table, low, track.fold, track.sign, eps, origin, first, time, number
-    found = in_chunks(_march, SETTINGS.slides, (scene,), columns)
-    return Lags(number, *found)
+    force, time, kept = in_chunks(_march, SETTINGS.slides, (scene,), columns)
+    return Lags(number, force, time, kept)

@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 
 from ..._compile import Program, in_chunks
 from ...model import AbstractPotential
+from ...numerics import rows_of
 from ..equation import WiggleFolds
 from .settings import SETTINGS
 
@@ -89,7 +90,7 @@ def lag_forces(
     sides = np.repeat([1.0, -1.0], own.size)
     wells = from_fold_to_fold(potential, np.tile(own, 2), np.concatenate(places), sides)
     both = np.concatenate([which, which + own.size])
-    cells = Wells(*(part[both] for part in wells))
+    cells = rows_of(wells, both)
     needed = _needed(cells, np.log(np.maximum(np.tile(drag, 2), 1e-300)))
     return needed[: eps.size], needed[eps.size :]
 

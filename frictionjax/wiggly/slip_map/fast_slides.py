@@ -11,12 +11,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ...model import Scene
+from ...numerics import concatenated, rows_of
 from ..limit_path import SETTINGS as PATH_SETTINGS
 from ..limit_path import Path
-from .map import Slides, follow
+from .map import follow
+from .recursion import Slides
 from .settings import SETTINGS
-from .transit import WellArc, WellPull, one_transit_time, pull_at, well_pull_of, wiggles_at
+from .transit import one_transit_time, pull_at
 from .transit_times import TransitTimes
+from .well_pull import WellArc, WellPull, well_pull_of, wiggles_at
 
 
 class FastSlide(NamedTuple):
@@ -109,7 +112,7 @@ class Candidates(NamedTuple):
 
     def chosen(self, which: np.ndarray) -> "Candidates":
         """Some of them."""
-        return Candidates(*(column[which] for column in self))
+        return rows_of(self, which)
 
 
 class FastSlideFinder(NamedTuple):
@@ -166,10 +169,10 @@ class FastSlideFinder(NamedTuple):
             self._stretch(some, place, np.ones_like(way), excess),
         )
         # Both at once: each took 4 ms of a sweep for its small programs.
-        both = WellArc(*(np.concatenate(pair) for pair in zip(*parts, strict=True)))
+        both = concatenated(parts)
         track = well_pull_of(self.scene.potential, both, self._rough(some.cell))
         count = some.cell.size
-        return WellPull(*(c[:count] for c in track)), WellPull(*(c[count:] for c in track))
+        return rows_of(track, slice(count)), rows_of(track, slice(count, None))
 
     def _rough(self, cell: np.ndarray) -> float:
         """How roughly passages may be resolved, so that errors that add up stay small."""
@@ -201,16 +204,25 @@ class FastSlideFinder(NamedTuple):
         if not fits.any():
             return found
         able, some, time, well = able[fits], some.chosen(fits), time[fits], well[fits]
-        track = WellPull(*(column[fits] for column in track))
+        track = rows_of(track, fits)
         place, _ = self.fold(some.cell, some.sign)
-        eps, one = self.eps[some.cell], np.ones(able.size)
-        origin = self.states(some.cell, well, place)
         slides = Slides(
-            track, eps, self.viscosity[some.cell], origin, 0 * one, time, some.late
+            track=track,
+            eps=self.eps[some.cell],
+            viscosity=self.viscosity[some.cell],
+            origin=self.states(some.cell, well, place),
+            first=np.zeros(able.size),
+            time=time,
+            late=some.late,
         )
         for i, curve in enumerate(follow(self.scene, slides, self.tail)):
             if curve is not None:
-                sign, piece = float(some.sign[i]), int(some.piece[i])
-                where = float(well[i]), float(place[i]), piece
-                found[able[i]] = FastSlide(curve, sign, *where, _not_measured)
+                found[able[i]] = FastSlide(
+                    curve=curve,
+                    sign=float(some.sign[i]),
+                    well=float(well[i]),
+                    tip=float(place[i]),
+                    piece=int(some.piece[i]),
+                    measured=_not_measured,
+                )
         return found

@@ -97,11 +97,34 @@ def _running(
     return found
 
 
-def energetics(cell, stops, layout, output, energy0, of_path, path, unit, eps):
-    """Dissipation and residual at the outputs, gap at the end, sup of the error, all in J.
+class Energetics(NamedTuple):
+    """Energies of a cell in J: (n,) at the outputs, else numbers.
 
-    And how far surveys may be off, in the dissipation or in that sup, over the dissipation
-    in [0, T].
+    `residual`, `gap`: at the end. `worst`: sup of the error of the dissipation. `lost`: how
+    far surveys may be off, in the dissipation or in that sup, over the dissipation in
+    [0, T].
+    """
+
+    dissipation: np.ndarray
+    running_residual: np.ndarray
+    residual: float
+    gap: float
+    worst: float
+    lost: float
+
+
+def energetics(
+    cell: CellWay,
+    stops: StopValues,
+    layout: Layout,
+    output: np.ndarray,
+    energy0: float,
+    of_path: np.ndarray,
+    path: Path,
+    unit: float,
+    eps: float,
+) -> Energetics:
+    """Energies of a cell at its outputs, and how good they are.
 
     `int eps^gamma z'^2` is the path's dissipation and what the energies and the work of
     z - path add to it; the direct sum is an independent second value. `unit`: the accuracy
@@ -113,12 +136,19 @@ def energetics(cell, stops, layout, output, energy0, of_path, path, unit, eps):
     errors = _errors(cell, stops, path, unit)
     if _is_summed(cell, errors, path, eps):
         spent = running[VISCOUS]
-        rest = _without_slips(cell, stops, energy0, beyond, errors)
+        gap, worst, lost = _without_slips(cell, stops, energy0, beyond, errors)
     else:
         energy = np.where(output >= 0, stops.energy[output], energy0)
         spent = of_path + energy0 - energy - running[WORK]
-        rest = _with_slips(cell, stops, energy0, beyond, path)
-    return spent, running[RESIDUAL], cell.totals[RESIDUAL, -1], *rest
+        gap, worst, lost = _with_slips(cell, stops, energy0, beyond, path)
+    return Energetics(
+        dissipation=spent,
+        running_residual=running[RESIDUAL],
+        residual=cell.totals[RESIDUAL, -1],
+        gap=gap,
+        worst=worst,
+        lost=lost,
+    )
 
 
 def _errors(cell: CellWay, stops: StopValues, path: Path, unit: float) -> Errors:
@@ -183,10 +213,10 @@ def _second_opinion(cell: CellWay, stops: StopValues, final: float) -> float:
     return abs(float(cell.totals[VISCOUS, -1]) - final)
 
 
-def no_energetics(size: int) -> tuple:
+def no_energetics(size: int) -> Energetics:
     """What `energetics` would give, all NaN, and nothing that surveys spoil."""
     nothing = np.full(size, np.nan)
-    return nothing, nothing, np.nan, np.nan, np.nan, 0.0
+    return Energetics(nothing, nothing, np.nan, np.nan, np.nan, lost=0.0)
 
 
 def _spent(cell: CellWay, stops: StopValues, path: Path) -> float:

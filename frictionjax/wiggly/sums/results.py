@@ -1,10 +1,11 @@
 """From what lanes found to the values of each cell."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...model import Scene
+from ...numerics import stacked
 from ..enclosure import BracketValues, CellBounds, Layout
 from ..equation import Status
 from ..lanes import Sums
@@ -98,38 +99,44 @@ def evaluate(
             surveys=[surveys[i] for i in mine],
             stops=stops,
         )
-        *energies, lost = no_energetics(ts.size)
+        output = layout.output[c]
+        energies = no_energetics(ts.size)
         if wanted.energies:
-            *energies, lost = energetics(
+            energies = energetics(
                 cell=cell,
                 stops=stops,
                 layout=layout,
-                output=layout.output[c],
+                output=output,
                 energy0=energy0[c],
                 of_path=of_path,
                 path=path,
                 unit=accuracy * eps[c],
                 eps=eps[c],
             )
-        output = layout.output[c]
-        z = np.where(output >= 0, stops.z[output], z_start[c])
         off = deviations(cell, stops) if wanted.extremes else NOT_ASKED
-        rows.append(
-            (
-                z,
-                *energies,
-                off.far,
-                off.outside,
-                np.where(output >= 0, found.how[output], 0),
-                np.where(output >= 0, found.gap[output], 0.0),
-                _share(cell, path, whole) if layout.whole else np.nan,
-                off.error,
-                lost,
-                _status(cell, stops, layout, found, output, path, eps[c], wanted.energies),
-            )
-        )
-    columns = [np.array(column) for column in zip(*rows, strict=True)]
-    return CellResults._make([*columns, found.steps, found.rejected, np.zeros(count)])
+        used = np.concatenate([cell.chain, output[output >= 0], *_periods(cell)])
+        unbalanced = wanted.energies and not _is_balanced(cell, eps[c] * path.width)
+        row: Any = {
+            "z": np.where(output >= 0, stops.z[output], z_start[c]),
+            "dissipation": energies.dissipation,
+            "running_residual": energies.running_residual,
+            "residual": energies.residual,
+            "dissipation_gap": energies.gap,
+            "dissipation_error": energies.worst,
+            "sup_error": off.far,
+            "strip_excess": off.outside,
+            "how": np.where(output >= 0, found.how[output], 0),
+            "gap": np.where(output >= 0, found.gap[output], 0.0),
+            "sampled": _share(cell, path, whole) if layout.whole else np.nan,
+            "survey_error": off.error,
+            "survey_work_error": energies.lost,
+            "status": _status(found.arrivals.code[used], unbalanced),
+            "steps": found.steps[c],
+            "rejected": found.rejected[c],
+            "tolerance": 0.0,
+        }
+        rows.append(CellResults(**row))
+    return stacked(rows)
 
 
 def _share(cell: CellWay, path: Path, whole: float) -> float:
@@ -137,17 +144,20 @@ def _share(cell: CellWay, path: Path, whole: float) -> float:
     return float(covered / whole) if whole > 0 else 0.0
 
 
-def _status(cell, stops, layout, found, output, path, eps, balanced) -> int:
-    used = np.concatenate(
-        [cell.chain, output[output >= 0], *(s.stops for s in cell.slides)]
-    )
-    codes = found.arrivals.code[used]
+def _periods(cell: CellWay) -> list[np.ndarray]:
+    """Stops at which the periods end that are measured inside slides."""
+    return [slide.stops for slide in cell.slides]
+
+
+def _is_balanced(cell: CellWay, slip: float) -> bool:
+    """Whether the energies add up; `slip`: energy of one, J."""
+    _, viscous, residual = cell.totals[:, -1]
+    return bool(residual <= SETTINGS.residual * (slip + viscous))
+
+
+def _status(codes: np.ndarray, unbalanced: bool) -> int:
+    """What lanes ended with at the stops that are used."""
     bad = codes[codes != 0]
     if bad.size:
         return int(bad[0]) if np.isfinite(bad[0]) else int(Status.NOT_FINITE)
-    if balanced:
-        slip = eps * path.width
-        _, viscous, residual = cell.totals[:, -1]
-        if not residual <= SETTINGS.residual * (slip + viscous):
-            return int(Status.UNBALANCED)
-    return int(Status.OK)
+    return int(Status.UNBALANCED if unbalanced else Status.OK)

@@ -18,16 +18,10 @@ from frictionjax.wiggly.equation.landscape import Landscape, landscape
 from frictionjax.wiggly.limit_path.find_path import path_of
 from frictionjax.wiggly.plan import lane_scene, planned
 from frictionjax.wiggly.slip_map import map as slip_map
-from frictionjax.wiggly.slip_map.transit import (
-    WellArc,
-    pull_at,
-    transit_times,
-    well_pull_of,
-)
-from frictionjax.wiggly.slip_map.transit_times import (
-    ManyTransitTimes,
-    TransitTimes,
-)
+from frictionjax.wiggly.slip_map import recursion
+from frictionjax.wiggly.slip_map.transit import pull_at, transit_times
+from frictionjax.wiggly.slip_map.transit_times import ManyTransitTimes, TransitTimes
+from frictionjax.wiggly.slip_map.well_pull import WellArc, well_pull_of
 from frictionjax.wiggly.ways import Way
 
 
@@ -101,7 +95,7 @@ def test_curves_obey_the_recursion():
     stretch = WellArc(eps * one, place * one, one, one, force * one, 0.3 * excess * one)
     track = well_pull_of(scene.potential, stretch)
     viscosity = one * eps**gamma
-    slides = slip_map.Slides(
+    slides = recursion.Slides(
         track, eps * one, viscosity, state * one, 0 * one, time * one, 0.75 * one
     )
     (curve,) = slip_map.follow(scene, slides, 1e-6)
@@ -210,7 +204,7 @@ def test_small_eps_is_no_harder(name, gamma):
 
 def test_errors_of_a_wrong_map_are_seen(monkeypatch):
     """Passages a thousandth too long: lanes disagree, and no bracket closes."""
-    right = slip_map.transit_times
+    right = recursion.transit_times
 
     def wrong(*args):
         found = right(*args)
@@ -219,7 +213,7 @@ def test_errors_of_a_wrong_map_are_seen(monkeypatch):
     scene, eps, gamma = SCENES["sine"], 1e-6, 0.5
     none_alone = engine.ENCLOSURE_SETTINGS._replace(affordable=0.0)
     monkeypatch.setattr(engine, "ENCLOSURE_SETTINGS", none_alone)
-    monkeypatch.setattr(slip_map, "transit_times", wrong)
+    monkeypatch.setattr(recursion, "transit_times", wrong)
     found = fx.solve(scene, eps, gamma, TIMES)
     assert found.status != fx.Status.OK or np.max(found.stats["bracket"]) > 5e-4
 
