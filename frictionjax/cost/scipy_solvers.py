@@ -2,16 +2,19 @@
 
 import itertools
 import time
+from collections.abc import Callable
 from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 from scipy import integrate as scipy_integrate
 
+from .._checks import Real
 from .._compile import Program
 from ..model import Scene, coefficients_jit
-from ..wiggly import Status, field_of
+from ..wiggly import Status, TipField, field_of
 from .settings import SETTINGS
 from .step_record import StepRecord
 
@@ -37,7 +40,7 @@ class Run(NamedTuple):
     record: StepRecord | None = None
 
 
-def _rate_pair(field, t, state):
+def _rate_pair(field: TipField, t: Real, state: Array) -> Array:
     """`y'` and `eps^gamma z'^2`."""
     force, stretch = field.driving_force(t, state[0])
     pace = force / (field.viscosity * field.eps * stretch)
@@ -45,17 +48,17 @@ def _rate_pair(field, t, state):
 
 
 @Program
-def _rates(field, t, state):
+def _rates(field: TipField, t: Real, state: Array) -> Array:
     return _rate_pair(field, t, state)
 
 
 @Program
-def _jacobian(field, t, state):
+def _jacobian(field: TipField, t: Real, state: Array) -> Array:
     return jax.jacfwd(lambda s: _rate_pair(field, t, s))(state)
 
 
 @Program
-def _states(field, tips):
+def _states(field: TipField, tips: Array) -> Array:
     return field.state(tips)
 
 
@@ -87,14 +90,14 @@ def run_scipy(
     edges = np.union1d(np.asarray(scene.turning_points()), [0.0, float(ts[-1])])
     edges = edges[(edges >= 0) & (edges <= ts[-1])]
 
-    def rates(t, y):
+    def rates(t: float, y: np.ndarray) -> np.ndarray:
         record.looks.append(t)
         return called(_rates, t, y)
 
-    def jacobian(t, y):
+    def jacobian(t: float, y: np.ndarray) -> np.ndarray:
         return called(_jacobian, t, y)
 
-    def called(fn, t, y):
+    def called(fn: Callable, t: float, y: np.ndarray) -> np.ndarray:
         called_at = time.perf_counter()
         found = np.asarray(fn(field, np.float64(t), y))
         record.calls += time.perf_counter() - called_at

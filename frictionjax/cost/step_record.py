@@ -4,6 +4,7 @@ from typing import Any
 
 import jax
 import numpy as np
+from jaxtyping import Array
 
 from .._compile import Program, in_chunks
 from ..wiggly import TipField, advance, arrival, at_rest
@@ -60,11 +61,11 @@ class StepRecord:
 
 @Program
 def _residuals(field: TipField, times, tips):
-    def one(time, tip):
+    def one(time: Array, tip: Array) -> Array:
         start, end = (field.point(t, y) for t, y in zip(time, tip, strict=True))
         step = time[1] - time[0]
         end = arrival(field, time[0], step, end)
-        ends = time[0], step, *tip, start, end
-        return advance(field, at_rest(), *ends).residual
+        balance = advance(field, at_rest(), time[0], step, tip[0], tip[1], start, end)
+        return balance.residual
 
     return jax.vmap(one)(times, tips)

@@ -37,7 +37,7 @@ class Study(NamedTuple):
     dataset: xr.Dataset
     curves: xr.Dataset
 
-    def plot(self):
+    def plot(self) -> Any:
         """Errors against eps with the fitted orders, as a matplotlib Figure."""
         from ..plot import draw_convergence
 

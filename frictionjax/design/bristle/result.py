@@ -186,7 +186,7 @@ def intervals_text(pairs: Any) -> str:
 
 @Program
 def _curve(free: FreeParameter, bristle, slopes, which, values):
-    def one(value):
+    def one(value: Real) -> Real:
         return quantity_of(on_slopes(free.put(bristle, value), slopes), which)
 
     return jax.vmap(jax.vmap(one))(values)

@@ -94,7 +94,7 @@ class SlideProfileFit(DesignResult):
             return f"{asked}: {self.status.message} in {self.steps} designs; {shown}"
         return f"{asked}: not reached; {shown}, in the limit: {self.fit.message}"
 
-    def plot(self):
+    def plot(self) -> Any:
         """The surface, beside the limit's, and how it was found."""
         from ...plot import draw_slide_profile_fit
 

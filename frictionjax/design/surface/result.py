@@ -161,7 +161,7 @@ class ProfileFit(DesignResult):
         cos, sin = (np.asarray(rows) for rows in heights_of_waves(waves))
         return [Fourier(cos[i], sin[i]) for i in np.flatnonzero(np.asarray(good))]
 
-    def plot(self):
+    def plot(self) -> Any:
         """The surface, what is left open, the starts and the targets, as a Figure."""
         from ...plot import draw_profile_fit
 

@@ -120,7 +120,7 @@ class TraceFit(DesignResult):
         """Of the derivatives of the samples used; see `identifiability`."""
         return self.identifiability.singular_values
 
-    def plot(self, truth: Any = None):
+    def plot(self, truth: Any = None) -> Any:
         """Data, fit, residuals and slopes with their errors, as a Figure.
 
         `truth`: a profile to draw beside the one found.

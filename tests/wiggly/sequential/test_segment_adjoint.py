@@ -75,8 +75,14 @@ def test_a_batch_is_its_lanes():
     np.testing.assert_array_equal(jax.vmap(slope)(rates), [slope(rate) for rate in rates])
 
 
-@pytest.mark.parametrize(("room", "again"), [(10, np.inf), (11, 0.05)])
-def test_no_derivative_where_room_runs_out(monkeypatch, room, again):
+@pytest.mark.parametrize(("room", "enough"), [(10, False), (11, True)])
+def test_no_derivative_where_room_for_pieces_runs_out(monkeypatch, room, enough):
+    """There are eleven."""
     monkeypatch.setattr(travel, "SETTINGS", travel.SETTINGS._replace(most_pieces=room))
-    slope = jax.grad(lambda rate: values(rate, *POINT[1:], again).y[-1])(RATE)
+    slope = jax.grad(lambda rate: values(rate, *POINT[1:]).y[-1])(RATE)
+    assert np.isfinite(slope) == enough
+
+
+def test_no_derivative_where_a_piece_does_not_reach_its_end_again():
+    slope = jax.grad(lambda rate: values(rate, *POINT[1:], again=0.05).y[-1])(RATE)
     assert np.isnan(slope)
