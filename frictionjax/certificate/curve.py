@@ -11,6 +11,7 @@ from jaxtyping import Array
 from .._checks import Real
 from ..loads import AbstractLoad
 from ..model import AbstractPotential, Scene
+from ..numerics import concatenated, rows_of
 from ..supports import AbstractSupport
 from .settings import SETTINGS
 
@@ -157,8 +158,7 @@ def _chunk(force: Force, viscosity: Real, ts, z) -> tuple[CurveSamples, Interval
     left = jax.tree_util.tree_map(lambda v: v[:-1], samples)
     right = jax.tree_util.tree_map(lambda v: v[1:], samples)
     ends = (ts[:-1], ts[1:], left, right)
-    between = jax.vmap(lambda *e: _interval(force, viscosity, e))(*ends)
-    return samples, between
+    return samples, jax.vmap(lambda e: _interval(force, viscosity, e))(ends)
 
 
 def force_of(scene: Scene, eps: Real) -> Force:
@@ -183,12 +183,6 @@ def along_curve(force: Force, viscosity: float, ts, z) -> tuple[CurveSamples, In
         at, on = _chunk(force, traced, times, np.pad(z[piece], room, mode="edge"))
         last = start + SETTINGS.chunk >= ts.size - 1
         keep = count if last else count - 1
-        samples.append(jax.tree_util.tree_map(lambda v, k=keep: np.asarray(v)[:k], at))
-        between.append(
-            jax.tree_util.tree_map(lambda v, k=count: np.asarray(v)[: k - 1], on)
-        )
-    return CurveSamples(*_join(samples)), Intervals(*_join(between))
-
-
-def _join(pieces: list[tuple]) -> list[np.ndarray]:
-    return [np.concatenate(parts) for parts in zip(*pieces, strict=True)]
+        samples.append(rows_of(at, slice(keep)))
+        between.append(rows_of(on, slice(count - 1)))
+    return concatenated(samples), concatenated(between)

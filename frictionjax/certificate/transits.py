@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from ..numerics import Extrema, periodic_extrema
+from ..numerics import Extrema, periodic_extrema, rows_of
 from .curve import CurveSamples, Force, Intervals
 from .settings import SETTINGS
 
@@ -40,7 +40,7 @@ def transits(well: np.ndarray, inside: np.ndarray, place: float, band: float) ->
 
 def along(passage: Transits, sign: int) -> Transits:
     """Those in one direction."""
-    return Transits(*(v[passage.sign == sign] for v in passage))
+    return rows_of(passage, passage.sign == sign)
 
 
 def over_windows(operation: np.ufunc, values: np.ndarray, first, last) -> np.ndarray:

@@ -1,7 +1,7 @@
 """Order of convergence by regression, with an interval that says what the data can."""
 
 import enum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -111,9 +111,9 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
 
 def _no_fit(points: int, floor: int, failed: int) -> Fit:
     nan = float("nan")
-    verdict = Verdict.TOO_FEW_POINTS
-    counts = points, 0, floor, failed, verdict
-    return Fit(nan, nan, nan, nan, nan, nan, *counts, nan, nan, nan, nan)
+    values: dict[str, Any] = dict.fromkeys(Fit._fields, nan)
+    values |= {"points": points, "preasymptotic": 0, "floor": floor, "failed": failed}
+    return Fit(**values | {"verdict": Verdict.TOO_FEW_POINTS})
 
 
 def plain_slope(eps: Float[np.ndarray, " n"], errors: Float[np.ndarray, " n"]) -> float:

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.special import stdtrit  # scipy.stats takes 0.2 s to import
 
+from ..numerics import concatenated
 from .settings import SETTINGS
 
 _LOGARITHMS = np.geomspace(*SETTINGS.logarithms)
@@ -81,7 +82,7 @@ def asymptote(
             np.linspace(c[0], c[1], SETTINGS.cells_c),
         )
         new = _powers(x, y, grid[0].ravel(), _from_even(grid[1].ravel()))
-        powers = _Curves(*(np.concatenate(two) for two in zip(powers, new, strict=True)))
+        powers = concatenated([powers, new])
         judged = _judged(powers, x.size, line, scatter)
         near = judged.away <= judged.limit
         q = _around(np.log(powers.q[near]), q, SETTINGS.cells_q)

@@ -108,8 +108,8 @@ def measure_machine() -> MachineCost:
     scene = _example()
     rows, seconds, compilation = [], [], 0.0
     for eps, gamma, method in _RUNS:
-        cells = cells_of(eps, gamma)
-        work = workload(scene, *cells, SETTINGS.machine_times, 1e-3, method)
+        lane_eps, lane_gamma = cells_of(eps, gamma)
+        work = workload(scene, lane_eps, lane_gamma, SETTINGS.machine_times, 1e-3, method)
         assert work is not None
         best, longer = _clocked(scene, eps, gamma, method)
         rows.append(_amounts(work))

@@ -112,8 +112,15 @@ def _values(
     truth = column.truth
     errors = dict.fromkeys(MEASURES, float("nan"))
     if run.status in ENDED:  # part of a trajectory is no trajectory
-        true = truth.z, truth.dissipation, truth.in_slip
-        errors = errors_of(run.z, run.dissipation, *true, column.when, column.eps)
+        errors = errors_of(
+            run.z,
+            run.dissipation,
+            truth.z,
+            truth.dissipation,
+            truth.in_slip,
+            column.when,
+            column.eps,
+        )
     wrong = run.status == Status.OK and _is_wrong(errors, truth.errors, accuracy)
     return (
         times
@@ -154,8 +161,8 @@ def _measured(
         if given_up:
             cells.append(_NOTHING)
         else:
-            what = scene, eps, gamma, when.ts, accuracy, method, effort.seconds
-            found, times = timed(runner(*what), effort.repeats, effort.seconds, first)
+            run = runner(scene, eps, gamma, when.ts, accuracy, method, effort.seconds)
+            found, times = timed(run, effort.repeats, effort.seconds, first)
             first = None
             if method in SCIPY:
                 found = told(found, scene, eps, gamma, method)

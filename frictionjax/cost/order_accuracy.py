@@ -104,15 +104,16 @@ def order_cost(
     ts = float(scene.duration) * np.linspace(0, 1, SETTINGS.pilot_times)
     data = sweep(scene, pilot, gamma, ts, accuracy, dissipation=False).isel(gamma=0)
     errors = data.sup_error.where(data.status == int(Status.OK)).values
-    measured = _Pilot(pilot, errors, accuracy * pilot, *_predicted(data, pilot, gamma))
+    predicted, law = _predicted(data, pilot, gamma)
+    measured = _Pilot(pilot, errors, accuracy * pilot, predicted, law)
     grids = []
     for start, stop, points in _candidates():
         found = _intervals(measured, start, stop, points)
         if found is not None:
-            ends = float(pilot[start]), float(pilot[stop])
-            some = np.geomspace(*ends, points)
+            largest, least = float(pilot[start]), float(pilot[stop])
+            some = np.geomspace(largest, least, points)
             cost = predict_cost(scene, some, gamma, accuracy, measure=measure)
-            grids.append(EpsGrid(*ends, points, **found, seconds=cost.seconds))
+            grids.append(EpsGrid(largest, least, points, **found, seconds=cost.seconds))
     return cheapest_grid(grids, float(within))
 
 
@@ -140,8 +141,14 @@ class _Pilot(NamedTuple):
     def order(self, row: list[int]) -> Fit:
         """The order from these of its eps, as `study` gives it."""
         predicted = None if self.predicted is None else self.predicted[row]
-        known = self.eps[row], self.errors[row], self.uncertainty[row]
-        return fit_with_law(*known, predicted, self.law, STATE).fit
+        return fit_with_law(
+            eps=self.eps[row],
+            errors=self.errors[row],
+            uncertainty=self.uncertainty[row],
+            predicted=predicted,
+            law=self.law,
+            trust=STATE,
+        ).fit
 
 
 def _predicted(data: Any, pilot: np.ndarray, gamma: float) -> tuple[np.ndarray | None, Law]:

@@ -71,13 +71,13 @@ def _seconds(value: float) -> str:
 def _predicted(
     scene: Scene, eps, gamma, times: int, accuracy, method, machine: MachineCost
 ) -> CostPrediction:
-    cells = cells_of(eps, gamma)
-    work = workload(scene, *cells, times, accuracy, method)
-    values = 2.0 * cells[0].size * times
+    lane_eps, lane_gamma = cells_of(eps, gamma)
+    work = workload(scene, lane_eps, lane_gamma, times, accuracy, method)
+    values = 2.0 * lane_eps.size * times
     if work is None:
         nothing = np.full((gamma.size, eps.size), np.nan)
         return CostPrediction(np.nan, nothing, np.nan, machine.memory, machine.measured)
-    each = [machine.seconds(_one(work, i)) for i in range(cells[0].size)]
+    each = [machine.seconds(_one(work, i)) for i in range(lane_eps.size)]
     rows = SETTINGS.leg_bytes * work.legs.sum() + SETTINGS.job_bytes * work.jobs.sum()
     memory = machine.memory + rows + SETTINGS.value_bytes * values
     return CostPrediction(

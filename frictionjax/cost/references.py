@@ -85,8 +85,16 @@ def _one_by_one(scene: Scene, eps, gamma, ts, asked) -> tuple:
 
 def _in_lanes(tableau: Tableau, method: str, scene: Scene, eps, gamma, ts, asked) -> tuple:
     """The same by lanes with the scheme of a tableau."""
-    cell = np.array([eps]), np.array([gamma])
-    found = integrate_cells(scene, *cell, ts, asked, method, suprema=False, tableau=tableau)
+    found = integrate_cells(
+        scene=scene,
+        eps=np.array([eps]),
+        gamma=np.array([gamma]),
+        ts=ts,
+        accuracy=asked,
+        method=method,
+        suprema=False,
+        tableau=tableau,
+    )
     if found is None:
         return None, None, Status.TOO_MANY_TURNS
     return found.z[0], found.dissipation[0], int(found.status[0])

@@ -113,8 +113,8 @@ def require_start_in_strip(scene: Scene) -> None:
     if not is_concrete(scene):
         return
     found = coefficients_jit(scene.potential)
-    rho = float(found.rho_plus), float(found.rho_minus)
-    _, lower, upper = (float(v[0]) for v in strips_at(scene, *rho, np.zeros(1)))
+    strips = strips_at(scene, float(found.rho_plus), float(found.rho_minus), np.zeros(1))
+    _, lower, upper = (float(v[0]) for v in strips)
     slack = 4 * float(np.finfo(float).eps) * max(abs(lower), abs(upper))
     z0 = float(scene.z0)
     low, high = no_less(lower, 9), no_more(upper, 9)

@@ -39,7 +39,7 @@ class Noises(NamedTuple):
 def noises(potential: GivenPotential, eps: np.ndarray) -> Noises:
     """Values of W and Q looked at, at every eps (n,)."""
     found = in_chunks(_noises, SETTINGS.noises, (potential,), (eps,))
-    return Noises(*(np.asarray(part) for part in found))
+    return Noises._make(found)
 
 
 def require_digits(found: Noises, eps: np.ndarray) -> None:

@@ -106,8 +106,15 @@ def require_slope_error(given: Any, name: str = "slope_error") -> None:
 
 def with_taken(slopes: tuple[float, float], error: Any, taken: Any) -> SlopeErrors:
     """Errors that a profile keeps; `taken`: None without a filter."""
-    taken = (0.0, 0.0) if taken is None else map(float, taken)
-    return SlopeErrors(*slopes, *map(float, error), *taken)
+    taken_plus, taken_minus = (0.0, 0.0) if taken is None else taken
+    return SlopeErrors(
+        omega_plus=slopes[0],
+        omega_minus=slopes[1],
+        error_plus=float(error[0]),
+        error_minus=float(error[1]),
+        taken_plus=float(taken_plus),
+        taken_minus=float(taken_minus),
+    )
 
 
 def of_waves(slopes: tuple[float, float], waves: SampledWaves, samples=None) -> SlopeErrors:
@@ -125,7 +132,7 @@ def of_waves(slopes: tuple[float, float], waves: SampledWaves, samples=None) -> 
     below = None if samples is None else -samples
     error_plus = error_of(slopes[0], steepest(waves, samples)) + taken[0]
     error_minus = error_of(-slopes[1], steepest(waves.mirrored(), below)) + taken[1]
-    return SlopeErrors(*slopes, error_plus, error_minus, *taken)
+    return with_taken(slopes, (error_plus, error_minus), taken)
 
 
 def of_heights(

@@ -41,8 +41,8 @@ def limit_orbit(
     if rests <= SETTINGS.same_gamma:
         eps = SETTINGS.small_drop * well.range / stiffness
         orbit = periodic_orbit(well, stiffness * eps, speed * eps**gamma)
-        scaled = (values / eps + well.shift for values in orbit)
-        return LimitOrbit(Orbit(*scaled), 1.0, BETWEEN)
+        scaled = Orbit._make(values / eps + well.shift for values in orbit)
+        return LimitOrbit(scaled, 1.0, BETWEEN)
     ways = _slips(well)
     top = well.shift + 0.0 * stiffness
     mean = top - 0.5 * np.sum(ways**2) * stiffness

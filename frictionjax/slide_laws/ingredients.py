@@ -131,10 +131,10 @@ def _moments(
     Speed is that of the strip's edge, so it is right in a stretch in which the limit begins
     to move too; stiffness is that of the edges' states, found again at the limit's own.
     """
-    rho = float(found.rho_plus), float(found.rho_minus)
     ends = np.linspace(0.0, float(scene.duration), SETTINGS.moments)
     times = np.unique(np.concatenate([ends, turns]))
-    load, lower, upper = strips_at(scene, *rho, times)
+    rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
+    load, lower, upper = strips_at(scene, rho_plus, rho_minus, times)
     length, pull = np.diff(times), np.diff(load)
     first = np.where(pull > 0, lower[:-1], upper[:-1])
     last = np.where(pull > 0, lower[1:], upper[1:])

@@ -30,8 +30,9 @@ def periodic_orbit(well: WellForce, drop: np.ndarray, drag: np.ndarray) -> Orbit
     place = _nodes(well, scale, SETTINGS.orbit_nodes * _tops(well))
     gap = gap_at(well, place)
     grids = [_cycle(place[::n], gap[::n], drop, drag, scale) for n in (1, 2, 4)]
-    found = ((8 * a - 6 * b + c) / 3 for a, b, c in zip(*grids, strict=True))
-    return Orbit(*(values.reshape(shape) for values in found))
+    return Orbit._make(
+        ((8 * a - 6 * b + c) / 3).reshape(shape) for a, b, c in zip(*grids, strict=True)
+    )
 
 
 def excess_scale(well: WellForce, drop: np.ndarray, drag: np.ndarray) -> np.ndarray:

@@ -140,7 +140,7 @@ def _forces(slide: _Slide, eps: np.ndarray, gamma: np.ndarray) -> Orbit:
     rows = _weights(np.log(stiffness), np.log(slide.stiffness))
     columns = _weights(speed, slide.speed)
     shift = slide.well.shift * eps[:, None]
-    return Orbit(*(_between(values, rows, columns) + shift for values in nodes))
+    return Orbit._make(_between(values, rows, columns) + shift for values in nodes)
 
 
 def _weights(nodes: np.ndarray, asked: np.ndarray) -> np.ndarray:
@@ -206,7 +206,7 @@ def _wells(data: SlideData, slides: list[_Slide]) -> dict[int, WellForce]:
 def _leading(limit: LimitOrbit, order: float) -> Orbit:
     """Of what is of higher order than the other direction nothing is left."""
     share = 1.0 if limit.order <= order + SETTINGS.tie else 0.0
-    return Orbit(*(share * values[None, :] for values in limit.force))
+    return Orbit._make(share * values[None, :] for values in limit.force)
 
 
 def _strip_law(

@@ -52,11 +52,18 @@ def well_force(
     gap = np.concatenate(
         [left.gap[::-1], [min(left.gap[0], right.gap[0]) * 1e-3], right.gap]
     )
-    closed = np.append(place, place[0] + 1.0), np.append(gap, gap[0])
+    place, gap = np.append(place, place[0] + 1.0), np.append(gap, gap[0])
     log_forces = _FORCES + np.log(width)
-    times = passage_time(*closed, np.exp(log_forces))
-    shift, rho = float(sign * change[top]), float(held[top])
-    return WellForce(*closed, shift, flatness, rho, width, log_forces, np.log(times))
+    return WellForce(
+        place=place,
+        gap=gap,
+        shift=float(sign * change[top]),
+        flatness=flatness,
+        rho=float(held[top]),
+        range=width,
+        log_forces=log_forces,
+        log_times=np.log(passage_time(place, gap, np.exp(log_forces))),
+    )
 
 
 class _Side(NamedTuple):

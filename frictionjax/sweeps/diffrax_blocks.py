@@ -9,6 +9,7 @@ import numpy as np
 from .._checks import cells_of, with_nan
 from .._compile import crew, progress_bar
 from ..model import Scene
+from ..numerics import concatenated, rows_of
 from .diffrax_cells import Cell, run_block
 
 # Lanes of one compiled block. 8 cost 1.0 us a lane and step, 32 cost 0.8, but wide blocks
@@ -79,7 +80,7 @@ def _run(scene, blocks, ts, accuracy, solver, balanced, progress: bool) -> Cell:
             bar.update(block.cost / total)
         bar.update(bar.total - bar.n)
     order = np.argsort(np.concatenate([b.cells for b in [blocks[-1], *blocks[:-1]]]))
-    return jax.tree_util.tree_map(lambda *parts: np.concatenate(parts)[order], *done)
+    return rows_of(concatenated(done), order)
 
 
 def _cell_values(cells: Cell) -> dict[str, np.ndarray]:

@@ -42,8 +42,9 @@ class LimitWatch(AbstractObserver):
         load = self.scene.load(t)
         lower, upper = strip(self.scene.support, self.found, load)
         limit = play_step(self.scene.support, self.found, memory.z, load)
-        law = self.found.rho_plus, self.found.rho_minus
-        spent = memory.spent + dissipation_potential(*law, limit - memory.z)
+        spent = memory.spent + dissipation_potential(
+            self.found.rho_plus, self.found.rho_minus, limit - memory.z
+        )
         outside = jnp.maximum(lower - z, z - upper)
         return Deviation(
             z=limit,

@@ -34,8 +34,17 @@ def _run_lanes(
         def report(share: float) -> None:
             bar.update(min(share, bar.total - bar.n))
 
-        wanted = accuracy, method, balanced, report, suprema
-        found = integrate_cells(scene, lane_eps, lane_gamma, np.asarray(ts), *wanted)
+        found = integrate_cells(
+            scene=scene,
+            eps=lane_eps,
+            gamma=lane_gamma,
+            ts=np.asarray(ts),
+            accuracy=accuracy,
+            method=method,
+            balanced=balanced,
+            report=report,
+            suprema=suprema,
+        )
     if found is None:
         return None
     values = found._asdict()
@@ -107,8 +116,9 @@ def sweep(
     balanced, wanted = bool(dissipation), float(as_real(accuracy))
     values, name = None, str(method)
     if solver is None:
-        options = wanted, name, balanced, progress, bool(suprema)
-        values = _run_lanes(scene, eps, gamma, ts, *options)
+        values = _run_lanes(
+            scene, eps, gamma, ts, wanted, name, balanced, progress, bool(suprema)
+        )
     if values is None:
         from .diffrax_blocks import run_blocks
 
@@ -146,8 +156,8 @@ def _general(method: Any) -> Any:
 
 def _limit_values(scene: Scene, limit: LimitSolution) -> dict[str, np.ndarray]:
     found = coefficients_jit(scene.potential)
-    rho = float(found.rho_plus), float(found.rho_minus)
-    load, lower, upper = strips_at(scene, *rho, np.asarray(limit.ts))
+    rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
+    load, lower, upper = strips_at(scene, rho_plus, rho_minus, np.asarray(limit.ts))
     values = {
         "z_limit": limit.z,
         "dissipation_limit": limit.dissipation,

@@ -115,7 +115,7 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
             self.admissible,
             self.reachable,
             self.code[index],
-            Pulled(*(part[index] for part in self.pulled)),
+            Pulled._make(part[index] for part in self.pulled),
             self.slopes,
             self.profile,
             self.free,

@@ -6,6 +6,7 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ...bristles import AbstractBristle
@@ -19,6 +20,10 @@ class AbstractLaw(eqx.Module):
     @abc.abstractmethod
     def at(self, free: Float[Array, " free"]) -> Geometry:
         """`a`, `alpha` and the slopes allowed; `free` in shares of the bounds."""
+
+    def known_at(self, free: Float[Array, " free"]) -> Geometry:
+        """The same as NumPy arrays."""
+        return jax.tree_util.tree_map(np.asarray, self.at(free))
 
     def coefficients(
         self, plus: Any, minus: Any, free: Float[Array, " free"]

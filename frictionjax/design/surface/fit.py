@@ -9,6 +9,7 @@ import numpy as np
 
 from ..._checks import require, require_flags, require_real, require_whole, with_nan
 from ..._compile import padded_size
+from ...numerics import stacked
 from ..common import (
     AbstractLaw,
     FixedLaw,
@@ -184,7 +185,7 @@ def _law(
     for name in given:
         require(name in names, "bounds", name, f"names in free = {names}")
     if not names:
-        return FixedLaw(Geometry(*(np.stack(one) for one in zip(*known, strict=True))))
+        return FixedLaw(stacked(known))
     distinct: list[Any] = []
     which = [_index_of(target.bristle, distinct) for target in targets]
     bristles = tuple(with_arrays(bristle) for bristle in distinct)
@@ -216,7 +217,7 @@ def _own_geometry(law: FixedLaw | FreeLaw) -> Geometry:
     """Of the bristles as they are."""
     if isinstance(law, FixedLaw):
         return law.known
-    return Geometry(*map(np.asarray, law.at(law.shares())))
+    return law.known_at(law.shares())
 
 
 def _index_of(bristle: Any, distinct: list[Any]) -> int:
@@ -257,7 +258,7 @@ def _require_geometry(law: FreeLaw, names: list[str]) -> None:
         for end in (0.0, 1.0):
             share = own.copy()
             share[index] = end
-            known = Geometry(*map(np.asarray, law.at(jnp.asarray(share))))
+            known = law.known_at(jnp.asarray(share))
             good = np.all(np.isfinite(known.a)) and np.all(np.isfinite(known.alpha))
             value = float(law.values(jnp.asarray(share))[index])
             require(good, f"bounds of {number.name!r}", value, "a bristle with that number")

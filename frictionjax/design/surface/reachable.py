@@ -6,6 +6,7 @@ import jax
 import numpy as np
 
 from ..._checks import as_text, no_less, no_more
+from ...numerics import rows_of
 from ..common import AbstractLaw, FreeLaw, Geometry, extreme_slopes
 from .barrier import ORDERS, FitShape, basis
 from .settings import SETTINGS
@@ -37,17 +38,17 @@ def limits_of(law: AbstractLaw, free: Any) -> list[tuple[float, float]]:
     few = count <= SETTINGS.corners
     corners = np.indices((2,) * count).reshape(count, -1).T if few else own
     shares = np.concatenate([own[None], np.atleast_2d(free), shares, corners])
-    known = Geometry(*map(np.asarray, jax.jit(jax.vmap(law.at))(shares)))
+    known = jax.jit(jax.vmap(law.at))(shares)
     rows = []
     for index in range(known.alpha.shape[1]):
-        some = Geometry(*(value[:, index] for value in known))
+        some = rows_of(known, np.s_[:, index])
         ends = [coefficient_limits(one) for one in _each(some) if _alike(one, some)]
         rows.append((max(high for high, _ in ends), min(low for _, low in ends)))
     return rows
 
 
 def _each(known: Geometry) -> list[Geometry]:
-    return [Geometry(*map(float, row)) for row in zip(*known, strict=True)]
+    return [Geometry._make(map(float, row)) for row in zip(*known, strict=True)]
 
 
 def _alike(one: Geometry, every: Geometry) -> bool:

@@ -9,7 +9,7 @@ from ..._checks import as_text
 from ..._compile import Program
 from ...model import coefficients_jit, potential
 from ...profiles import Fourier
-from ..common import FreeLaw, Geometry
+from ..common import FreeLaw
 from .barrier import SETTINGS as BARRIER_SETTINGS
 from .barrier import bending_energy, heights_of_waves
 from .history import History, Start
@@ -185,7 +185,7 @@ def _message(
 
 def _asked(problem: Any, runs: StartRuns, index: int) -> np.ndarray:
     """Slopes that the targets ask of their bristles as a start found them."""
-    known = Geometry(*map(np.asarray, problem.law.at(runs.settled.free[index])))
+    known = problem.law.known_at(runs.settled.free[index])
     return slopes_asked(known, np.asarray(problem.task.coefficients))
 
 
@@ -198,8 +198,9 @@ def _reachable(problem: Any, runs: StartRuns, best: int) -> str:
         wanted = np.asarray(runs.settled.wanted[best]) * float(task.slope)
         slopes = np.clip(wanted, np.min(asked, axis=0), np.max(asked, axis=0))
         plus, minus = (slopes / float(task.slope)).tolist()
-        bounds = float(task.curvature), float(task.height)
-        share = reachable_share(layout, plus, minus, *bounds)
+        share = reachable_share(
+            layout, plus, minus, float(task.curvature), float(task.height)
+        )
         within = share_text(share, slopes)
     limits = limits_of(task.law, runs.settled.free[best])
     return reachable_text(limits, layout.harmonics, asked, within)
@@ -250,7 +251,7 @@ def _history(problem: Any, runs: StartRuns) -> History:
         free=free,
     )
     run = np.asarray(runs.ran)
-    return rows if run.all() else History(*(_of_starts(run, row) for row in rows))
+    return rows if run.all() else History._make(_of_starts(run, row) for row in rows)
 
 
 def _of_starts(run: np.ndarray, rows: np.ndarray) -> np.ndarray:
