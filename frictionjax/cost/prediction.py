@@ -78,7 +78,7 @@ def _predicted(
         nothing = np.full((gamma.size, eps.size), np.nan)
         return CostPrediction(np.nan, nothing, np.nan, machine.memory, machine.measured)
     each = [machine.seconds(_one(work, i)) for i in range(lane_eps.size)]
-    rows = SETTINGS.leg_bytes * work.legs.sum() + SETTINGS.job_bytes * work.jobs.sum()
+    rows = SETTINGS.leg_bytes * work.segments.sum() + SETTINGS.job_bytes * work.jobs.sum()
     memory = machine.memory + rows + SETTINGS.value_bytes * values
     return CostPrediction(
         machine.seconds(work),

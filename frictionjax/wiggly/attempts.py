@@ -97,7 +97,7 @@ class AttemptContext(NamedTuple):
     workers: int = WORKERS
 
     def rounds(self, some: Cellwise) -> BracketContext:
-        """What rounds of windows of some cells need."""
+        """What rounds of brackets of some cells need."""
         return BracketContext(
             scene=self.scene,
             lanes=self.lanes,
@@ -125,18 +125,18 @@ class AttemptContext(NamedTuple):
             accuracy=self.accuracy,
             summed=any(self.wanted) or self.every_slip,
         )
-        found, left = close_brackets(self.rounds(some), layout, some.needs)
+        values, left = close_brackets(self.rounds(some), layout, some.needs)
         answers = evaluate(
             scene=self.scene,
             path=self.path,
             ground=some.ground,
             ts=self.ts,
             layout=layout,
-            found=found,
+            values=values,
             wanted=self.wanted,
             accuracy=self.accuracy,
         )
-        open_ = np.isin(np.arange(some.eps.size), layout.windows.cell[left])
+        open_ = np.isin(np.arange(some.eps.size), layout.brackets.cell[left])
         return SoFar(some, answers, open_)
 
     def is_rough(self, answers: CellResults, eps: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""All cells of a sweep through lanes: rounds of windows until every bracket has closed."""
+"""All cells of a sweep through lanes: rounds of brackets until every bracket has closed."""
 
 import threading
 from collections.abc import Callable
@@ -211,8 +211,8 @@ def _prepare(
 ) -> None:
     """Have the loop compiled beside the planning."""
     if cells * times > SETTINGS.few_values:
-        legs = cells * times // WORKERS
-        prepare(lanes, tableau, Room(cells, legs // 2, legs), wanted)
+        segments = cells * times // WORKERS
+        prepare(lanes, tableau, Room(cells, segments // 2, segments), wanted)
 
 
 def _affordable(path: Path, cells: Cellwise) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""What each cell's windows need, and which way is the cheapest, before anything runs."""
+"""What each cell's brackets need, and which way is the cheapest, before anything runs."""
 
 from typing import NamedTuple
 
@@ -52,7 +52,7 @@ def _tips(potential: AbstractPotential, z0: Real, eps: Array):
 def ground_of(
     scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray, folds: WiggleFolds
 ) -> CellBounds:
-    """What windows need to know of each cell."""
+    """What brackets need to know of each cell."""
     lags = lag_forces(scene.potential, eps, folds, path.speed * viscosity_of(eps, gamma))
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
     well, tip = in_chunks(_tips, SETTINGS.cells, (scene.potential, scene.z0), (eps,))
@@ -96,7 +96,7 @@ def lane_scene(scene: Scene, highest: float) -> LaneScene:
 
 
 def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
-    """How far back windows start: until a bracket as wide as the lag has closed.
+    """How far back brackets start: until one as wide as the lag has closed.
 
     Slides remember twice the wells that they lag by. (The closed form of step control is
     that for one fold far below the others: on the angular scene of the benchmarks, gamma =
@@ -175,7 +175,7 @@ def _along(
 
 
 class Planned(NamedTuple):
-    """Cells before anything has run: step control, what windows know and need.
+    """Cells before anything has run: step control, what brackets know and need.
 
     `way`: of each cell, as `Way`.
     """

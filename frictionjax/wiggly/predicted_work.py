@@ -22,15 +22,15 @@ class Workload(NamedTuple):
     """Work of lanes in each cell, shape (cells,).
 
     `steps`: of all lanes. `chain`: those that one lane takes after the other. `jobs`:
-    lanes that set off; `legs`: of their ways. `maps`: slides of which slip maps are made;
-    `rounds`: those of them that wait for each other. `weight`: of a step, relative to a
-    linear spring on a sine.
+    lanes that set off; `segments`: of their ways. `maps`: slides of which slip maps are
+    made; `rounds`: those of them that wait for each other. `weight`: of a step, relative to
+    a linear spring on a sine.
     """
 
     steps: np.ndarray
     chain: np.ndarray
     jobs: np.ndarray
-    legs: np.ndarray
+    segments: np.ndarray
     maps: np.ndarray
     rounds: np.ndarray
     weight: float
@@ -66,8 +66,8 @@ def workload(
     run_ups = maps * np.minimum(needs.run_up, SETTINGS.run_up)
     total = np.where(by_map, SETTINGS.map_steps * run_ups * steps * growth, total)
     chain = np.where(by_map, SETTINGS.map_chain * rounds * steps * growth, chain)
-    jobs, legs = _rows(path, eps, needs, times)
-    return Workload(total, chain, jobs, legs, maps, rounds, _weight_of(lanes))
+    jobs, segments = _rows(path, eps, needs, times)
+    return Workload(total, chain, jobs, segments, maps, rounds, _weight_of(lanes))
 
 
 def _longest_chains(slides: np.ndarray, cut: np.ndarray) -> np.ndarray:
@@ -107,7 +107,7 @@ def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.nd
 def _rows(
     path: Path, eps: np.ndarray, needs: Requirements, times: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Jobs and legs: two lanes for each window, legs of the first one between its stops."""
+    """Jobs and segments: two lanes for each bracket, the first one from stop to stop."""
     outer, inner = wells_of(path, eps, needs)
     shown = times * inner / np.maximum(inner + outer, 1e-9)
     slides = np.count_nonzero(path.direction)

@@ -76,7 +76,7 @@ def _costs_less_sampled(path: Path, eps, needs: Requirements, times: int) -> np.
 
 
 def _remembers_long(needs: Requirements) -> np.ndarray:
-    """Whether windows would set off from many slips back."""
+    """Whether brackets would set off from many slips back."""
     return needs.run_up > ENCLOSURE_SETTINGS.long_memory
 
 

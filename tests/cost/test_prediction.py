@@ -136,14 +136,14 @@ def test_the_rows_of_tables_are_foreseen(monkeypatch, eps, gamma, times, method)
 
     def plan(*parts):
         found = plans(*parts)
-        rows[:] += found.jobs.cell.size, found.legs.start.size
+        rows[:] += found.jobs.cell.size, found.segments.start.size
         return found
 
     monkeypatch.setattr(marching, "plan_brackets", plan)
     cells = cells_of(np.array(eps), np.array(gamma))
     work = workload(scene_of(), *cells, times, 1e-3, method)
     fx.sweep(scene_of(), eps, gamma, np.linspace(0.0, 3.0, times), 1e-3, method)
-    ratios = rows / (work.jobs.sum(), work.legs.sum())
+    ratios = rows / (work.jobs.sum(), work.segments.sum())
     assert np.all((ratios > 0.7) & (ratios < 1.3)), ratios
 
 
@@ -161,7 +161,7 @@ def test_tables_grow_with_the_times_and_not_their_square():
     tracemalloc.stop()
     assert most < 1000 * ts.size, most / ts.size
     at = found.output[0]
-    assert np.all(found.windows.stop[at[1:]] == ts[1:])
+    assert np.all(found.brackets.stop[at[1:]] == ts[1:])
     assert at[0] == -1  # the start is known
 
 

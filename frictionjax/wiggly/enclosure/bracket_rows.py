@@ -6,7 +6,7 @@ from .brackets import Brackets
 
 
 class BracketRows:
-    """Windows as they are added: cell, begin, paired and stops of each."""
+    """Brackets as they are added: cell, begin, paired and stops of each."""
 
     def __init__(self) -> None:
         self._cells: list[np.ndarray] = []
@@ -17,9 +17,9 @@ class BracketRows:
         self._count = 0
 
     def add(self, cell, begin, paired: bool, stops: np.ndarray, sizes=None) -> np.ndarray:
-        """Add windows; the numbers of their stops among all.
+        """Add brackets; the numbers of their stops among all.
 
-        `cell`, `begin`, `sizes`: of each, so many of the stops as its size; of one window
+        `cell`, `begin`, `sizes`: of each, so many of the stops as its size; of one bracket
         with all the stops where there are no sizes.
         """
         sizes = np.array([stops.size]) if sizes is None else sizes
@@ -31,7 +31,7 @@ class BracketRows:
         self._count += stops.size
         return np.arange(self._count - stops.size, self._count)
 
-    def windows(self) -> Brackets:
+    def brackets(self) -> Brackets:
         """All of them."""
         sizes = np.concatenate(self._sizes)
         owner = np.repeat(np.arange(sizes.size), sizes)

@@ -7,7 +7,7 @@ import numpy as np
 from .bracket_rows import BracketRows
 from .requirements import wells_a_leg
 from .sampled_parts import CellSlides, Parts, uneven_pieces
-from .segment_ends import Cut, follow_path, segments_of
+from .segment_ends import Cut, follow_path, stretches_of
 from .settings import SETTINGS
 from .starts import way_at
 
@@ -35,9 +35,10 @@ def chains_of(
     path, eps, needs = slides.path, slides.eps, slides.needs
     fast_slides = slides.fast_slides
     output = np.full((eps.size, ts.size), -1)
-    # Beside fast slides windows of a few wells each lead to the times.
+    # Beside fast slides brackets of a few wells each lead to the times.
     chained = [c for c in range(eps.size) if summed or not fast_slides[c]]
-    # Guides of long legs are coarse, which counts in sums only: long lanes need no stops.
+    # Guides of long segments are coarse, which counts in sums only: long lanes need no
+    # stops.
     stopped = [c for c in chained if summed or np.isfinite(needs.tile[c])]
     lattice_cell, lattice_time = _lattice(slides, parts, stopped)
     edges = np.concatenate([path.edges[1:], path.touch[path.touch < path.edges[-1]]])
@@ -54,46 +55,46 @@ def chains_of(
     every = way_at(slides.scene, path, np.concatenate([*times, np.zeros(0)]))
     ways = np.split(every, np.cumsum([t.size for t in times]))
     chain = [np.zeros(0, dtype=int)] * eps.size
-    for k, (cell, (opening, own)) in enumerate(zip(chained, cuts, strict=True)):
-        segment = segments_of(opening, own)
-        since = (ways[2 * k + 1] - ways[2 * k][segment]) / eps[cell]
+    for k, (cell, (opening, stops)) in enumerate(zip(chained, cuts, strict=True)):
+        stretch = stretches_of(opening, stops)
+        since = (ways[2 * k + 1] - ways[2 * k][stretch]) / eps[cell]
         tile = np.floor(since / needs.tile[cell] - 1e-9) + _on_slides(
-            fast_slides[cell], own
+            fast_slides[cell], stops
         )
-        tile += np.searchsorted(path.edges[1:][needs.restarts[cell]], own)
-        begins = own > opening[segment]
-        own, segment, tile = own[begins], segment[begins], tile[begins]
-        tiles = _tiles(segment, tile)
+        tile += np.searchsorted(path.edges[1:][needs.restarts[cell]], stops)
+        begins = stops > opening[stretch]
+        stops, stretch, tile = stops[begins], stretch[begins], tile[begins]
+        tiles = _tiles(stretch, tile)
         if not summed:
-            wanted = np.isin(own, ts)
+            wanted = np.isin(stops, ts)
             tiles = [group for group in tiles if wanted[group].any()]
         numbers = [np.zeros(0, dtype=int)]
         for group in tiles:
             first = group[0]
-            fresh = first == 0 or segment[first] != segment[first - 1]
-            begin = opening[segment[first]] if fresh else own[first - 1]
-            numbers.append(rows.add(cell, begin, False, own[group]))
-        own = own[np.concatenate([*tiles, np.zeros(0, dtype=int)])]
+            fresh = first == 0 or stretch[first] != stretch[first - 1]
+            begin = opening[stretch[first]] if fresh else stops[first - 1]
+            numbers.append(rows.add(cell, begin, False, stops[group]))
+        stops = stops[np.concatenate([*tiles, np.zeros(0, dtype=int)])]
         chain[cell] = np.concatenate(numbers)
-        which = np.searchsorted(own, ts)
-        hit = np.append(own, np.nan)[which] == ts
+        which = np.searchsorted(stops, ts)
+        hit = np.append(stops, np.nan)[which] == ts
         output[cell, hit] = chain[cell][which[hit]]
     return Chains(chain, output)
 
 
 def _lattice(slides: CellSlides, parts: Parts, chosen: list[int]):
-    """Cell and time of every leg's end on slides of chosen cells, outside inner parts."""
+    """Cell and time of each segment's end on slides of cells, outside inner parts."""
     path, eps = slides.path, slides.eps
-    legs = wells_a_leg(path, eps)
+    segments = wells_a_leg(path, eps)
     lows, highs = (slides.states_at(times) for times in (parts.low, parts.high))
     cells, pieces, wells = [], [], []
     for cell in chosen:
-        leg = float(legs[cell])
-        own = parts.cell == cell
+        segment = float(segments[cell])
+        of_cell = parts.cell == cell
         for piece in np.flatnonzero(path.direction).tolist():
             way = abs(path.states[piece + 1] - path.states[piece]) / eps[cell]
             way -= slides.needs.lattice_offset[cell, piece]
-            mine = own & (parts.low < path.edges[piece + 1])
+            mine = of_cell & (parts.low < path.edges[piece + 1])
             mine &= parts.high > path.touch[piece]
             origin = path.states[piece]
             edges = (path.states[piece], path.states[piece + 1])
@@ -101,7 +102,7 @@ def _lattice(slides: CellSlides, parts: Parts, chosen: list[int]):
                 np.abs(np.clip(side[mine], min(edges), max(edges)) - origin) / eps[cell]
                 for side in (lows, highs)
             )
-            at = _outside(leg, way, low, high)
+            at = _outside(segment, way, low, high)
             cells.append(np.full(at.size, cell))
             pieces.append(np.full(at.size, piece))
             wells.append(at)
@@ -113,37 +114,37 @@ def _lattice(slides: CellSlides, parts: Parts, chosen: list[int]):
     )
 
 
-def _outside(leg: float, way: float, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Wells of a slide at which legs end: none inside its inner parts, in wells too."""
+def _outside(segment: float, way: float, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Wells of a slide at which segments end: none inside its inner parts, in wells too."""
     if low.size == 0:
-        return np.arange(leg, way, leg)
+        return np.arange(segment, way, segment)
     order = np.argsort(low)
     opens = np.concatenate([[0.0], high[order]])
     closes = np.concatenate([low[order], [way]])
     gaps = [
-        np.arange(np.ceil(a) + leg, b - 0.5, leg)
+        np.arange(np.ceil(a) + segment, b - 0.5, segment)
         for a, b in zip(opens, closes, strict=True)
     ]
     return np.concatenate(gaps)
 
 
 def _cut(parts: Parts, cell: int, fixed: np.ndarray, lattice: np.ndarray) -> Cut:
-    """A cell's chain. Inner parts are left out: a segment begins where one ends."""
+    """A cell's chain. Inner parts are left out: a stretch begins where one ends."""
     mine = np.flatnonzero(parts.cell == cell)
     mine = mine[np.argsort(parts.low[mine])]
     low, high = parts.low[mine], parts.high[mine]
     # Where one hole follows another there is nothing to be measured between.
-    own = np.unique(np.concatenate([fixed, lattice, low[~np.isin(low, high)]]))
-    hole = np.searchsorted(low, own) - 1  # of those that begin before
-    inside = (hole >= 0) & (own < np.append(high, 0.0)[hole])
-    own = own[~inside & (own > 0)]
-    return Cut(np.concatenate([[0.0], high]), own)
+    stops = np.unique(np.concatenate([fixed, lattice, low[~np.isin(low, high)]]))
+    hole = np.searchsorted(low, stops) - 1  # of those that begin before
+    inside = (hole >= 0) & (stops < np.append(high, 0.0)[hole])
+    stops = stops[~inside & (stops > 0)]
+    return Cut(np.concatenate([[0.0], high]), stops)
 
 
-def _tiles(segment: np.ndarray, tile: np.ndarray) -> list[np.ndarray]:
-    """Stops of a chain that one window holds: of one segment and one tile of it."""
-    cut = (np.diff(segment) != 0) | (np.diff(tile) > 0)
-    return np.split(np.arange(segment.size), np.flatnonzero(cut) + 1)
+def _tiles(stretch: np.ndarray, tile: np.ndarray) -> list[np.ndarray]:
+    """Stops of a chain that one bracket holds: of one stretch and one tile of it."""
+    cut = (np.diff(stretch) != 0) | (np.diff(tile) > 0)
+    return np.split(np.arange(stretch.size), np.flatnonzero(cut) + 1)
 
 
 def _on_slides(slides: tuple, times: np.ndarray) -> np.ndarray:

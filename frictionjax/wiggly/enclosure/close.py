@@ -1,4 +1,4 @@
-"""Rounds of windows, further back each time until brackets close."""
+"""Rounds of brackets, which set off further back each time until they have closed."""
 
 import numpy as np
 
@@ -17,39 +17,39 @@ from .starts import slow_share, starts_of
 def close_brackets(
     rounds: BracketContext, layout: Layout, needs: Requirements
 ) -> tuple[BracketValues, np.ndarray]:
-    """Rounds of windows, further back each time; and windows that never closed."""
-    windows = layout.windows
-    size = windows.stop.size
+    """What rounds of brackets find, and the brackets that never closed."""
+    brackets = layout.brackets
+    size = brackets.stop.size
     values = np.full((len(SegmentEnds._fields), size), np.nan)
-    legs = np.full((len(Segments._fields), size), np.nan)
+    segments = np.full((len(Segments._fields), size), np.nan)
     gap, how = np.full(size, np.inf), np.zeros(size, dtype=int)
-    open_ = np.arange(windows.cell.size)
-    wells = run_ups(rounds, windows, needs.run_up)
+    open_ = np.arange(brackets.cell.size)
+    wells = run_ups(rounds, brackets, needs.run_up)
     back = np.zeros(wells.size)
     for _ in range(SETTINGS.rounds):
-        some = windows.chosen(open_)
-        place = np.flatnonzero(np.isin(windows.owner, open_))
-        place = place[np.argsort(windows.owner[place], kind="stable")]
-        plan, found, effort = rounds.run(some, wells[open_], back[open_])
+        open_brackets = brackets.chosen(open_)
+        place = np.flatnonzero(np.isin(brackets.owner, open_))
+        place = place[np.argsort(brackets.owner[place], kind="stable")]
+        plan, ends, effort = rounds.run(open_brackets, wells[open_], back[open_])
         rounds = rounds._replace(effort=effort)
         speed = rounds.path.speed
-        gaps = gaps_of(found, plan.legs, plan.behind, plan.ahead, speed)
-        meets = gaps_of(found, plan.legs, plan.meet_behind, plan.meet_ahead, speed)
-        # Stops that one lane alone has reached count as closed as their window's begin.
+        gaps = gaps_of(ends, plan.segments, plan.behind, plan.ahead, speed)
+        meets = gaps_of(ends, plan.segments, plan.meet_behind, plan.meet_ahead, speed)
+        # Stops that one lane alone has reached count as closed as their bracket's begin.
         alone = plan.ahead < 0
-        gaps = np.where(alone, meets[some.owner], gaps)
-        values[:, place] = np.stack([v[plan.behind] for v in found])
-        legs[:, place] = np.stack([v[plan.behind] for v in plan.legs])
+        gaps = np.where(alone, meets[open_brackets.owner], gaps)
+        values[:, place] = np.stack([v[plan.behind] for v in ends])
+        segments[:, place] = np.stack([v[plan.behind] for v in plan.segments])
         gap[place] = gaps
-        how[place] = np.where(plan.known, 0, 1 + plan.from_slide)[some.owner]
-        worst = np.zeros(some.cell.size)
-        np.maximum.at(worst, some.owner, np.nan_to_num(gaps, nan=np.inf))
+        how[place] = np.where(plan.known_start, 0, 1 + plan.from_slide)[open_brackets.owner]
+        worst = np.zeros(open_brackets.cell.size)
+        np.maximum.at(worst, open_brackets.owner, np.nan_to_num(gaps, nan=np.inf))
         # Lanes that met before a stop part again for a moment where it is at a slip: the
         # start is forgotten all the same, and the gap is reported as it is. Lanes from
         # close by have had steps of their own, which part them further: they go back once,
-        # and so do those that set off from a fast slide where their window begins.
+        # and so do those that set off from a fast slide where their bracket begins.
         far = (wells[open_] > SETTINGS.margin) & ~(plan.from_slide & (back[open_] < 1))
-        shifts = shifts_of(found, plan.legs, plan.meet_behind, plan.meet_ahead, speed)
+        shifts = shifts_of(ends, plan.segments, plan.meet_behind, plan.meet_ahead, speed)
         met = np.maximum(meets, shifts)
         met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
         worst = np.minimum(worst, met)
@@ -60,7 +60,7 @@ def close_brackets(
         back[open_] = SETTINGS.earlier * np.maximum(back[open_], 1)
     result = BracketValues(
         arrivals=SegmentEnds._make(values),
-        legs=Segments._make(legs),
+        segments=Segments._make(segments),
         gap=gap,
         how=how,
         steps=rounds.effort.steps,
@@ -69,12 +69,12 @@ def close_brackets(
     return result, open_
 
 
-def run_ups(rounds: BracketContext, windows: Brackets, needed: np.ndarray) -> np.ndarray:
-    """Wells that each window starts earlier: fewer where its slide is slow, (W,).
+def run_ups(rounds: BracketContext, brackets: Brackets, needed: np.ndarray) -> np.ndarray:
+    """Wells that each bracket starts earlier: fewer where its slide is slow, (W,).
 
     Slides remember in proportion to the square of their speed.
     """
-    wells = needed[windows.cell].astype(float)
+    wells = needed[brackets.cell].astype(float)
     long = (wells > SETTINGS.long_memory) & np.isfinite(wells)
     if not long.any():
         return wells
@@ -84,8 +84,8 @@ def run_ups(rounds: BracketContext, windows: Brackets, needed: np.ndarray) -> np
         scene=scene,
         path=path,
         ground=rounds.ground,
-        cell=windows.cell,
-        begin=windows.begin,
+        cell=brackets.cell,
+        begin=brackets.begin,
         wells=near,
         back=near,
         measured=False,

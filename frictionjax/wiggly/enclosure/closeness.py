@@ -7,26 +7,34 @@ from .settings import SETTINGS
 
 
 def gaps_of(
-    found: SegmentEnds, legs: Segments, behind: np.ndarray, ahead: np.ndarray, speed: float
+    ends: SegmentEnds,
+    segments: Segments,
+    behind: np.ndarray,
+    ahead: np.ndarray,
+    speed: float,
 ) -> np.ndarray:
     """How closely brackets have closed at stops, in units of eps; 0 from a known start.
 
     At a stop inside a slip (ten times faster than the path) it is the shift in time that
     counts, not the way that it makes. `speed`: the path's largest, m/s.
     """
-    wells, _, fastest = _apart(found, legs, behind, ahead, speed)
+    wells, _, fastest = _apart(ends, segments, behind, ahead, speed)
     return wells * SETTINGS.slip / np.maximum(fastest, SETTINGS.slip)
 
 
 def shifts_of(
-    found: SegmentEnds, legs: Segments, behind: np.ndarray, ahead: np.ndarray, speed: float
+    ends: SegmentEnds,
+    segments: Segments,
+    behind: np.ndarray,
+    ahead: np.ndarray,
+    speed: float,
 ) -> np.ndarray:
     """How far brackets are apart in time at stops, in slip periods; as `gaps_of`.
 
     A tip that creeps past a fold takes long over a small way: lanes that are 4e-4 eps apart
     there were 4e-2 eps apart in the slip that followed (gamma = 0.65, eps = 6e-4).
     """
-    wells, slowest, _ = _apart(found, legs, behind, ahead, speed)
+    wells, slowest, _ = _apart(ends, segments, behind, ahead, speed)
     return wells / np.maximum(slowest, SETTINGS.creep)
 
 
@@ -38,16 +46,16 @@ def wells_between(well0, tip0, well1, tip1) -> np.ndarray:
     return (well1 - well0) + (tip1 - tip0)
 
 
-def _apart(found: SegmentEnds, legs: Segments, behind, ahead, speed: float) -> tuple:
+def _apart(ends: SegmentEnds, segments: Segments, behind, ahead, speed: float) -> tuple:
     """Wells between both lanes, and speeds of the slower and faster over the path's."""
     both = ahead >= 0
     a, b = np.where(both, ahead, 0), np.where(both, behind, 0)
-    wells = wells_between(found.well[b], found.tip[b], found.well[a], found.tip[a])
+    wells = wells_between(ends.well[b], ends.tip[b], ends.well[a], ends.tip[a])
     # On a path that never moves nothing counts as a slip.
     usual = np.maximum(
-        np.abs(legs.slope1[b]), SETTINGS.slow_slip * speed if speed > 0 else np.inf
+        np.abs(segments.slope1[b]), SETTINGS.slow_slip * speed if speed > 0 else np.inf
     )
-    paces = np.abs(np.stack([found.speed[a], found.speed[b]])) / usual
+    paces = np.abs(np.stack([ends.speed[a], ends.speed[b]])) / usual
     # One lane alone is no bracket, and may have failed.
     wells, paces = np.where(both, np.abs(wells), 0.0), np.where(both, paces, 1.0)
     return wells, np.min(paces, axis=0), np.max(paces, axis=0)

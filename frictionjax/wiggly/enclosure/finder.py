@@ -103,12 +103,12 @@ def _seen(
     count = wanted.cells.size
     paired, one = np.ones(count, dtype=bool), np.arange(count)
     begins = np.minimum(wanted.begins, wanted.stops)
-    windows = Brackets(wanted.cells, begins, paired, one, wanted.stops)
-    wells, back = run_ups(looks, windows, needs.run_up), np.ones(count)
+    brackets = Brackets(wanted.cells, begins, paired, one, wanted.stops)
+    wells, back = run_ups(looks, brackets, needs.run_up), np.ones(count)
     found, open_ = FoundTips._make(np.empty((3, count))), one
     for _ in range(SETTINGS.rounds):
-        some = windows.chosen(open_)
-        plan, arrived, effort = looks.run(some, wells[open_], back[open_])
+        open_brackets = brackets.chosen(open_)
+        plan, arrived, effort = looks.run(open_brackets, wells[open_], back[open_])
         looks = looks._replace(effort=effort)
         for column, part in zip(found, _at_stops(looks, plan, arrived), strict=True):
             column[open_] = part
@@ -122,14 +122,14 @@ def _seen(
     return found, looks.effort
 
 
-def _at_stops(rounds: BracketContext, plan: BracketPlan, found: SegmentEnds):
-    """Well, tip and gap in wells of time at the one stop of each window."""
+def _at_stops(rounds: BracketContext, plan: BracketPlan, ends: SegmentEnds):
+    """Well, tip and gap in wells of time at the one stop of each bracket."""
     a, b = plan.behind, np.maximum(plan.ahead, 0)
-    way = wells_between(found.well[a], found.tip[a], found.well[b], found.tip[b])
+    way = wells_between(ends.well[a], ends.tip[a], ends.well[b], ends.tip[b])
     gap = np.where(plan.ahead >= 0, np.abs(way), 0.0)
-    pace = np.abs(found.speed[a]) / rounds.path.speed
+    pace = np.abs(ends.speed[a]) / rounds.path.speed
     gap = np.where(np.isnan(gap), np.inf, gap / np.clip(pace, 1e-300, 1.0))
-    return found.well[a], found.tip[a], gap
+    return ends.well[a], ends.tip[a], gap
 
 
 def _wells_checked(rounds: BracketContext, cell: int, slide: FastSlide) -> np.ndarray:
@@ -154,7 +154,7 @@ def _measuring(
     """
     known_slides, cells, slides, gaps = wanted
     wells = [_wells_checked(rounds, c, s) for c, s in zip(cells, slides, strict=True)]
-    sizes = [own.size for own in wells]
+    sizes = [on_slide.size for on_slide in wells]
     count, who = np.concatenate(wells), np.repeat(np.arange(len(slides)), sizes)
     number = np.concatenate([slide.curve.edges[:-1] for slide in slides])
     curves = ManyTransitTimes([slide.curve for slide in slides])
@@ -162,27 +162,36 @@ def _measuring(
     begin, stop = np.split(both, 2)
     sign, first, tip = np.array([(s.sign, s.well, s.tip) for s in slides])[who].T
     well, aim = first + sign * number, first + sign * (number + count)
-    whose, known = np.array(cells)[who], np.ones(tip.size, dtype=bool)
-    never = np.full(tip.size, -np.inf)
-    starts = Starts(begin, known, ~known, known, never, well, tip, well, tip)
+    whose, every = np.array(cells)[who], np.ones(tip.size, dtype=bool)
+    starts = Starts(
+        time=begin,
+        known_start=every,
+        from_slide=~every,
+        lagging=every,
+        until=np.full(tip.size, -np.inf),
+        behind_well=well,
+        behind_tip=tip,
+        ahead_well=well,
+        ahead_tip=tip,
+    )
     exact = _exact(rounds, known_slides)
-    windows = Brackets(whose, begin, known, np.arange(tip.size), stop)
+    brackets = Brackets(whose, begin, every, np.arange(tip.size), stop)
     # Planned here: two threads that plan wait for each other.
-    plan = exact.planned(windows, starts)
-    # While windows are laid out.
+    plan = exact.planned(brackets, starts)
+    # While brackets are laid out.
     lanes = crew("measuring", 1).submit(exact.through, plan)
 
     @functools.cache
     def summed() -> list[np.ndarray]:
-        found, at = lanes.result().found, plan.behind
-        place = wells_between(aim, tip, found.well[at], found.tip[at])
+        ends, at = lanes.result().ends, plan.behind
+        place = wells_between(aim, tip, ends.well[at], ends.tip[at])
         # In wells of time: at its fold the tip is far slower than on the average.
-        pace = np.abs(found.speed[at]) * (stop - begin) / (count * rounds.ground.eps[whose])
+        pace = np.abs(ends.speed[at]) * (stop - begin) / (count * rounds.ground.eps[whose])
         # The lane sets off, and is asked, at rounded times.
         off = np.diff(np.split(late, 2), axis=0)[0] * count / (stop - begin)
         drift = np.abs(sign * place / np.maximum(pace, 1e-300) - off) / count
-        ends = np.cumsum(sizes)[:-1]
-        parts = zip(slides, np.split(drift, ends), np.split(pace, ends), gaps, strict=True)
+        cuts = np.cumsum(sizes)[:-1]
+        parts = zip(slides, np.split(drift, cuts), np.split(pace, cuts), gaps, strict=True)
         return [
             _summed(rounds, slide, drift=own_drift, pace=own_pace, gap=gap)
             for slide, own_drift, own_pace, gap in parts
@@ -192,7 +201,11 @@ def _measuring(
 
 
 def _exact(rounds: BracketContext, known: np.ndarray) -> BracketContext:
-    """For lanes that measure, whatever others of their cells have taken."""
+    """For lanes that measure, whatever others of their cells have taken.
+
+    Where their cell has an earlier slide, those that `brackets` calls forgetful keep the
+    looser tolerance `brief` (`BracketContext._steered`), not the tight one.
+    """
     usual = np.asarray(rounds.cells.tolerance)
     tight = np.minimum(
         np.maximum(SETTINGS.tight_measure * usual, SETTINGS.tightest_measure), usual

@@ -19,7 +19,7 @@ class SampledPeriods(NamedTuple):
     """The inner part of a slide of one cell, of which only some periods are measured.
 
     `low`, `high`: its ends, s. `starts`, `ends`: times of the periods, s. `stops`: where
-    they end, among the stops of the windows. `way`: of the path from low to high, m.
+    they end, among the stops of the brackets. `way`: of the path from low to high, m.
     """
 
     cell: int
@@ -33,14 +33,14 @@ class SampledPeriods(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """Windows of all cells, and what they are for.
+    """Brackets of all cells, and what they are for.
 
     `chain`: for each cell, the stops that follow each other through everything that is
     not inside a slide, in time. `slides`: of all cells. `output` (cells, n): the stop at
     each requested time. `whole`: whether chain and slides cover [0, T].
     """
 
-    windows: Brackets
+    brackets: Brackets
     chain: list[np.ndarray]
     slides: list[SampledPeriods]
     output: np.ndarray
@@ -57,13 +57,13 @@ def lay_out(
     accuracy: float,
     summed: bool = True,
 ) -> Layout:
-    """Windows that give every requested time, and sums and extremes over [0, T].
+    """Brackets that give every requested time, and sums and extremes over [0, T].
 
-    Legs are short enough for extremes good to `accuracy`, in eps.
+    Segments are short enough for extremes good to `accuracy`, in eps.
 
     Outside the inner parts of slides everything is measured, in tiles that follow each
-    other; inside, some periods, and one window for each requested time. Where nothing is
-    `summed`, only windows with requested times are left.
+    other; inside, some periods, and one bracket for each requested time. Where nothing is
+    `summed`, only brackets with requested times are left.
     """
     summed = summed or not np.any(ts > 0)
     slides = CellSlides(scene, path, eps, needs, fast_slides)
@@ -73,7 +73,7 @@ def lay_out(
     periods = _sampled_periods(slides, parts if summed else rows_of(parts, slice(0)), rows)
     output = stops_at_times(slides, ts, chains.hit, rows)
     return Layout(
-        windows=rows.windows(),
+        brackets=rows.brackets(),
         chain=chains.stops,
         slides=periods,
         output=output,
@@ -84,7 +84,7 @@ def lay_out(
 def _sampled_periods(
     slides: CellSlides, parts: Parts, rows: BracketRows
 ) -> list[SampledPeriods]:
-    """A window for each period that is measured inside a slide."""
+    """A bracket for each period that is measured inside a slide."""
     who, starts, ends = sampled(slides, parts)
     lows, highs = (slides.states_at(times) for times in (parts.low, parts.high))
     periods = []

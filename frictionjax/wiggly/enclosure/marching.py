@@ -40,9 +40,9 @@ def _batches(work: np.ndarray, workers: int) -> int:
     return max(min(int(np.ceil(work.sum() / SETTINGS.batch)), most), 1)
 
 
-def _of_jobs(plan: BracketPlan, of_legs: np.ndarray) -> np.ndarray:
-    """Sums over the legs of each job, (jobs,)."""
-    so_far = np.concatenate([[0.0], np.cumsum(of_legs)])
+def _of_jobs(plan: BracketPlan, of_segments: np.ndarray) -> np.ndarray:
+    """Sums over the segments of each job, (jobs,)."""
+    so_far = np.concatenate([[0.0], np.cumsum(of_segments)])
     return so_far[plan.jobs.past_leg] - so_far[plan.jobs.first_leg]
 
 
@@ -67,10 +67,10 @@ def no_effort(count: int) -> Effort:
 
 
 class BracketRound(NamedTuple):
-    """What one round of windows has found, and what has been taken up to then."""
+    """What one round of brackets has found, and what has been taken up to then."""
 
     plan: BracketPlan
-    found: SegmentEnds
+    ends: SegmentEnds
     effort: Effort
 
 
@@ -96,63 +96,65 @@ class BracketContext(NamedTuple):
     workers: int = WORKERS
     lanes_run: Callable[[], None] = lambda: None
 
-    def run(self, windows: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
-        """March all windows, from `wells` of the path or `back` of a fast slide before."""
+    def run(self, brackets: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
+        """March all brackets, from `wells` of the path or `back` of a fast slide before."""
         starts = starts_of(
             scene=self.scene,
             path=self.path,
             ground=self.ground,
-            cell=windows.cell,
-            begin=windows.begin,
+            cell=brackets.cell,
+            begin=brackets.begin,
             wells=wells,
             back=back,
         )
-        return self.march_from(windows, starts)
+        return self.march_from(brackets, starts)
 
-    def march_from(self, windows: Brackets, starts: Starts) -> BracketRound:
-        """March all windows from their starts."""
-        return self.through(self.planned(windows, starts))
+    def march_from(self, brackets: Brackets, starts: Starts) -> BracketRound:
+        """March all brackets from their starts."""
+        return self.through(self.planned(brackets, starts))
 
-    def planned(self, windows: Brackets, starts: Starts) -> BracketPlan:
-        """What lanes are to do for windows, from their starts."""
-        return plan_brackets(self.scene, self.path, self.ground, windows, starts)
+    def planned(self, brackets: Brackets, starts: Starts) -> BracketPlan:
+        """What lanes are to do for brackets, from their starts."""
+        return plan_brackets(self.scene, self.path, self.ground, brackets, starts)
 
     def through(self, plan: BracketPlan) -> BracketRound:
-        """March all windows of a plan."""
+        """March all brackets of a plan."""
         able, plan = self._within_patience(plan)
-        found = self._march(plan, able)
-        return BracketRound(plan, found, self.effort.more(self._taken(plan, found)))
+        ends = self._march(plan, able)
+        return BracketRound(plan, ends, self.effort.more(self._taken(plan, ends)))
 
-    def _taken(self, plan: BracketPlan, found: SegmentEnds) -> Effort:
+    def _taken(self, plan: BracketPlan, ends: SegmentEnds) -> Effort:
         """What the lanes of a plan took."""
         owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
         count = self.ground.eps.size
         steps, rejected = (
             np.bincount(owner, np.nan_to_num(each), count)
-            for each in (found.steps, found.rejected)
+            for each in (ends.steps, ends.rejected)
         )
-        return Effort(steps, rejected, self._waited(plan, found))
+        return Effort(steps, rejected, self._waited(plan, ends))
 
     def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
         """Which jobs their cells can still wait for, and the plan with what is left."""
-        jobs, legs = plan.jobs, plan.legs
+        jobs, segments = plan.jobs, plan.segments
         left = np.where(
             self._alone(plan), np.inf, SETTINGS.patience - self.effort.waited[jobs.cell]
         )
         owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
-        wells = np.abs(legs.guide1 - legs.guide0) / self.ground.eps[jobs.cell[owner]]
+        wells = (
+            np.abs(segments.guide1 - segments.guide0) / self.ground.eps[jobs.cell[owner]]
+        )
         allowed = left[owner] + SETTINGS.path_steps * wells
-        legs = legs._replace(budget=np.minimum(legs.budget, allowed))
-        return left > 0, plan._replace(legs=legs)
+        segments = segments._replace(budget=np.minimum(segments.budget, allowed))
+        return left > 0, plan._replace(segments=segments)
 
-    def _waited(self, plan: BracketPlan, found: SegmentEnds) -> np.ndarray:
+    def _waited(self, plan: BracketPlan, ends: SegmentEnds) -> np.ndarray:
         """What the longest lane has taken beyond its share, for each cell.
 
         Of one that gave up everything counts: it would take its share again in each march.
         """
-        cell, steps = plan.jobs.cell, _of_jobs(plan, np.nan_to_num(found.steps))
+        cell, steps = plan.jobs.cell, _of_jobs(plan, np.nan_to_num(ends.steps))
         beyond = np.maximum(steps - SETTINGS.path_steps * self._wells(plan), 0.0)
-        gave_up = _of_jobs(plan, np.nan_to_num(found.code)) > 0
+        gave_up = _of_jobs(plan, np.nan_to_num(ends.code)) > 0
         beyond = np.where(gave_up, steps, beyond)
         longest = np.zeros(self.ground.eps.size)
         np.maximum.at(longest, cell, np.where(self._alone(plan), 0.0, beyond))
@@ -161,13 +163,13 @@ class BracketContext(NamedTuple):
     def _alone(self, plan: BracketPlan) -> np.ndarray:
         """Jobs from a known start, in cells that one lane can go through, (jobs,)."""
         known = np.zeros(plan.jobs.cell.size, dtype=bool)
-        known[: plan.known.size] = plan.known
+        known[: plan.known_start.size] = plan.known_start
         wells = self.path.travel[-1] / self.ground.eps[plan.jobs.cell]
         return known & (wells <= SETTINGS.affordable)
 
     def _wells(self, plan: BracketPlan) -> np.ndarray:
         """Wells of the path that jobs go through, (jobs,)."""
-        ways = _of_jobs(plan, np.abs(plan.legs.guide1 - plan.legs.guide0))
+        ways = _of_jobs(plan, np.abs(plan.segments.guide1 - plan.segments.guide0))
         return ways / self.ground.eps[plan.jobs.cell]
 
     def _march(self, plan: BracketPlan, able: np.ndarray) -> SegmentEnds:
@@ -175,23 +177,23 @@ class BracketContext(NamedTuple):
 
         Others end as lanes do that give up.
         """
-        jobs, legs = plan.jobs, plan.legs
+        jobs, segments = plan.jobs, plan.segments
         work = self._wells(plan) + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
         work = np.where(plan.brief, SETTINGS.fast, 1.0) * work
-        jobs, cells = self._steered(jobs, plan.brief | plan.calm)
+        jobs, cells = self._steered(jobs, plan.brief | plan.forgetful)
         order = np.argsort(-work, kind="stable")
         order = order[able[order]]
         batches = _batches(work[able], self.workers)
-        found = np.full((len(SegmentEnds._fields), legs.start.size), np.nan)
+        ends = np.full((len(SegmentEnds._fields), segments.start.size), np.nan)
         # Overwritten by lanes that run.
-        found[SegmentEnds._fields.index("code")] = int(Status.MAX_STEPS)
+        ends[SegmentEnds._fields.index("code")] = int(Status.MAX_STEPS)
         seat = _seats(order.size, batches * self.workers)
         for batch in range(batches):
             queues = [order[seat == batch + i * batches] for i in range(self.workers)]
-            for rows, part in self._through(cells, jobs, legs, queues, work):
-                found[:, rows] = part
+            for rows, part in self._through(cells, jobs, segments, queues, work):
+                ends[:, rows] = part
             self.report(1 / batches)
-        return SegmentEnds._make(found)
+        return SegmentEnds._make(ends)
 
     def _steered(self, jobs: Lanes, brief: np.ndarray) -> tuple[Lanes, LaneCells]:
         """Jobs that are `brief` in cells of their own, with their tolerance."""
@@ -202,30 +204,38 @@ class BracketContext(NamedTuple):
         moved = jobs.cell + brief * self.brief.size
         return jobs._replace(cell=moved), concatenated([self.cells, others])
 
-    def _through(self, cells: LaneCells, jobs: Lanes, legs: Segments, queues: list, work):
-        """Legs of each queue and what is found there; the first is run by this thread.
+    def _through(
+        self, cells: LaneCells, jobs: Lanes, segments: Segments, queues: list, work
+    ):
+        """Segments of each queue and what is found there; the first is run by this thread.
 
         Beside other cells' lanes two of the pool's would wait for each other.
         """
 
         def run(chosen: np.ndarray) -> tuple[np.ndarray, SegmentEnds]:
-            return self._queue(cells, jobs, legs, chosen, work)
+            return self._queue(cells, jobs, segments, chosen, work)
 
         queues = [queue for queue in queues if queue.size]
         self.lanes_run()
         beside = [crew("lanes").submit(run, queue) for queue in queues[1:]]
-        found = [run(queue) for queue in queues[:1]]
-        return found + [part.result() for part in beside]
+        done = [run(queue) for queue in queues[:1]]
+        return done + [part.result() for part in beside]
 
-    def _queue(self, cells, jobs, legs, chosen: np.ndarray, work: np.ndarray) -> tuple:
-        """Legs of some jobs, and what is found there."""
+    def _queue(self, cells, jobs, segments, chosen: np.ndarray, work: np.ndarray) -> tuple:
+        """Segments of chosen jobs, and what is found there."""
         mine = rows_of(jobs, chosen)
-        # Rows of this queue's legs only, in the order of its jobs.
+        # Rows of this queue's segments only, in the order of its jobs.
         count = mine.past_leg - mine.first_leg
         past = np.cumsum(count)
         rows = np.repeat(mine.first_leg - (past - count), count) + np.arange(count.sum())
         mine = mine._replace(first_leg=past - count, past_leg=past)
-        own = rows_of(legs, rows)
+        chosen_segments = rows_of(segments, rows)
         return rows, march(
-            self.lanes, cells, mine, own, self.tableau, self.wanted, work[chosen]
+            self.lanes,
+            cells,
+            mine,
+            chosen_segments,
+            self.tableau,
+            self.wanted,
+            work[chosen],
         )

@@ -11,9 +11,9 @@ from .sampled_parts import CellSlides
 def stops_at_times(
     slides: CellSlides, ts: np.ndarray, hit: np.ndarray, rows: BracketRows
 ) -> np.ndarray:
-    """The stop at each requested time: one of `hit`, or in a window of its own.
+    """The stop at each requested time: one of `hit`, or in a bracket of its own.
 
-    All of shape (cells, n); windows are added to `rows`.
+    All of shape (cells, n); brackets are added to `rows`.
     """
     cell, shown = np.nonzero((hit < 0) & (ts > 0))
     begin = _period_before(slides, cell, ts[shown])
@@ -29,9 +29,9 @@ def stops_at_times(
 def _rests_together(
     path: Path, cell: np.ndarray, times: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Times, by their indices, and how many follow each other into one window.
+    """Times, by their indices, and how many follow each other into one bracket.
 
-    Those of one rest of the path share a window.
+    Those of one rest of the path share a bracket.
     """
     piece = path.piece_of(times)
     sliding = times > path.touch[piece]

@@ -1,4 +1,4 @@
-"""What a cell's windows need, and how many wells its lanes pass through for it."""
+"""What a cell's brackets need, and how many wells its lanes pass through for it."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ from .settings import SETTINGS
 
 
 class Requirements(NamedTuple):
-    """What a cell's windows need, in wells, shape (cells,).
+    """What a cell's brackets need, in wells, shape (cells,).
 
     `run_up`: from a start to where it is forgotten. `transient`: from the start of a slide
     to where the slide before is forgotten. `tile`: between two cuts of the chain, infinite
@@ -43,10 +43,10 @@ def cost_of(path: Path, eps: np.ndarray, needs: Requirements, times: int) -> np.
     slides = np.sum(inner_wells(np.abs(np.diff(path.states)) / eps[:, None], needs) > 0, 1)
     shown = times * inner / np.maximum(inner + outer, 1e-9)
     tiles = outer / needs.tile
-    windows = slides * needs.samples + shown
+    brackets = slides * needs.samples + shown
     # The first tile sets off from the known z0.
     run_ups = 2 * needs.run_up * np.maximum(tiles - 1, 0.0)
-    return outer + run_ups + 2 * (needs.run_up + 2) * windows
+    return outer + run_ups + 2 * (needs.run_up + 2) * brackets
 
 
 def longest_lane(path: Path, eps: np.ndarray, needs: Requirements) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Where the legs of a chain end: often enough for their cubics to follow the path."""
+"""Where the segments of a chain end: often enough for their cubics to follow the path."""
 
 from typing import NamedTuple
 
@@ -7,36 +7,37 @@ import numpy as np
 from ...model import Scene
 from ..lanes import guide_of
 from ..limit_path import Path, states_at
-from .brackets import legs_of
+from .brackets import segments_of
 from .settings import SETTINGS
 
 
 class Cut(NamedTuple):
-    """A cell's chain: where its segments open, and where its legs end, times in s."""
+    """A cell's chain: where its stretches open, and where its segments end, times in s."""
 
     opening: np.ndarray
     stops: np.ndarray
 
 
-def segments_of(opening: np.ndarray, stops: np.ndarray) -> np.ndarray:
-    """The segment of each stop: where one opens, stops belong to the one before."""
+def stretches_of(opening: np.ndarray, stops: np.ndarray) -> np.ndarray:
+    """The stretch of each stop: where one opens, stops belong to the one before."""
     return np.searchsorted(opening, stops, side="left") - 1
 
 
 def follow_path(
     scene: Scene, path: Path, eps: np.ndarray, accuracy: float, cuts: list[Cut]
 ) -> list[Cut]:
-    """With more stops where the cubic of a leg would leave the path; a cut for each eps.
+    """With more stops where cubics of segments would leave the path; a cut for each eps.
 
-    What it is off is added to the deviation of z. (Legs of 16 wells before a turn of the
-    load: suprema up to 19 times the accuracy off. A rise by 0.04 N within 6 ms: 0.4 eps.)
+    What it is off is added to the deviation of z. (Segments of 16 wells before a turn of
+    the load: suprema up to 19 times the accuracy off. A rise by 0.04 N within 6 ms: 0.4
+    eps.)
     """
     allowed = np.maximum(
         SETTINGS.guide * accuracy * eps, SETTINGS.rounded * _rounding_of(path)
     )
-    legs = [_legs_between(cut) for cut in cuts]
-    owner = np.repeat(np.arange(len(cuts)), [starts.size for starts, _ in legs])
-    starts, ends = (np.concatenate(side) for side in zip(*legs, strict=True))
+    segments = [_segments_between(cut) for cut in cuts]
+    owner = np.repeat(np.arange(len(cuts)), [starts.size for starts, _ in segments])
+    starts, ends = (np.concatenate(side) for side in zip(*segments, strict=True))
     owners, middles = [], []
     for _ in range(SETTINGS.leg_halvings):
         off = _off_path(scene, path, starts, ends) > allowed[owner]
@@ -68,17 +69,17 @@ def _rounding_of(path: Path) -> float:
     )
 
 
-def _legs_between(cut: Cut) -> tuple[np.ndarray, np.ndarray]:
-    """Starts and ends in s of the legs between stops."""
-    opens = cut.opening[segments_of(cut.opening, cut.stops)]
+def _segments_between(cut: Cut) -> tuple[np.ndarray, np.ndarray]:
+    """Starts and ends in s of the segments between stops."""
+    opens = cut.opening[stretches_of(cut.opening, cut.stops)]
     starts = np.maximum(opens, np.concatenate([[0.0], cut.stops[:-1]]))
     long = cut.stops > starts
     return starts[long], cut.stops[long]
 
 
 def _off_path(scene, path: Path, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """How far the cubics of legs are off the path at some times inside, in m."""
-    guide = guide_of(legs_of(scene, path, starts, ends))
+    """How far the cubics of segments are off the path at some times inside, in m."""
+    guide = guide_of(segments_of(scene, path, starts, ends))
     worst = np.zeros(starts.size)
     for share in SETTINGS.leg_places:
         times = starts + share * (ends - starts)

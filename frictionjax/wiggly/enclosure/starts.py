@@ -13,7 +13,7 @@ from .settings import SETTINGS
 
 
 class CellBounds(NamedTuple):
-    """What windows need to know of each cell, shape (cells,) each.
+    """What brackets need to know of each cell, shape (cells,) each.
 
     `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
     most. `shift_plus`, `shift_minus`: by how much in m folds at this eps differ from rho.
@@ -34,16 +34,16 @@ class CellBounds(NamedTuple):
 
 
 class Starts(NamedTuple):
-    """Where lanes of windows set off, shape (W,).
+    """Where lanes of brackets set off, shape (W,).
 
-    `time` in s. `known`: from the known z0; `from_slide`: from a fast slide, as closely as
-    its error says, which ends at `until` (s); `lagging`: behind one, with the largest lag
-    there is.
+    `time` in s. `known_start`: from the known z0; `from_slide`: from a fast slide, as
+    closely as its error says, which ends at `until` (s); `lagging`: behind one, with the
+    largest lag there is.
     `behind_*` and `ahead_*`: well and tip of the two lanes of the bracket.
     """
 
     time: np.ndarray
-    known: np.ndarray
+    known_start: np.ndarray
     from_slide: np.ndarray
     lagging: np.ndarray
     until: np.ndarray
@@ -85,7 +85,7 @@ def starts_of(
     back,
     measured: bool = True,
 ) -> Starts:
-    """Starts at least `wells` of the path's way before each window, or `back` of a slide.
+    """Starts at least `wells` of the path's way before each bracket, or `back` of a slide.
 
     On a slide the tip cannot be past the first fold beyond the strip's edge: it would have
     had to climb it against a force. Nor can it be further behind than a steady slide at
@@ -124,7 +124,7 @@ def starts_of(
     behind, ahead, tip = _bracket(ground, cell, direction, level, known, share)
     plain = Starts(
         time=time,
-        known=known,
+        known_start=known,
         from_slide=np.zeros(begin.size, dtype=bool),
         lagging=lagging,
         until=np.full(begin.size, -np.inf),
@@ -133,15 +133,17 @@ def starts_of(
         ahead_well=ahead,
         ahead_tip=tip,
     )
-    # Way in m that a lane of the bracket goes until the window begins, its lag included.
+    # Way in m that a lane goes until the bracket begins, its lag included.
     reach = wells * eps + 2 * share * lag
-    some = np.flatnonzero(which >= 0)
-    if some.size == 0:
+    after_slide = np.flatnonzero(which >= 0)
+    if after_slide.size == 0:
         return plain
-    near, inside = _on_slides(slides, which[some], begin[some], back[some], measured)
-    late, early = np.split(way_at(scene, path, np.append(begin[some], near.time)), 2)
-    nearer = known[some] | inside | (late - early <= reach[some])
-    return _replaced(plain, some[nearer], rows_of(near, nearer))
+    near, inside = _on_slides(
+        slides, which[after_slide], begin[after_slide], back[after_slide], measured
+    )
+    late, early = np.split(way_at(scene, path, np.append(begin[after_slide], near.time)), 2)
+    nearer = known[after_slide] | inside | (late - early <= reach[after_slide])
+    return _replaced(plain, after_slide[nearer], rows_of(near, nearer))
 
 
 def _still_lagging(
@@ -152,12 +154,14 @@ def _still_lagging(
     Lags are not those of the moment there. (Brackets of these left the tip out: 6e-2 eps,
     16 wells behind a fast slide.)
     """
-    some = np.flatnonzero(which >= 0)
+    after_slide = np.flatnonzero(which >= 0)
     lagging = np.zeros(which.size, dtype=bool)
-    if some.size:
-        fast = np.array([slide.lags for slide in slides])[which[some]]
-        turns = np.array([path.edges[slide.piece + 1] for slide in slides])[which[some]]
-        lagging[some] = fast & (time[some] <= turns)
+    if after_slide.size:
+        fast = np.array([slide.lags for slide in slides])[which[after_slide]]
+        turns = np.array([path.edges[slide.piece + 1] for slide in slides])[
+            which[after_slide]
+        ]
+        lagging[after_slide] = fast & (time[after_slide] <= turns)
     return lagging
 
 
@@ -186,7 +190,7 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
     none, well = np.zeros(which.size, dtype=bool), well + sign * number
     starts = Starts(
         time=np.minimum(curves.time_of(which, number), begin),
-        known=none,
+        known_start=none,
         from_slide=~none,
         lagging=none,
         until=end,

@@ -39,17 +39,17 @@ def _horizon(scene: Scene, slides: Slides, first, time, force) -> np.ndarray:
 
 def _cut(scene: Scene, slides: Slides, now, first, time, tail, share, past):
     """Panels of the slides `now` from where they are, and times guessed at their nodes."""
-    some, first, time = rows_of(slides, now), first[now], time[now]
-    force = force_beyond(scene, some, first, time)
-    wells = _horizon(scene, some, first, time, force)
+    chosen, first, time = rows_of(slides, now), first[now], time[now]
+    force = force_beyond(scene, chosen, first, time)
+    wells = _horizon(scene, chosen, first, time, force)
     able = (force > 0) & (wells >= SETTINGS.smallest)
     wells, force = np.where(able, wells, 1.0), np.where(able, force, 1.0)
     lags = lags_of(
         scene=scene,
-        track=some.track,
-        eps=some.eps,
-        viscosity=some.viscosity,
-        origin=some.origin,
+        track=chosen.track,
+        eps=chosen.eps,
+        viscosity=chosen.viscosity,
+        origin=chosen.origin,
         first=first,
         time=time,
         force=force,
@@ -58,9 +58,9 @@ def _cut(scene: Scene, slides: Slides, now, first, time, tail, share, past):
     slide, numbers, forces = [], [], []
     for i in np.flatnonzero(able).tolist():
         mine = rows_of(lags, i)
-        since = first[i] - some.first[i]
+        since = first[i] - chosen.first[i]
         left = past[now[i]] - first[i]
-        edges = edges_of(mine, some.late[i], left, since, tail, share[now[i]])
+        edges = edges_of(mine, chosen.late[i], left, since, tail, share[now[i]])
         number = edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (PANEL_NODES + 1)
         slide.append(np.full(edges.size - 1, now[i]))
         numbers.append(first[i] + number)
@@ -73,11 +73,11 @@ def _cut(scene: Scene, slides: Slides, now, first, time, tail, share, past):
 
 def _guess(scene: Scene, slides: Slides, panels: Panels, force, time) -> np.ndarray:
     """Times at the nodes where the force beyond the fold is as given."""
-    some = rows_of(slides, panels.slide)
-    sign, wide = some.track.sign[:, None], np.ones_like(force)
-    states = some.origin[:, None] + sign * some.eps[:, None] * panels.number
-    pull = sign * (some.track.fold[:, None] + force)
-    early, late = time[panels.slide][:, None] * wide, some.late[:, None] * wide
+    chosen = rows_of(slides, panels.slide)
+    sign, wide = chosen.track.sign[:, None], np.ones_like(force)
+    states = chosen.origin[:, None] + sign * chosen.eps[:, None] * panels.number
+    pull = sign * (chosen.track.fold[:, None] + force)
+    early, late = time[panels.slide][:, None] * wide, chosen.late[:, None] * wide
     guess = arrivals_at(scene, states.ravel(), pull.ravel(), early.ravel(), late.ravel())
     guess = guess.reshape(force.shape).copy()
     guess[panels.opens, 0] = time[panels.slide[panels.opens]]
@@ -115,8 +115,8 @@ def follow(scene: Scene, slides: Slides, tail: float) -> list[TransitTimes | Non
             break
         guess = _guess(scene, slides, panels, force, time)
         solved = solved_on(scene, slides, panels, guess, tail)
-        calm = np.all(_leaves(solved.kept, SETTINGS.slow), axis=1)
-        on = solved.fine & calm
+        fast = np.all(_leaves(solved.kept, SETTINGS.slow), axis=1)
+        on = solved.fine & fast
         going = []
         for c in np.unique(panels.slide):
             mine = np.flatnonzero(panels.slide == c)

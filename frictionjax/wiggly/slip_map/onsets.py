@@ -21,7 +21,7 @@ from .transit import pull_at
 class LookAt(NamedTuple):
     """Asks for the tips of `cells` at `stops` in s, shape (n,); the answer: `FoundTips`.
 
-    By lanes to windows that begin at `begins`, which may set off from slides in `known`
+    By lanes to brackets that begin at `begins`, which may set off from slides in `known`
     (cells of the sweep,), tuples of `FastSlide`.
     """
 

@@ -105,12 +105,12 @@ def _linear(matrix: np.ndarray, left: np.ndarray, coupling: np.ndarray):
     return found[..., 0], found[..., 1]
 
 
-def _chained(opens: np.ndarray, own: np.ndarray, coupled: np.ndarray) -> np.ndarray:
+def _chained(opens: np.ndarray, uncoupled: np.ndarray, coupled: np.ndarray) -> np.ndarray:
     """Corrections of the starts of panels, each where the panel before now ends."""
     start, last = np.zeros(opens.size), 0.0
     for p, first in enumerate(opens.tolist()):
         start[p] = 0.0 if first else last
-        last = own[p] + coupled[p] * start[p]
+        last = uncoupled[p] + coupled[p] * start[p]
     return start
 
 
@@ -119,17 +119,19 @@ def _newton(scene: Scene, slides: Slides, panels: Panels, times: np.ndarray):
     span = panels.span
     powers = (2 / span)[:, None] ** np.arange(1, SETTINGS.degree + 1)
     shift = np.einsum("ck,kij->cij", powers, _SHIFTS)[:, 1:]
-    some, number = rows_of(slides, panels.slide), panels.number
+    chosen, number = rows_of(slides, panels.slide), panels.number
     guess, before = None, np.full(span.size, np.nan)
     for _ in range(SETTINGS.newton):
-        pull = _pull(scene, some, number[:, 1:], times[:, 1:])
-        found = transit_times(some.track, pull, some.viscosity, guess)
+        pull = _pull(scene, chosen, number[:, 1:], times[:, 1:])
+        found = transit_times(chosen.track, pull, chosen.viscosity, guess)
         since = times - times[:, :1]
         left = np.einsum("cij,cj->ci", shift, since) - found.length
         matrix = shift[:, :, 1:] + np.eye(SETTINGS.degree) * (1 - found.kept)[:, :, None]
-        own, coupled = _linear(matrix, -left, -shift[:, :, 0])
-        start = _chained(panels.opens, own[:, -1], coupled[:, -1])
-        change = np.concatenate([start[:, None], own + coupled * start[:, None]], axis=1)
+        uncoupled, coupled = _linear(matrix, -left, -shift[:, :, 0])
+        start = _chained(panels.opens, uncoupled[:, -1], coupled[:, -1])
+        change = np.concatenate(
+            [start[:, None], uncoupled + coupled * start[:, None]], axis=1
+        )
         times = times + change
         length = np.abs(times[:, -1] - times[:, 0]) / span
         size = np.max(np.abs(change), axis=1) / length

@@ -32,8 +32,8 @@ def way_of(
     stops: StopValues,
 ) -> CellWay:
     """The cell's running sums, slides of which only some slips were measured included."""
-    own, time = stops.sums[:, chain], stops.time[chain]
-    totals, before = np.cumsum(own, axis=1), np.zeros((len(slides), 3))
+    sums, time = stops.sums[:, chain], stops.time[chain]
+    totals, before = np.cumsum(sums, axis=1), np.zeros((len(slides), 3))
     running = np.concatenate([np.zeros((3, 1)), totals], axis=1)
     for k, survey in enumerate(surveys):
         before[k] = running[:, np.searchsorted(time, survey.low, side="right")]
@@ -58,25 +58,25 @@ def _outputs(
     place = np.full(stops.time.size + 1, -1)
     place[cell.chain] = np.arange(cell.chain.size)
     lows = np.array([survey.low for survey in cell.surveys])
-    owner = layout.windows.owner
-    # Where its window begins: times of one window may be in surveys further on.
+    owner = layout.brackets.owner
+    # Where its bracket begins: times of one bracket may be in surveys further on.
     first = np.searchsorted(owner, owner[output])
     survey = np.searchsorted(lows, stops.time[first], side="right") - 1
-    begin = layout.windows.begin[owner[output]]
+    begin = layout.brackets.begin[owner[output]]
     return _Outputs(output, place[output], survey, begin)
 
 
-def _since_begin(windows: Brackets, stops: StopValues, chosen: np.ndarray) -> np.ndarray:
-    """Integrals in J over the windows of the chosen stops, up to these, (3, n).
+def _since_begin(brackets: Brackets, stops: StopValues, chosen: np.ndarray) -> np.ndarray:
+    """Integrals in J over the brackets of the chosen stops, up to these, (3, n).
 
-    Times in a rest of the path share a window, and lanes sum from one stop to the next.
+    Times in a rest of the path share a bracket, and lanes sum from one stop to the next.
     """
-    owner = windows.owner[chosen]
-    first = np.searchsorted(windows.owner, owner)
+    owner = brackets.owner[chosen]
+    first = np.searchsorted(brackets.owner, owner)
     found = stops.sums[:, chosen]
     later = np.flatnonzero(chosen > first)
-    for window in np.unique(owner[later]):
-        mine = later[owner[later] == window]
+    for bracket in np.unique(owner[later]):
+        mine = later[owner[later] == bracket]
         begin = first[mine[0]]
         running = np.cumsum(stops.sums[:, begin : chosen[mine].max() + 1], axis=1)
         found[:, mine] = running[:, chosen[mine] - begin]
@@ -84,7 +84,7 @@ def _since_begin(windows: Brackets, stops: StopValues, chosen: np.ndarray) -> np
 
 
 def _running(
-    cell: CellWay, stops: StopValues, windows: Brackets, outputs: _Outputs
+    cell: CellWay, stops: StopValues, brackets: Brackets, outputs: _Outputs
 ) -> np.ndarray:
     """Integrals in J from 0 to each requested time, (3, n)."""
     in_chain = (outputs.place >= 0) & (outputs.stop >= 0)
@@ -92,8 +92,8 @@ def _running(
     for k, survey in enumerate(cell.surveys):
         mine = np.flatnonzero(~in_chain & (outputs.stop >= 0) & (outputs.survey == k))
         done = survey.integrals(outputs.begin[mine])
-        own = _since_begin(windows, stops, outputs.stop[mine])
-        found[:, mine] = cell.before[k][:, None] + done + own
+        since_begin = _since_begin(brackets, stops, outputs.stop[mine])
+        found[:, mine] = cell.before[k][:, None] + done + since_begin
     return found
 
 
@@ -131,7 +131,7 @@ def energetics(
     in m.
     """
     outputs = _outputs(cell, stops, layout, output)
-    running = _running(cell, stops, layout.windows, outputs)
+    running = _running(cell, stops, layout.brackets, outputs)
     beyond = energy0 - stops.energy[cell.chain] - cell.totals[WORK]
     errors = _errors(cell, stops, path, unit)
     if _is_summed(cell, errors, path, eps):
@@ -220,17 +220,17 @@ def no_energetics(size: int) -> Energetics:
 
 
 def _spent(cell: CellWay, stops: StopValues, path: Path) -> float:
-    """The path's dissipation in J over [0, T], from the legs and slides of the cell."""
-    legs = float(np.sum(stops.sums[VISCOUS, cell.chain] - stops.beyond[cell.chain]))
-    return legs + sum(path.rho[s.piece] * s.way for s in cell.slides)
+    """The path's dissipation in J over [0, T], from the segments and slides of the cell."""
+    segments = float(np.sum(stops.sums[VISCOUS, cell.chain] - stops.beyond[cell.chain]))
+    return segments + sum(path.rho[s.piece] * s.way for s in cell.slides)
 
 
 def _worst_dissipation(cell, stops, energy0, beyond) -> tuple[float, float]:
     """Largest distance of the dissipation from the path's, and the error of it."""
-    own = stops.beyond[cell.chain]
-    start = beyond - own
+    surpluses = stops.beyond[cell.chain]
+    start = beyond - surpluses
     # Where the path rests they grow all the way: largest at the ends, which are known.
-    rests = own == stops.sums[VISCOUS, cell.chain]
+    rests = surpluses == stops.sums[VISCOUS, cell.chain]
     extremes = stops.extremes[SURPLUS:, cell.chain]
     most, least = np.where(rests, beyond, start + extremes)
     rows = [(np.max(most, initial=0.0), -np.min(least, initial=0.0))]

@@ -65,7 +65,7 @@ def evaluate(
     ground: CellBounds,
     ts: np.ndarray,
     layout: Layout,
-    found: BracketValues,
+    values: BracketValues,
     wanted: Sums,
     accuracy: float,
 ) -> CellResults:
@@ -74,7 +74,7 @@ def evaluate(
     Suprema are NaN where no extremes were `wanted`.
     """
     eps = ground.eps
-    stops = stop_values_of(scene, layout, found, eps)
+    stops = stop_values_of(scene, layout, values, eps)
     count = eps.size
     guide = np.full(count, path.states[0])
     z_start, energy0, _ = states_at_stops(
@@ -125,14 +125,14 @@ def evaluate(
             "dissipation_error": energies.worst,
             "sup_error": off.far,
             "strip_excess": off.outside,
-            "how": np.where(output >= 0, found.how[output], 0),
-            "gap": np.where(output >= 0, found.gap[output], 0.0),
+            "how": np.where(output >= 0, values.how[output], 0),
+            "gap": np.where(output >= 0, values.gap[output], 0.0),
             "sampled": _share(cell, path, whole) if layout.whole else np.nan,
             "survey_error": off.error,
             "survey_work_error": energies.lost,
-            "status": _status(found.arrivals.code[used], unbalanced),
-            "steps": found.steps[c],
-            "rejected": found.rejected[c],
+            "status": _status(values.arrivals.code[used], unbalanced),
+            "steps": values.steps[c],
+            "rejected": values.rejected[c],
             "tolerance": 0.0,
         }
         rows.append(CellResults(**row))

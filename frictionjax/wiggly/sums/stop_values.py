@@ -50,22 +50,24 @@ class StopValues(NamedTuple):
 
 
 def stop_values_of(
-    scene: Scene, layout: Layout, found: BracketValues, eps: np.ndarray
+    scene: Scene, layout: Layout, values: BracketValues, eps: np.ndarray
 ) -> StopValues:
     """What was found at every stop of a layout."""
-    windows, a, legs = layout.windows, found.arrivals, found.legs
-    own = eps[windows.cell[windows.owner]]
-    z, energy, size = states_at_stops(scene, own, a.well, a.tip, windows.stop, legs.guide1)
-    rise = legs.guide1 - legs.guide0
-    moved = legs.end > legs.start
+    brackets, a, segments = layout.brackets, values.arrivals, values.segments
+    eps_at_stops = eps[brackets.cell[brackets.owner]]
+    z, energy, size = states_at_stops(
+        scene, eps_at_stops, a.well, a.tip, brackets.stop, segments.guide1
+    )
+    rise = segments.guide1 - segments.guide0
+    moved = segments.end > segments.start
     ways, surpluses = (a.ahead, a.behind, a.outside), (a.surplus, a.deficit)
     return StopValues(
-        time=windows.stop,
+        time=brackets.stop,
         z=z,
         energy=energy,
         size=size,
         sums=np.stack([a.work, a.viscous, a.residual]),
-        beyond=a.viscous - legs.friction * rise,
+        beyond=a.viscous - segments.friction * rise,
         extremes=np.stack([*(np.where(moved, v, 0.0) for v in ways), *surpluses]),
     )
 
@@ -78,15 +80,15 @@ def sampled_slides_at(
     counts = np.array([slide.stops.size for slide in slides])
     for count in np.unique(counts):
         mine = np.flatnonzero(counts == count)
-        some = [slides[i] for i in mine]
-        at = np.stack([slide.stops for slide in some])
+        alike = [slides[i] for i in mine]
+        at = np.stack([slide.stops for slide in alike])
         sums = stops.sums[:, at].swapaxes(0, 1)
         extremes = stops.extremes[:, at].swapaxes(0, 1)
         start = stops.energy[at] + sums[:, WORK] + stops.beyond[at]
         extremes[:, SURPLUS:] -= start[:, None]
-        low, high = np.array([(slide.low, slide.high) for slide in some]).T
-        starts = np.stack([slide.starts for slide in some])
-        ends = np.stack([slide.ends for slide in some])
+        low, high = np.array([(slide.low, slide.high) for slide in alike]).T
+        starts = np.stack([slide.starts for slide in alike])
+        ends = np.stack([slide.ends for slide in alike])
         fits = sampled_slides_of(low, high, starts, ends, sums, extremes)
         found |= zip(mine.tolist(), fits, strict=True)
     return found

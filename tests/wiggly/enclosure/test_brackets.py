@@ -229,7 +229,7 @@ def test_brackets_hold_the_tip():
     begin = np.linspace(0.1, 2.9, 200)
     far = np.full(200, 3.0)
     starts = starts_of(scene, path, ground, np.zeros(200, int), begin, far, far)
-    slides = np.flatnonzero(~starts.known)
+    slides = np.flatnonzero(~starts.known_start)
     assert slides.size > 150
     time = np.unique(starts.time[slides])
     truth = cells(scene, eps, gamma, "resolved", times=time, balanced=False).z[0]

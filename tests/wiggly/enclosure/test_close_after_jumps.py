@@ -54,14 +54,16 @@ def test_cells_wait_for_lanes_that_go_astray_so_long_only():
     every = dict.fromkeys(CellBounds._fields, None) | {"eps": eps}
     blank = BracketContext(*[None] * 11)._replace(effort=no_effort(3), path=path_of(scene))
     rounds = blank._replace(ground=CellBounds(**every))
-    legs = Segments(*np.zeros((len(Segments._fields), 6)))._replace(budget=np.full(6, 1e9))
-    legs = legs._replace(guide1=np.array([0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]))
+    segments = Segments(*np.zeros((len(Segments._fields), 6)))._replace(
+        budget=np.full(6, 1e9)
+    )
+    segments = segments._replace(guide1=np.array([0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]))
     cell, known = np.array([0, 1, 2, 0, 1, 2]), np.array([True, False, True])
     jobs = Lanes(cell, none, none, none, np.arange(6), np.arange(1, 7))
-    plan = BracketPlan(jobs, legs, none, none, none, none, known, known, none, none)
+    plan = BracketPlan(jobs, segments, none, none, none, none, known, known, none, none)
     able, some = rounds._within_patience(plan)
     assert able.all()
-    beyond = some.legs.budget - SETTINGS.patience
+    beyond = some.segments.budget - SETTINGS.patience
     assert beyond == pytest.approx(
         [1e9 - SETTINGS.patience, 0, 0, 200 * 10, 0, 0], abs=1e-6
     )

@@ -15,10 +15,10 @@ def measured(measure, wells=0.1, paces=(1.0, 1.0), path=1.0, ahead=1, fastest=1.
     """Two lanes at a stop, `wells` apart, that move at `paces` where the path does at 1."""
     none = np.zeros(2)
     place, speed = np.array([0.0, wells]), np.array(paces)
-    found = SegmentEnds(np.array([3.0, 3.0]), place, speed, *[none] * 11)
+    ends = SegmentEnds(np.array([3.0, 3.0]), place, speed, *[none] * 11)
     slope = np.full(2, path)
-    legs = Segments(none, none, none, none, slope, slope, none, none)
-    return measure(found, legs, np.array([0]), np.array([ahead]), fastest)[0]
+    segments = Segments(none, none, none, none, slope, slope, none, none)
+    return measure(ends, segments, np.array([0]), np.array([ahead]), fastest)[0]
 
 
 def test_the_way_counts_where_the_tip_moves_as_the_path_does():

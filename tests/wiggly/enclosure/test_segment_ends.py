@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.wiggly.enclosure.brackets import legs_of
+from frictionjax.wiggly.enclosure.brackets import segments_of
 from frictionjax.wiggly.enclosure.segment_ends import Cut, follow_path
 from frictionjax.wiggly.lanes.queue import guide_of
 from frictionjax.wiggly.lanes.running_extrema import Guide
@@ -91,11 +91,11 @@ def path():
 
 def off_path(scene, path, stops, shares):
     """How far cubics between the stops leave the path inside, m."""
-    legs = legs_of(scene, path, np.append(0.0, stops[:-1]), stops)
+    segments = segments_of(scene, path, np.append(0.0, stops[:-1]), stops)
     off = []
     for share in shares:
-        times = legs.start + share * (legs.end - legs.start)
-        off.append(np.abs(guide_of(legs)(times) - states_at(scene, path, times)))
+        times = segments.start + share * (segments.end - segments.start)
+        off.append(np.abs(guide_of(segments)(times) - states_at(scene, path, times)))
     return np.max(off)
 
 

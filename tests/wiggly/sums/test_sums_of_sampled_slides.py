@@ -145,7 +145,7 @@ def test_errors_of_surveys_that_reach_the_largest_count(behind):
 def test_a_rough_surplus_is_an_error_of_the_dissipation():
     path = Path(*[np.zeros(2)] * 5, rho=np.full(1, 0.1), rho_plus=0.1, rho_minus=-0.1)
     layout = SimpleNamespace(
-        windows=SimpleNamespace(begin=np.zeros(2), owner=np.arange(2)),
+        brackets=SimpleNamespace(begin=np.zeros(2), owner=np.arange(2)),
     )
     for wobble in (1e-7, 1e-2):
         cell, stops = way(rough_survey(1.0, wobble, slice(SURPLUS, SURPLUS + 2)))
@@ -159,7 +159,7 @@ def test_an_unknown_error_of_a_survey_is_not_forgotten():
     """`max(0.0, nan)` is 0: the largest of errors must be asked of NumPy."""
     path = Path(*[np.zeros(2)] * 5, rho=np.full(1, 0.1), rho_plus=0.1, rho_minus=-0.1)
     layout = SimpleNamespace(
-        windows=SimpleNamespace(begin=np.zeros(2), owner=np.arange(2)),
+        brackets=SimpleNamespace(begin=np.zeros(2), owner=np.arange(2)),
     )
     of = layout, np.array([0]), 0.0, np.zeros(1), path, 1e-6, 1e-3
     unknown = rough_survey(1.0, 0.0)._replace(error_work=np.nan)
@@ -188,7 +188,7 @@ def test_surveys_decide_which_sum_is_the_dissipation(errors, pulled, summed):
 
 def test_times_in_a_rest_of_the_path_share_a_window():
     """On a fast slide such times are inside a survey: 4% of the dissipation was lost."""
-    windows = SimpleNamespace(owner=np.array([0, 1, 1, 1, 2]))
+    brackets = SimpleNamespace(owner=np.array([0, 1, 1, 1, 2]))
     sums = np.arange(15.0).reshape(3, 5)
     stops = SimpleNamespace(sums=sums)
     chosen = np.array([0, 3, 1, 4, 2])
@@ -199,7 +199,7 @@ def test_times_in_a_rest_of_the_path_share_a_window():
         sums[:, 4],
         sums[:, 1:3].sum(1),
     ]
-    assert np.array_equal(_since_begin(windows, stops, chosen), np.stack(expected, axis=1))
+    assert np.array_equal(_since_begin(brackets, stops, chosen), np.stack(expected, axis=1))
 
 
 def test_times_of_a_window_count_from_the_survey_in_which_it_begins():
@@ -207,8 +207,10 @@ def test_times_of_a_window_count_from_the_survey_in_which_it_begins():
     surveys = [SimpleNamespace(low=0.0), SimpleNamespace(low=1.0)]
     cell = SimpleNamespace(chain=np.zeros(0, dtype=int), surveys=surveys)
     stops = SimpleNamespace(time=np.array([0.5, 0.9, 1.4, 1.6]))
-    windows = SimpleNamespace(owner=np.array([0, 1, 1, 2]), begin=np.array([0.4, 0.8, 1.5]))
-    found = _outputs(cell, stops, SimpleNamespace(windows=windows), np.arange(4))
+    brackets = SimpleNamespace(
+        owner=np.array([0, 1, 1, 2]), begin=np.array([0.4, 0.8, 1.5])
+    )
+    found = _outputs(cell, stops, SimpleNamespace(brackets=brackets), np.arange(4))
     assert found.survey.tolist() == [0, 0, 0, 1]
     assert found.begin.tolist() == [0.4, 0.8, 0.8, 1.5]
 
