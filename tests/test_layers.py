@@ -35,6 +35,7 @@ FLOORS = {
         {"__main__"},
     ],
     "wiggly": [
+        {"stepping"},
         {"equation", "rosenbrock"},
         {"sequential", "lanes", "limit_path", "settings"},
         {"slip_map"},

@@ -1,11 +1,11 @@
 """The wiggly system (eq. 2.7) at finite eps: one trajectory, or all cells of a sweep.
 
-From the bottom: `equation` (vector field, energies, step plan), `rosenbrock` (the scheme),
-`sequential` (one traced trajectory, through diffrax), `lanes` (many short integrations
-side by side), `limit_path` (what the limit does, as a guide), `slip_map` (fast slides,
-well after well), `enclosure` (lanes from below and above until they meet), `sums` (values
-at stops, integrals). `plan` says which way each cell goes, `batch` drives them all, and
-`trajectory` is `fx.solve`."""
+From the bottom: `stepping` (step sizes, their control), `equation` (vector field, energies,
+step plan), `rosenbrock` (the scheme), `sequential` (one traced trajectory, through
+diffrax), `lanes` (many short integrations side by side), `limit_path` (what the limit does,
+as a guide), `slip_map` (fast slides, well after well), `enclosure` (lanes from below and
+above until they meet), `sums` (values at stops, integrals). `plan` says which way each cell
+goes, `batch` drives them all, and `trajectory` is `fx.solve`."""
 
 import lazy_loader
 

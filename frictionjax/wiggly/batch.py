@@ -92,20 +92,16 @@ def integrate_cells(
 
 def _cells_of(plan: Planned, eps: np.ndarray, gamma: np.ndarray) -> Cellwise:
     """What the first attempt needs of each cell."""
-    control = plan.control
+    steps = plan.control
     return Cellwise(
         eps=eps,
         ground=plan.ground,
         cells=LaneCells(
             eps=eps,
             viscosity=viscosity_of(eps, gamma),
-            first_step=control.first_step,
-            tolerance=control.tolerance,
-            loosest=control.loosest,
-            pace=control.pace,
-            reach=control.reach,
+            **steps.control._asdict(),
         ),
-        brief=np.asarray(control.brief),
+        brief=np.asarray(steps.brief),
         needs=plan.needs,
     )
 

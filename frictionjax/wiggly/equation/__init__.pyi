@@ -23,5 +23,3 @@ from .step_plan import accuracies_of as accuracies_of
 from .step_plan import plan_steps as plan_steps
 from .step_plan import pull_of as pull_of
 from .step_plan import require_accuracy as require_accuracy
-from .step_sizes import log2 as log2
-from .step_sizes import step_of as step_of

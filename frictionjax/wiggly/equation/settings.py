@@ -55,9 +55,6 @@ class Settings(NamedTuple):
     rounded: float = 2e-11  # over |z|: tolerances times `safety` that are near it
     double_spacing: float = 2.0**-50  # shortest step over the duration: four of floats
 
-    # Sizes of steps (`step_sizes.py`).
-    per_octave: int = 8  # costs 2% more steps
-
     # Energies (`energy_balance.py`).
     # Distance in periods from its equilibrium up to which a rest counts as one: tolerances
     # are up to 1e-4, and 1e-6 with a viscosity of 1e-12 would look like a residual of 0.1

@@ -11,6 +11,7 @@ from jaxtyping import Float
 from ..._checks import Real, known_numbers, require, require_real
 from ...loads import steep_times
 from ...model import Coefficients, Scene, coefficients, load_range
+from ..stepping import Control
 from .landscape import Landscape, WiggleFolds, landscape
 from .settings import SETTINGS
 
@@ -55,6 +56,17 @@ class StepPlan(NamedTuple):
     shortest_step: Real
     folds: WiggleFolds
     unit: Real
+
+    @property
+    def control(self) -> Control:
+        """What steers the steps of a trajectory through many wells."""
+        return Control(
+            first_step=self.first_step,
+            tolerance=self.tolerance,
+            loosest=self.loosest,
+            pace=self.pace,
+            reach=self.reach,
+        )
 
 
 class PullRange(NamedTuple):

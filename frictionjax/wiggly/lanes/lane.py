@@ -11,7 +11,6 @@ from ..._checks import Real
 from ...loads import AbstractLoad
 from ...model import AbstractPotential
 from ...supports import AbstractSupport
-from ..equation import SETTINGS as EQUATION_SETTINGS
 from ..equation import (
     Balance,
     Point,
@@ -20,16 +19,21 @@ from ..equation import (
     advance,
     arrival,
     slopes_between,
-    step_of,
 )
 from ..rosenbrock import Linearised, Tableau, rosenbrock_step
+from ..stepping import (
+    SETTINGS,
+    Control,
+    ControlState,
+    StepVerdict,
+    judge,
+    materialise,
+    step_of,
+)
 from .fold_steps import Foothold, foothold, pause_of
-from .materialise import materialise
 from .running_extrema import Extent, Guide, leave, spend, widen
-from .settings import SETTINGS
-from .step_control import Control, StepVerdict, judge
 
-_LOWEST_LEVEL = SETTINGS.lowest_octave * EQUATION_SETTINGS.per_octave
+_LOWEST_LEVEL = SETTINGS.lowest_octave * SETTINGS.per_octave
 
 
 class LaneCells(NamedTuple):
@@ -90,8 +94,7 @@ class LaneState(NamedTuple):
     time: Real
     unseen: Real
     point: Point
-    level: Real
-    trend: Real
+    control: ControlState
     sums: Balance
     extent: Extent
     steps: Real
@@ -109,8 +112,8 @@ def keep(condition: Bool[Array, "*lanes"], new: Any, old: Any) -> Any:
 
 
 class _Trial(NamedTuple):
-    """A step before it is accepted: where it ends, how it is judged, and whether its stop
-    or a failure has made it shorter, or nothing of it."""
+    """A step before it is accepted: where it ends, how it is judged, and whether a failure
+    or the stop has made nothing of it."""
 
     step: Real
     tip: Real
@@ -118,7 +121,6 @@ class _Trial(NamedTuple):
     unseen: Real
     end: Point
     judged: StepVerdict
-    cut: Bool[Array, ""]
     live: Bool[Array, ""]
 
 
@@ -127,7 +129,7 @@ def _try_step(
 ) -> _Trial:
     field = field_of_lane(scene, task)
     live = (motion.time < task.stop) & (motion.code == 0)
-    full = step_of(motion.level, task.cell.first_step)
+    full = step_of(motion.control.level, task.cell.first_step)
     pause = pause_of(motion.point, task.origin + motion.time, _drag(task, motion.point))
     waits = full < pause
     full = jnp.where(waits, pause, full)
@@ -145,11 +147,19 @@ def _try_step(
     end = materialise(field.point(time, tip), task.cell.eps)
     moved = jnp.abs(tip - motion.tip)
     error = jnp.where(waits, 0.0, place.beyond_rounding(jnp.abs(stages[-1]), end))
-    branches = place.overgrown(), place.resolves(end)
-    found = motion.trend, step, moved, error, *branches
-    judged = judge(tableau.order, task.cell.control, *found)
+    judged = judge(
+        tableau.order,
+        task.cell.control,
+        motion.control,
+        step=step,
+        moved=moved,
+        error=error,
+        cut=cut,
+        overgrown=place.overgrown(),
+        shifts=place.resolves(end),
+    )
     unseen = jnp.where(cut, 0.0, unseen)
-    return _Trial(step, tip, time, unseen, end, judged, cut, live)
+    return _Trial(step, tip, time, unseen, end, judged, live)
 
 
 def step_of_lane(
@@ -157,14 +167,8 @@ def step_of_lane(
 ) -> LaneState:
     """One step of one lane; a lane that has reached its stop stays as it is."""
     field = field_of_lane(scene, task)
-    step, tip, time, unseen, end, judged, cut, live = _try_step(
-        scene, tableau, task, motion
-    )
-    fits, level, trend = judged
-    # A step cut short by its stop says nothing about the next one.
-    level = jnp.where(fits & cut, jnp.maximum(level, motion.level), level)
-    trend = jnp.where(cut, motion.trend, trend)
-    accepted = fits & live
+    step, tip, time, unseen, end, judged, live = _try_step(scene, tableau, task, motion)
+    accepted = judged.accepted & live
     tip = jnp.where(accepted, tip, motion.tip)
     sums, extent = motion.sums, motion.extent
     arrived = arrival(field, motion.time, step, end) if any(wanted) else end
@@ -187,20 +191,19 @@ def step_of_lane(
         time=time,
         unseen=unseen,
         point=end,
-        level=level,
-        trend=trend,
+        control=judged.after,
         sums=sums,
         extent=extent,
         steps=motion.steps,
         rejected=motion.rejected,
         code=motion.code,
     )
-    failure = jnp.where(level < _LOWEST_LEVEL, float(Status.NOT_FINITE), 0.0)
+    failure = jnp.where(judged.after.level < _LOWEST_LEVEL, float(Status.NOT_FINITE), 0.0)
     failure = jnp.where(motion.steps >= task.budget, float(Status.MAX_STEPS), failure)
     return keep(accepted, after, motion)._replace(
-        level=jnp.where(live, level, motion.level),
+        control=keep(live, judged.after, motion.control),
         steps=motion.steps + live,
-        rejected=motion.rejected + (live & ~fits),
+        rejected=motion.rejected + (live & ~judged.accepted),
         code=jnp.where(live, failure, motion.code),
     )
 

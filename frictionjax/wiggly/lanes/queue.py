@@ -9,6 +9,7 @@ from jaxtyping import Array, Bool, Float, Int
 from ..._compile import Program
 from ..equation import Balance, Point
 from ..rosenbrock import Tableau
+from ..stepping import ControlState
 from .lane import (
     LaneCells,
     LaneScene,
@@ -115,8 +116,7 @@ def _idle(tables: Tables, width: int) -> tuple[LaneTask, LaneState]:
         time=zero,
         unseen=zero,
         point=Point(*[zero] * 6),
-        level=zero,
-        trend=zero,
+        control=ControlState(zero, zero),
         sums=Balance(*[zero] * 3),
         extent=Extent(*[zero] * 5),
         steps=zero,
@@ -180,8 +180,7 @@ def _refill(tables: Tables, work: _Work) -> tuple[LaneTask, LaneState, Int[Array
         tip=tip - shift,
         time=time,
         unseen=jnp.where(fresh, 0.0, motion.unseen),
-        level=jnp.where(fresh, 0.0, motion.level),
-        trend=jnp.where(fresh, 0.0, motion.trend),
+        control=keep(fresh, ControlState(), motion.control),
         sums=keep(change, Balance(zero, zero, zero), motion.sums),
         extent=keep(change, nothing, motion.extent),
         steps=jnp.where(change, 0.0, motion.steps),

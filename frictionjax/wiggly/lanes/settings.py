@@ -2,11 +2,9 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 
 class Settings(NamedTuple):
-    """Of compiled loops, of the control of steps, of steps at folds."""
+    """Of compiled loops, of queues, of steps at folds."""
 
     # Loops (`loops.py`).
     # Lanes side by side. Microseconds of a step of the loop: 0.72 at 4, 0.92 at 8, 1.43 at
@@ -32,17 +30,6 @@ class Settings(NamedTuple):
     # Steps between two looks at which lanes are done: a look costs about two steps, and a
     # lane that is done idles for half of this.
     chunk: int = 16
-
-    # Step sizes (`step_control.py`), in octaves unless said otherwise.
-    safe: float = np.log2(0.9)  # of what an error allows
-    gain: float = 0.8  # of the error itself (1: a third more of the steps are rejected)
-    ahead: float = 0.2  # by which the trend may exceed what the error allows
-    least_change: float = np.log2(0.1)
-    most_change: float = np.log2(8.0)
-    rejected: float = -0.125  # most change after a step that is rejected
-    tiny: float = 1e-5  # of the tolerance: errors are counted as that at least
-    far: float = 20.0  # reaches: whatever is further counts as that
-    lowest_octave: int = -900  # of the first step: lanes that get there are lost
 
     # Folds (`fold_steps.py`).
     # Folds of e that a tip may leave an unstable branch by in one step. Steps through slips

@@ -3,10 +3,8 @@
 from typing import Any, cast
 
 import diffrax
-import jax.numpy as jnp
-from jaxtyping import Array
 
-from ..equation import SETTINGS as EQUATION_SETTINGS
+from ..stepping import rounded_down
 from .wrapped import AbstractWrappedController
 
 
@@ -39,7 +37,7 @@ class RoundedSteps(AbstractWrappedController):
         error_order: Any,
     ) -> tuple:
         first, state = self.controller.init(terms, t0, t1, y0, dt0, args, func, error_order)
-        return t0 + _round_down(first - t0), state
+        return t0 + rounded_down(first - t0), state
 
     def adapt_step_size(
         self,
@@ -55,13 +53,5 @@ class RoundedSteps(AbstractWrappedController):
         keep, next_t0, next_t1, jump, state, result = self.controller.adapt_step_size(
             t0, t1, y0, y1_candidate, args, y_error, error_order, controller_state
         )
-        next_t1 = next_t0 + _round_down(next_t1 - next_t0)
+        next_t1 = next_t0 + rounded_down(next_t1 - next_t0)
         return keep, next_t0, next_t1, jump, state, result
-
-
-def _round_down(step: Any) -> Array:
-    # A hair above the grid point counts as on it: products of grid steps land there.
-    level = jnp.floor(
-        EQUATION_SETTINGS.per_octave * jnp.log2(jnp.maximum(step, 1e-300)) + 1e-6
-    )
-    return jnp.exp2(level / EQUATION_SETTINGS.per_octave)

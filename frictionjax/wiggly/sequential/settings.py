@@ -19,11 +19,8 @@ class Settings(NamedTuple):
     more: int = 256  # there is room for, when it is made again with other roundings
     most_pieces: int = 2**12  # kept; through more than that derivatives are NaN
 
-    # Solvers (`solvers_by_name.py`, `well_guard.py`).
+    # Solvers (`solvers_by_name.py`).
     newton: float = 0.03  # of the step's tolerance
-    # Estimates below this share of the tolerance are rounding noise and must not steer;
-    # (1e5)^(0.7/5) is the largest growth of a step.
-    noise: float = 1e-5
 
 
 SETTINGS = Settings()

@@ -6,7 +6,7 @@ import diffrax
 import jax.numpy as jnp
 
 from ..._checks import Real
-from .settings import SETTINGS
+from ..stepping import SETTINGS
 from .wrapped import AbstractWrappedController
 
 
@@ -59,8 +59,8 @@ class WellGuard(AbstractWrappedController):
         tip0, tip1, error = y0[0], y1_candidate[0], y_error[0]
         excess = jnp.abs(tip1 - tip0) / self.reach
         finite = jnp.isfinite(excess) & jnp.isfinite(error)
-        excess = jnp.where(finite, jnp.minimum(excess, 20.0), 20.0)
-        error = jnp.maximum(jnp.abs(error), SETTINGS.noise * self.atol)
+        excess = jnp.where(finite, jnp.minimum(excess, SETTINGS.far), SETTINGS.far)
+        error = jnp.maximum(jnp.abs(error), SETTINGS.tiny * self.atol)
         too_far = self.atol * (excess * 1.1) ** error_order
         error = jnp.where(finite, error, too_far)
         error = jnp.where(excess > 1, jnp.maximum(error, too_far), error)

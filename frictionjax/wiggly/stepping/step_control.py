@@ -1,4 +1,4 @@
-"""Step sizes of lanes: as large as the error allows, foreseeing how it changes.
+"""Step sizes: as large as the error allows, foreseeing how it changes.
 
 A predictive controller after K. Gustafsson (ACM Trans. Math. Softw. 20, 1994): it goes on
 as the last steps did, which shrink or grow steadily before and after a fold. Million steps
@@ -14,20 +14,19 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool
 
 from ..._checks import Real
-from ..equation import SETTINGS as EQUATION_SETTINGS
-from ..equation import log2
-from .materialise import materialise
+from .computed_once import materialise
 from .settings import SETTINGS
+from .step_sizes import log2
 
 
 class Control(NamedTuple):
-    """What steers the steps of a cell.
+    """What steers steps; of lanes and traces, in s and in periods of the tip.
 
-    `tolerance`: error of a step, periods, where the tip is slower than `pace` (periods a
-    second, the fastest slide's). Faster tips are in a slip, where an error is a shift in
-    time that matters less in proportion: up to `loosest` there. `reach`: how far one step
-    may move the tip, periods, whatever its error: see `WellGuard`. `first_step`: s. Levels
-    are counted from it, so that steps do not depend on the units.
+    `tolerance`: error of a step where the tip is slower than `pace` (periods a second, the
+    fastest slide's). Faster tips are in a slip, where an error is a shift in time that
+    matters less in proportion: up to `loosest` there. `reach`: how far one step may move
+    the tip, whatever its error: see `WellGuard`. Levels are counted from `first_step`, so
+    that steps do not depend on the units.
     """
 
     first_step: Any
@@ -37,12 +36,18 @@ class Control(NamedTuple):
     reach: Any
 
 
+class ControlState(NamedTuple):
+    """The next step's level, and the trend that the last accepted step has left."""
+
+    level: Any = 0.0
+    trend: Any = 0.0
+
+
 class StepVerdict(NamedTuple):
-    """Whether a step is accepted, the next one's level, and the trend to be kept."""
+    """Whether a step is accepted, and how steps go on."""
 
     accepted: Bool[Array, ""]
-    level: Real
-    trend: Real
+    after: ControlState
 
 
 def _power(x: Real, order: int) -> Real:
@@ -55,17 +60,19 @@ def _power(x: Real, order: int) -> Real:
 def judge(
     order: int,
     control: Control,
-    trend: Real,
+    before: ControlState,
+    *,
     step: Real,
     moved: Real,
     error: Real,
+    cut: Bool[Array, ""] | bool = False,
     overgrown: Real | float = 0.0,
     shifts: Bool[Array, ""] | bool = True,
 ) -> StepVerdict:
-    """Judge a step of `step` s that has moved the tip by `moved` periods.
+    """Judge a step that has moved the tip by `moved`.
 
-    `order`: of the error in the step. `trend`: what the last accepted step has left, 0 at
-    a start, which is of level 0. `overgrown`: how many times it is too long for unstable
+    `order`: of the error in the step. `cut`: whether a stop has made it shorter, so that it
+    says nothing about the next one. `overgrown`: how many times it is too long for unstable
     branches. `shifts`: whether an error in a slip is one in time.
     """
     excess = jnp.maximum(moved / control.reach, overgrown)
@@ -77,16 +84,18 @@ def judge(
     share = jnp.where(finite, jnp.maximum(error / tolerance, SETTINGS.tiny), 1.0)
     # One logarithm of both: each costs as much as a stage's sine.
     share = log2(jnp.maximum(share, _power(excess, order))) / order
-    share = materialise(share, control.tolerance)
+    share = materialise(share, control.first_step)
     size = log2(step / control.first_step)
     accepted = share <= 0
     allowed = SETTINGS.safe - SETTINGS.gain * share
-    foreseen = allowed - share + trend + size
+    foreseen = allowed - share + before.trend + size
     change = jnp.where(accepted, jnp.minimum(allowed + SETTINGS.ahead, foreseen), allowed)
     change = jnp.clip(
         change,
         SETTINGS.least_change,
         jnp.where(accepted, SETTINGS.most_change, SETTINGS.rejected),
     )
-    level = jnp.floor(EQUATION_SETTINGS.per_octave * (size + change) + 1e-4)
-    return StepVerdict(accepted, level, share - size)
+    level = jnp.floor(SETTINGS.per_octave * (size + change) + 1e-4)
+    level = jnp.where(accepted & cut, jnp.maximum(level, before.level), level)
+    trend = jnp.where(accepted & ~jnp.asarray(cut), share - size, before.trend)
+    return StepVerdict(accepted, ControlState(level, trend))

@@ -1,17 +1,21 @@
-"""Step control of lanes, on errors that change steadily as they do around a fold."""
+"""Step control, on errors that change steadily as they do around a fold."""
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from frictionjax.wiggly.equation.step_sizes import step_of
-from frictionjax.wiggly.lanes.step_control import Control, judge
+from frictionjax.wiggly.stepping.step_control import Control, ControlState, judge
+from frictionjax.wiggly.stepping.step_sizes import rounded_down, step_of
 
 ORDER = 5
 FIRST = 1e-9
 CONTROL = Control(FIRST, tolerance=1e-5, loosest=1e-4, pace=1e3, reach=0.125)
-JUDGE = jax.jit(judge, static_argnums=0)
+
+
+@jax.jit
+def judged(control, before, step, moved, error, **more):
+    return judge(ORDER, control, before, step=step, moved=moved, error=error, **more)
 
 
 def follow(octaves: float, count: int = 60) -> tuple[float, float]:
@@ -19,16 +23,14 @@ def follow(octaves: float, count: int = 60) -> tuple[float, float]:
 
     What the tolerance allows changes by so many octaves in each accepted step.
     """
-    level, trend, largest, rejected, used = 0.0, 0.0, FIRST, 0, []
+    state, largest, rejected, used = ControlState(), FIRST, 0, []
     for _ in range(count):
-        step = float(step_of(*map(jnp.asarray, (level, FIRST))))
+        step = float(step_of(*map(jnp.asarray, (state.level, FIRST))))
         error = CONTROL.tolerance * (step / largest) ** ORDER
-        accepted, level, trend_after = JUDGE(ORDER, CONTROL, trend, step, 0.0, error)
-        level = float(level)
+        accepted, state = judged(CONTROL, state, step, 0.0, error)
         if accepted:
             used.append(np.log2(step / largest))
             largest *= 2.0**octaves
-            trend = float(trend_after)
         else:
             rejected += 1
     return rejected / count, float(np.mean(used[10:]))
@@ -42,8 +44,9 @@ def test_steps_follow_what_the_error_allows(octaves):
     assert -0.3 - max(octaves, 0.0) < used < 0
 
 
-def accepts(step=FIRST, moved=1e-9, error=1e-6, control=CONTROL, overgrown=0.0) -> bool:
-    return bool(JUDGE(ORDER, control, 0.0, step, moved, error, overgrown).accepted)
+def accepts(step=FIRST, moved=1e-9, error=1e-6, overgrown=0.0) -> bool:
+    found = judged(CONTROL, ControlState(), step, moved, error, overgrown=overgrown)
+    return bool(found.accepted)
 
 
 def test_steps_over_which_solutions_part_are_rejected_whatever_their_error():
@@ -72,7 +75,31 @@ def test_far_steps_are_rejected_whatever_their_error():
 
 def test_levels_do_not_depend_on_the_unit_of_time():
     minutes = CONTROL._replace(first_step=FIRST / 60, pace=CONTROL.pace * 60)
-    found = JUDGE(ORDER, CONTROL, 0.1, 3 * FIRST, 1e-4, 3e-6)
-    other = JUDGE(ORDER, minutes, 0.1, 3 * FIRST / 60, 1e-4, 3e-6)
+    before = ControlState(level=2.0, trend=0.1)
+    found = judged(CONTROL, before, 3 * FIRST, 1e-4, 3e-6).after
+    other = judged(minutes, before, 3 * FIRST / 60, 1e-4, 3e-6).after
     assert float(found.level) == float(other.level)
     assert float(found.trend) == pytest.approx(float(other.trend), abs=1e-6)
+
+
+def test_what_a_step_leaves_for_the_next_one():
+    """One that a stop has cut short says nothing, but how far down one is rejected to."""
+    before = ControlState(level=40.0, trend=0.1)
+
+    def after(error, cut):
+        return judged(CONTROL, before, 2 * FIRST, 0.0, error, cut=cut).after
+
+    assert after(1e-7, cut=True) == before
+    longer = after(1e-7, cut=False)
+    assert longer.level < before.level
+    assert longer.trend != before.trend
+    for cut in (True, False):
+        shorter = after(1e-4, cut)
+        assert shorter.level < 8
+        assert shorter.trend == before.trend
+
+
+def test_steps_of_other_controllers_are_of_the_same_grid():
+    steps = np.array([0.3, 1.0, 7.0])
+    levels = 8 * np.log2(np.asarray(rounded_down(steps)))
+    np.testing.assert_allclose(levels, np.floor(8 * np.log2(steps)), atol=1e-12)

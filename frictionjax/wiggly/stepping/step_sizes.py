@@ -1,8 +1,11 @@
-"""Step sizes on the grid 2^(level/8) of a first step, in arithmetic that XLA vectorises."""
+"""Step sizes on a grid, 2^(level/8) of a first one, in arithmetic that XLA vectorises."""
+
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 from jax import lax
+from jaxtyping import Array
 
 from ..._checks import Real
 from .settings import SETTINGS
@@ -35,6 +38,14 @@ def exp2_in_bits(x: Real) -> Real:
     return power * _horner(_EXP2, x - whole)
 
 
-def step_of(level: Real, first: Real) -> Real:
-    """The step in s at a level of the grid that starts at the step `first`."""
+def step_of(level: Real, first: Real | float) -> Real:
+    """The step at a level of the grid that starts at the step `first`."""
     return first * exp2_in_bits(level / SETTINGS.per_octave)
+
+
+def rounded_down(step: Any) -> Array:
+    """The largest step of the grid that starts at 1, up to `step`."""
+    # A hair above the grid point counts as on it: products of grid steps land there.
+    octaves = jnp.log2(jnp.maximum(step, 1e-300))
+    level = jnp.floor(SETTINGS.per_octave * octaves + 1e-6)
+    return jnp.exp2(level / SETTINGS.per_octave)
