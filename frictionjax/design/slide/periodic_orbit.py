@@ -23,16 +23,17 @@ from jaxtyping import Array, Float, Int
 
 from ..._checks import Real
 from ...model import AbstractPotential
-from ...wiggly import RODAS5P, combine, dense_output
+from ...wiggly import RODAS5P, Control, ControlState, combine, dense_output, judge, step_of
 from .settings import SETTINGS
 
-STEPS = 2048  # of one period; 50 to 600 are needed, plateaus of nearly equal folds: 1200
+STEPS = 2048  # of one period; 60 to 700 are needed, plateaus of nearly equal folds: 1200
 _TABLEAU = RODAS5P
 _TIMES = np.array(_TABLEAU.times)
 # Of D in a step, in units of the highest wiggle: errors of D never grow, as c G/D^2 > 0,
 # so log D needs few digits where D is small; in log D throughout: 3 times the steps.
 _TOLERANCE, _LOOSEST = 1e-9, 1e-3
 _FIRST, _SHORTEST = 1e-4, 1e-60
+_REACH = 5.0  # of a step, in log D
 _LARGEST = 0.02  # of the period: a step must not look over a fold
 _FOLD = 2.338  # first zero of Ai(-x): how late a fold is left, in its own scale
 _X, _W = np.polynomial.legendre.leggauss(4)
@@ -131,28 +132,32 @@ def _once(slide: SlideScene, start: Real, level: Real):
     height, _ = slide.ground(start)
 
     def body(state: tuple) -> tuple:
-        way, level, step, steps, count, tried = state
+        way, level, control, steps, count, tried = state
+        step = jnp.clip(step_of(control.level, _FIRST), _SHORTEST, _LARGEST)
         last = way + step >= 1.0
         step = jnp.where(last, 1.0 - way, step)
         new, stages = _step(slide, start + way, step, level)
         share = height * jnp.exp(-jnp.maximum(level, new))
         allowed = jnp.clip(_TOLERANCE * share, _TOLERANCE, _LOOSEST)
-        error = jnp.abs(stages[-1]) / allowed
-        good = jnp.isfinite(error) & (error <= 1.0) & (jnp.abs(new - level) < 5.0)
-        ratio = 0.9 * jnp.maximum(error, 1e-6) ** (-1 / _TABLEAU.order)
-        ratio = jnp.where(jnp.isfinite(error), jnp.clip(ratio, 0.2, 5.0), 0.2)
-        ratio = jnp.where(good, ratio, jnp.minimum(ratio, 0.5))
+        good, control = judge(
+            _TABLEAU.order,
+            Control(_FIRST, allowed, loosest=allowed, pace=1.0, reach=_REACH),
+            control,
+            step=step,
+            moved=jnp.abs(new - level),
+            error=jnp.abs(stages[-1]),
+            cut=last,
+        )
         steps = jnp.where(good, steps.at[count].set(step), steps)
         way = jnp.where(good, jnp.where(last, 1.0, way + step), way)
         level = jnp.where(good, new, level)
-        step = jnp.clip(step * ratio, _SHORTEST, _LARGEST)
-        return way, level, step, steps, count + good, tried + 1
+        return way, level, control, steps, count + good, tried + 1
 
     def go_on(state: tuple) -> Array:
         way, level, _, _, count, tried = state
         return (way < 1.0) & (count < STEPS) & (tried < 4 * STEPS) & jnp.isfinite(level)
 
-    state = jnp.zeros(()), level, jnp.asarray(_FIRST), jnp.zeros(STEPS), 0, 0
+    state = jnp.zeros(()), level, ControlState(), jnp.zeros(STEPS), 0, 0
     way, level, _, steps, count, _ = jax.lax.while_loop(go_on, body, state)
     return steps, jnp.where(way >= 1.0, level, jnp.nan), count
 

@@ -11,7 +11,16 @@ from ..._checks import Real
 from ..._compile import Program
 from ...model import BristlePotential, Scene
 from ...profiles import AbstractProfile
-from ...wiggly import RODAS5P, StepPlan, TipField, field_of, plan_steps
+from ...wiggly import (
+    RODAS5P,
+    ControlState,
+    StepPlan,
+    TipField,
+    field_of,
+    judge,
+    plan_steps,
+    step_of,
+)
 from .waves import Bumped, WaveProfile
 
 _STEPS = 2**19  # at most: some 20 s
@@ -71,46 +80,48 @@ def _step(field: TipField, t: Real, y: Real, length: Real) -> tuple[Real, Real]:
 class _Front(NamedTuple):
     t: Real
     y: Real
-    length: Real
+    control: ControlState
     steps: Int[Array, ""]
 
 
 def _march(field: TipField, plan: StepPlan, tip: Real, stops: Array) -> tuple[Array, Array]:
-    """Tip at every stop, and steps tried. Step lengths are no function of the profile.
-
-    No step moves the tip further than `plan.reach` (see `WellGuard`).
-    """
+    """Tip at every stop, and steps tried. Step lengths are no function of the profile."""
 
     def to_stop(front: _Front, stop: Real) -> tuple[_Front, Real]:
+        def length_of(front: _Front) -> Real:
+            return step_of(front.control.level, plan.first_step)
+
         def under_way(front: _Front):
-            alive = (front.steps < _STEPS) & (front.length > plan.shortest_step)
+            alive = (front.steps < _STEPS) & (length_of(front) > plan.shortest_step)
             return (front.t < stop) & alive
 
         def advance(front: _Front) -> _Front:
-            last = front.t + 1.0001 * front.length >= stop
-            length = jnp.where(last, stop - front.t, front.length)
+            length = length_of(front)
+            last = front.t + 1.0001 * length >= stop
+            length = jnp.where(last, stop - front.t, length)
             y, error = _step(field, front.t, front.y, length)
             way, error = jax.lax.stop_gradient((jnp.abs(y - front.y), jnp.abs(error)))
-            excess, error = way / plan.reach, error / plan.tolerance
-            finite = jnp.isfinite(excess) & jnp.isfinite(error)
-            factor = jnp.clip(0.9 * jnp.maximum(error, 1e-5) ** -0.2, 0.1, 5.0)
-            factor = jnp.where(excess > 1, jnp.minimum(factor, 0.9 / excess), factor)
-            factor = jnp.where(finite, factor, 0.1)
-            good = finite & (error <= 1) & (excess <= 1)
+            good, after = judge(
+                _TABLEAU.order,
+                plan.control,
+                front.control,
+                step=length,
+                moved=way,
+                error=error,
+                cut=last,
+            )
             end = jnp.where(last, stop, front.t + length)
-            grown = length * factor
-            grown = jnp.where(last & good, jnp.maximum(front.length, grown), grown)
             return _Front(
                 jnp.where(good, end, front.t),
                 jnp.where(good, y, front.y),
-                jax.lax.stop_gradient(grown),
+                after,
                 front.steps + 1,
             )
 
         front = jax.lax.while_loop(under_way, advance, front)
         return front, front.y + jnp.where(front.t < stop, jnp.nan, 0.0)
 
-    start = _Front(jnp.zeros_like(tip), tip, plan.first_step, jnp.asarray(0))
+    start = _Front(jnp.zeros_like(tip), tip, ControlState(), jnp.asarray(0))
     last, tips = jax.lax.scan(to_stop, start, stops)
     return tips, last.steps
 
