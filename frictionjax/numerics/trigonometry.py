@@ -9,8 +9,6 @@ import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import Real
-
 # Taylor series of sin(2 pi r) and cos(2 pi r): on |r| <= 1/8 the first terms left out
 # are 3e-19 and 3e-18.
 _SINE = tuple(
@@ -20,11 +18,11 @@ _COSINE = tuple(
     (-1) ** k * (2 * math.pi) ** (2 * k) / math.factorial(2 * k) for k in range(9)
 )
 
-# Harmonics written out one by one; of more, blocks in a loop. With 64 written out a lane's
-# step takes 55 s to compile; with 14 and the fast flags LLVM wants more than 20 GB for the
-# narrow loop. Seconds of 16 and 64 harmonics, every slip: blocks of 8 0.29 and 0.68, of 4
-# 0.38 and 0.75, of 16 0.29 and 0.94.
-_UNROLLED, _BLOCK = 8, 8
+# Harmonics written out one by one; of more, blocks in a loop of at least two: with 8 in one
+# piece LLVM wants more than 20 GB for a lane's step. Seconds of 16 and 64 harmonics, every
+# slip: blocks of 8 0.044 and 0.081, of 4 0.065 and 0.14, of 16 0.08 for 64; of 8 written
+# out, where that compiles, 0.051.
+_UNROLLED, _BLOCK = 4, 8
 
 
 def _horner(
@@ -81,8 +79,8 @@ def fourier_sum(
 ) -> Float[Array, "*shape"]:
     """`sum_n cos_n cos(2 pi n y) + sin_n sin(2 pi n y)`, n = 1, 2, ...
 
-    `cos`, `sin`: shape (harmonics,); `y`: any shape. Harmonics by the addition theorem
-    from one pair, the same for the sum and all its derivatives.
+    `cos`, `sin`: shape (harmonics,); `y`: any shape. Horner's rule in `e^(2 pi i y)`,
+    one pair for the sum and all its derivatives.
     """
     return _add_up(cos, sin, y)
 
@@ -93,33 +91,38 @@ def _add_up(
     sin: Float[Array, " harmonics"],
     y: Float[Array, "*shape"],
 ) -> Float[Array, "*shape"]:
-    first = _evaluate(y)
-    pair, total = first, cos[0] * first[1] + sin[0] * first[0]
+    turn = _evaluate(y)
     if cos.shape[0] <= _UNROLLED:
-        for n in range(1, cos.shape[0]):
-            pair, total = _next_harmonic(first, pair, total, cos[n], sin[n])
-        return total
-    rows = [
-        jnp.pad(c[1:], (0, (1 - c.size) % _BLOCK)).reshape(-1, _BLOCK) for c in (cos, sin)
-    ]
+        last = jnp.full_like(y, sin[-1]), jnp.full_like(y, cos[-1])
+        total = _multiplied_up(turn, last, cos[:-1], sin[:-1])
+    else:
+        size = _BLOCK * max(2, -(-cos.size // _BLOCK))
+        blocks = [jnp.pad(c, (0, size - c.size)).reshape(-1, _BLOCK) for c in (cos, sin)]
 
-    def block(state: tuple, coefficients: tuple) -> tuple:
-        pair, total = state
-        for c, s in zip(*coefficients, strict=True):
-            pair, total = _next_harmonic(first, pair, total, c, s)
-        return (pair, total), None
+        def block(total: tuple, coefficients: list) -> tuple[tuple, None]:
+            return _multiplied_up(turn, total, *coefficients), None
 
-    (_, total), _ = jax.lax.scan(block, (pair, total), tuple(rows))
+        none = jnp.zeros_like(y), jnp.zeros_like(y)
+        total, _ = jax.lax.scan(block, none, blocks, reverse=True)
+    return total[1] * turn[1] + total[0] * turn[0]
+
+
+def _multiplied_up(
+    turn: tuple,
+    total: tuple,
+    cos: Float[Array, " harmonics"],
+    sin: Float[Array, " harmonics"],
+) -> tuple[Float[Array, "*shape"], Float[Array, "*shape"]]:
+    """Horner's rule for `sum_n (cos_n - i sin_n) e^(i n x)`, last harmonic first.
+
+    `turn`: sine and cosine of x. `total`: minus the imaginary and the real part of what
+    later harmonics gave; the result is one multiplication short of the sum.
+    """
+    sine, cosine = turn
+    for n in range(cos.shape[0] - 1, -1, -1):
+        minus, real = total
+        total = minus * cosine - real * sine + sin[n], real * cosine + minus * sine + cos[n]
     return total
-
-
-def _next_harmonic(
-    first: tuple, pair: tuple, total: Float[Array, "*shape"], cos: Real, sin: Real
-) -> tuple:
-    """The pair of the next harmonic by the addition theorem, and the sum with it."""
-    sine = pair[0] * first[1] + pair[1] * first[0]
-    cosine = pair[1] * first[1] - pair[0] * first[0]
-    return (sine, cosine), total + cos * cosine + sin * sine
 
 
 def _fourier_sum_jvp(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
