@@ -29,10 +29,10 @@ class Program:
 
     def __call__(self, *args: Any) -> Any:
         leaves, structure = flattened(args)
-        numbers = [leaf for leaf in leaves if isinstance(leaf, _ARRAYS)]
+        numbers = [leaf for leaf in leaves if isinstance(leaf, ARRAYS)]
         rest: tuple = ()
         if len(numbers) < len(leaves):
-            rest = tuple((i, x) for i, x in enumerate(leaves) if not isinstance(x, _ARRAYS))
+            rest = tuple((i, x) for i, x in enumerate(leaves) if not isinstance(x, ARRAYS))
         key = structure, rest
         program = self._known.get(key)
         if program is None:
@@ -58,7 +58,7 @@ class Program:
         return kept(fn, run, structure, rest)
 
 
-_ARRAYS = (jax.Array, np.ndarray, np.generic)
+ARRAYS = (jax.Array, np.ndarray, np.generic)
 
 
 class _Flat:
@@ -93,7 +93,7 @@ def flattened(args: tuple) -> tuple[list, tuple]:
     leaves: list = []
     structures: list = []
     for arg in args:
-        if isinstance(arg, _ARRAYS):
+        if isinstance(arg, ARRAYS):
             leaves.append(arg)
             structures.append(None)
             continue

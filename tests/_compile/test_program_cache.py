@@ -12,9 +12,10 @@ import frictionjax as fx
 from frictionjax._compile import program_cache as kept_programs
 from frictionjax._compile.programs import Program
 from frictionjax.model.potentials import BristlePotential
+from frictionjax.tables import profiles as table_profiles
 from frictionjax.wiggly import plan as planning
 
-TIPS, HEIGHTS = planning._tips._fn, planning._heights._fn
+TIPS, HEIGHTS = planning._tips._fn, table_profiles._heights._fn
 PLACES = np.linspace(0.0, 1.0, 5)
 
 

@@ -1,0 +1,75 @@
+"""Functions of parts that are gone through step by step, uncompiled."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax._compile import Interpreted
+from frictionjax._compile.numpy_rules import RULES
+
+X = np.linspace(0.05, 0.95, 7)
+
+
+def mixed(x):
+    """Most steps that people write, in one function of arrays."""
+    trig = jnp.sin(x) + jnp.cos(x) * jnp.tan(x) - jnp.arctan2(x, 1 + x) + jnp.arcsin(x)
+    grown = jnp.exp(-x) + jnp.log1p(x) * jnp.sqrt(x) + x**3 + x**0.7 + jnp.cbrt(x)
+    cut = jnp.where(x > 0.5, jnp.abs(x - 0.7), jnp.clip(x, 0.1, 0.4)) + jnp.sign(x - 0.3)
+    return trig + grown + cut + jnp.round(7 * x) + jnp.floor(3 * x) + jnp.sum(x) + x.max()
+
+
+def looped(x):
+    """Loops, branches, sorting and a table: what has no rule is made by JAX."""
+    halved = jax.lax.while_loop(lambda v: jnp.max(v) > 0.1, lambda v: 0.5 * v, x)
+    summed, _ = jax.lax.scan(lambda a, v: (a + v * v, None), jnp.zeros(()), x)
+    chosen = jax.lax.cond(summed > 1, lambda v: v + 1, lambda v: v - 1, jnp.sort(-x))
+    return halved + chosen + jnp.searchsorted(x, 0.5) + jnp.cumsum(x)[::-1]
+
+
+@pytest.mark.parametrize(
+    "fn", [mixed, looped, jax.vmap(jax.grad(lambda x: mixed(x[None])[0]))]
+)
+def test_it_gives_what_jax_gives(fn):
+    np.testing.assert_allclose(Interpreted(fn)(X), jax.jit(fn)(X), rtol=4e-15)
+
+
+def test_parts_go_in_and_their_numbers_count():
+    bristle = fx.bristles.AngularSpring(1.0, 1.3, 1.0, 0.1)
+    slope = Interpreted(lambda b, eta: jax.grad(b.energy)(eta))
+    for other in (bristle, bristle.replace(stiffness=2.0), bristle.replace(length=1.7)):
+        expected = float(jax.grad(other.energy)(0.01))
+        assert float(slope(other, np.asarray(0.01))) == pytest.approx(expected, rel=1e-14)
+
+
+def test_what_is_no_array_belongs_to_the_program():
+    padded = Interpreted(lambda x, room: jnp.pad(x, (0, room - x.size)))
+    assert padded(X, 9).shape == (9,)
+    assert padded(X, 12).shape == (12,)
+
+
+def test_a_program_is_traced_once_for_its_shapes():
+    traced = []
+
+    def fn(x):
+        traced.append(x.shape)
+        return 2 * x
+
+    doubled = Interpreted(fn)
+    for x in (X, X + 1, X[:3], X):
+        np.testing.assert_array_equal(doubled(x), 2 * x)
+    assert traced == [(7,), (3,)]
+
+
+def test_trees_come_back_as_trees():
+    found = Interpreted(lambda x: {"both": (x, 2 * x), "none": None})(X)
+    np.testing.assert_array_equal(found["both"][1], 2 * X)
+    assert found["none"] is None
+
+
+def test_every_rule_gives_the_type_that_the_program_says():
+    whole = Interpreted(lambda x: (x > 0.5, jnp.floor(x).astype(int), 1 / (x - x)))(X)
+    assert [v.dtype.kind for v in whole] == ["b", "i", "f"]
+    assert np.all(np.isinf(whole[2]))  # quietly
+    assert "add" in RULES
