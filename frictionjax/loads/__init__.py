@@ -3,6 +3,7 @@
 from .custom import Custom as Custom
 from .custom import UnprovedLoad as UnprovedLoad
 from .load import AbstractLoad as AbstractLoad
+from .load import AbstractPull as AbstractPull
 from .piecewise_linear import PiecewiseLinear as PiecewiseLinear
 from .ramp import Ramp as Ramp
 from .sine import Sine as Sine

@@ -10,7 +10,20 @@ from jaxtyping import Array, Float
 from .._checks import Part, Real, as_real, require_real
 
 
-class AbstractLoad(Part):
+class AbstractPull(Part):
+    """`l(t)` in N and its slope: what a bristle feels of a load."""
+
+    @abc.abstractmethod
+    def __call__(self, t: Real) -> Real:
+        """`l(t)` in N at time `t` in s."""
+
+    def slope(self, t: Real) -> Real:
+        """`l'(t)` in N/s, from the right at kinks."""
+        t = jnp.asarray(t)
+        return jax.jvp(self, (t,), (jnp.ones_like(t),))[1]
+
+
+class AbstractLoad(AbstractPull):
     """The load `l(t)` in N, continuous and piecewise C^1.
 
     An implementer keeps three rules:
@@ -24,10 +37,6 @@ class AbstractLoad(Part):
     """
 
     @abc.abstractmethod
-    def __call__(self, t: Real) -> Real:
-        """`l(t)` in N at time `t` in s."""
-
-    @abc.abstractmethod
     def turning_count(self, duration: float) -> int:
         """Number of turning points in (0, duration); needs known values."""
 
@@ -38,11 +47,6 @@ class AbstractLoad(Part):
     def prepared(self, duration: Real) -> "AbstractLoad":
         """The load with what a scene must find out about it first; others are ready."""
         return self
-
-    def slope(self, t: Real) -> Real:
-        """`l'(t)` in N/s, from the right at kinks."""
-        t = jnp.asarray(t)
-        return jax.jvp(self, (t,), (jnp.ones_like(t),))[1]
 
 
 class PeriodicLoad(AbstractLoad):

@@ -5,11 +5,11 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .._checks import Real
-from .load import AbstractLoad
+from .load import AbstractPull
 from .settings import SETTINGS
 
 
-def steep_times(load: AbstractLoad, start: Real, end: Real) -> Float[Array, " samples"]:
+def steep_times(load: AbstractPull, start: Real, end: Real) -> Float[Array, " samples"]:
     """Times in s between two turning points, among them those of the largest |l'|.
 
     Evenly spaced, and where the load rises otherwise than its slope there says: a ramp

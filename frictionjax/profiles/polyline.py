@@ -70,6 +70,11 @@ class Polyline(AbstractProfile):
             _require_room(found, float(self.radius))
             self.points = _resolving(found)
 
+    def corners(self) -> Corners:
+        """What it looks like around each of its points, NumPy arrays."""
+        x, heights = np.asarray(self.x), np.asarray(self.heights)
+        return _corners(x, heights, np.asarray(self.radius), np)
+
     def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         corners = _corners(self.x, self.heights, self.radius, jnp)
         y = jnp.asarray(y)

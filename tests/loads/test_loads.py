@@ -6,10 +6,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from paths import path_of
 
 import frictionjax as fx
 from frictionjax.loads.steep import steep_times
-from frictionjax.wiggly.limit_path.find_path import path_of
 
 T = jnp.linspace(0, 3, 301)
 TABLE = fx.loads.PiecewiseLinear([0.5, 1.0, 2.0], [1.0, 3.0, -1.0])

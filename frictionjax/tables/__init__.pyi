@@ -1,0 +1,10 @@
+from .bristles import SeriesBristle as SeriesBristle
+from .bristles import bristle_at_rest as bristle_at_rest
+from .bristles import bristle_series as bristle_series
+from .loads import load_table as load_table
+from .pieces import PiecewiseProfile as PiecewiseProfile
+from .profiles import ProfileTables as ProfileTables
+from .profiles import profile_tables as profile_tables
+from .settings import SETTINGS as SETTINGS
+from .waves import SeriesProfile as SeriesProfile
+from .waves import Waves as Waves

@@ -1,0 +1,96 @@
+"""A bristle as power series over the heights that its tip meets."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from .._checks import Real
+from .._compile import Interpreted
+from ..bristles import AbstractBristle, Rod
+from .settings import SETTINGS, size_for
+
+_NODES = np.cos(np.pi * (np.arange(SETTINGS.nodes) + 0.5) / SETTINGS.nodes)
+_TO_SERIES = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, SETTINGS.nodes - 1))
+
+
+class SeriesBristle(AbstractBristle):
+    """`A'` and `F'` as power series in `eta per_height`, A and F their integrals.
+
+    Two square roots and an arc tangent a stage, which XLA does not vectorise, become a
+    handful of products: 3 times less time for a step of the angular spring. (Divided by a
+    height instead: a quarter more for every step.) `rods`: slope and reach of the rod that
+    it is, shape (2, terms); None where it is none, or nobody asks.
+    """
+
+    ahead: Float[Array, " terms"]
+    climb: Float[Array, " terms"]
+    per_height: Real
+    rods: Float[Array, "2 terms"] | None = None
+
+    def _integral(self, terms: Array, eta: Real) -> Real:
+        x = eta * self.per_height
+        total = jnp.zeros_like(x)
+        for power in range(terms.shape[0] - 1, -1, -1):
+            total = total * x + terms[power] / (power + 1)
+        return eta * total
+
+    def offset(self, eta: Real) -> Real:
+        return self._integral(self.ahead, eta)
+
+    def energy(self, eta: Real) -> Real:
+        return self._integral(self.climb, eta)
+
+    def rod(self, eta: Real) -> Rod | None:
+        """The rod that has to clear the surface ahead of a tip at height `eta` (m)."""
+        if self.rods is None:
+            return None
+        x, total = eta * self.per_height, jnp.zeros((2, *jnp.shape(eta)))
+        for power in range(self.rods.shape[1] - 1, -1, -1):
+            total = total * x + self.rods[:, power]
+        return Rod(total[0], total[1])
+
+
+@Interpreted
+def _slopes(bristle: AbstractBristle, etas: Array) -> tuple[Array, Array]:
+    """A' and F' at heights (n,) in m."""
+    ahead, climb = jax.vmap(jax.grad(bristle.offset)), jax.vmap(jax.grad(bristle.energy))
+    return ahead(etas), climb(etas)
+
+
+@Interpreted
+def _rods(bristle: AbstractBristle, etas: Array) -> Any:
+    return jax.vmap(bristle.rod)(etas)
+
+
+def bristle_at_rest(bristle: AbstractBristle) -> SeriesBristle:
+    """The bristle for eps -> 0: `A'(0)` and `F'(0)` are all that is left of it."""
+    ahead, climb = (jnp.asarray(v) for v in _slopes(bristle, np.zeros(1)))
+    return SeriesBristle(ahead, climb, jnp.asarray(1.0))
+
+
+def bristle_series(
+    bristle: AbstractBristle, highest: float, with_rods: bool = False
+) -> AbstractBristle:
+    """The bristle as a series for |eta| <= `highest` (m); itself where none converges.
+
+    `with_rods`: those too, where the bristle is a rod.
+    """
+    etas = _NODES * highest
+    values = list(_slopes(bristle, etas))
+    if with_rods:
+        values += _rods(bristle, etas) or []
+    rows = np.stack(values)
+    series = rows @ _TO_SERIES.T
+    sizes = np.maximum(np.max(np.abs(rows), axis=1, keepdims=True), 1e-300)
+    used = np.abs(series) > SETTINGS.least * sizes
+    needed = int(np.max(np.flatnonzero(np.any(used, axis=0)), initial=0))
+    degree = size_for(needed, SETTINGS.degrees)
+    if degree is None or not np.all(np.isfinite(rows)):
+        return bristle
+    powers = [np.polynomial.chebyshev.cheb2poly(row[: degree + 1]) for row in series]
+    terms = [jnp.asarray(np.pad(p, (0, degree + 1 - p.size))) for p in powers]
+    rods = jnp.stack(terms[2:]) if len(terms) > 2 else None
+    return SeriesBristle(terms[0], terms[1], jnp.asarray(1 / highest), rods)

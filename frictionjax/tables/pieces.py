@@ -1,0 +1,67 @@
+"""A profile in pieces, each a polynomial: splines, polylines."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, ArrayLike, Float, Int
+
+from ..profiles import AbstractProfile
+from .settings import SETTINGS, size_for
+
+_DEGREE = 4  # of a corner of a polyline; a spline has 3
+
+
+class Pieces(NamedTuple):
+    """Polynomials `sum_k terms[k] t^k` in `t = y - left` on consecutive pieces of [0, 1).
+
+    `left` (n,): increasing, the first 0. `terms` (n, degree + 1).
+    """
+
+    left: Float[np.ndarray, " n"]
+    terms: Float[np.ndarray, "n terms"]
+
+
+class PiecewiseProfile(AbstractProfile):
+    """A 1-periodic profile in pieces, found by bins.
+
+    `rows` (pieces, 1 + terms): where a piece begins, and its polynomial from there.
+    `first` (bins,): the piece that holds the left end of each bin.
+    """
+
+    rows: Float[Array, "pieces columns"]
+    first: Int[Array, " bins"]
+    points: int = eqx.field(static=True, default=256)
+
+    def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
+        y = jnp.asarray(y)
+        y = y - jnp.floor(y)
+        count = self.first.shape[0]
+        piece = self.first[jnp.clip(jnp.floor(y * count).astype(int), 0, count - 1)]
+        for _ in range(SETTINGS.few):
+            piece = piece + (y >= self.rows[piece + 1, 0])
+        row = self.rows[piece]
+        t = y - row[..., 0]
+        total = row[..., -1]
+        for column in range(row.shape[-1] - 2, 0, -1):
+            total = total * t + row[..., column]
+        return total
+
+
+def piecewise(pieces: Pieces, points: int) -> PiecewiseProfile | None:
+    """Pieces in a table; None where they are too many, or too short for its bins."""
+    size = size_for(pieces.left.size + SETTINGS.few, SETTINGS.pieces)
+    if size is None:
+        return None
+    bins = SETTINGS.bins * size
+    left = np.pad(pieces.left, (0, size - pieces.left.size), constant_values=np.inf)
+    first = np.searchsorted(pieces.left, np.arange(bins) / bins, side="right") - 1
+    ends = np.append(first[1:], pieces.left.size - 1)
+    if np.max(ends - first) > SETTINGS.few:
+        return None
+    rows = np.zeros((size, 2 + _DEGREE))
+    rows[:, 0] = left
+    rows[: pieces.left.size, 1 : 1 + pieces.terms.shape[1]] = pieces.terms
+    samples = size_for(points, SETTINGS.points_a_period) or points
+    return PiecewiseProfile(jnp.asarray(rows), jnp.asarray(first), samples)

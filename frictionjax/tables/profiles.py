@@ -1,0 +1,152 @@
+"""A profile as tables: a Fourier series, or pieces of polynomials."""
+
+from functools import singledispatch
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from .._checks import ByIdentity
+from .._compile import Interpreted
+from ..profiles import AbstractProfile, Fourier, Polyline, Sine, Spline
+from .pieces import Pieces, PiecewiseProfile, piecewise
+from .polyline_pieces import polyline_pieces
+from .settings import SETTINGS, size_for
+from .waves import SeriesProfile, Waves
+
+
+class ProfileTables(NamedTuple):
+    """One profile as lanes evaluate it, a place after the other, and as planning does.
+
+    `height`: the largest |w| of samples, in periods.
+    """
+
+    lanes: AbstractProfile
+    planning: AbstractProfile
+    height: float
+
+    @property
+    def is_table(self) -> bool:
+        """Whether it is numbers alone; else programs are compiled for its class."""
+        return isinstance(self.planning, SeriesProfile | PiecewiseProfile)
+
+
+class Series(NamedTuple):
+    """`mean`, and coefficients of cosines and sines from the first harmonic, (n,) each."""
+
+    mean: float
+    cos: Float[np.ndarray, " n"]
+    sin: Float[np.ndarray, " n"]
+
+
+_TABLES = ByIdentity()  # of profiles that are known
+
+
+def profile_tables(profile: AbstractProfile) -> ProfileTables:
+    """The tables of a profile of known numbers; itself where no table is exact.
+
+    Exact is what is at rounding in places that the table was not made of.
+    """
+    known = _TABLES.get(profile)
+    if known is None:
+        known = _found(profile)
+        if known.is_table:  # a note must not refer to what it is on
+            _TABLES.put(profile, known)
+    return known
+
+
+def _found(profile: AbstractProfile) -> ProfileTables:
+    height = float(np.max(np.abs(_heights(profile, _places(profile.points)))))
+    shape = _shape_of(profile)
+    if isinstance(shape, Series):
+        return _in_series(shape, height)
+    table = None if shape is None else piecewise(shape, profile.points)
+    found: AbstractProfile = profile if table is None else table
+    return ProfileTables(found, found, height)
+
+
+def _places(count: int) -> np.ndarray:
+    return np.arange(count) / count
+
+
+def _in_series(series: Series, height: float) -> ProfileTables:
+    count = series.cos.size
+    few = count <= SETTINGS.waves[-1]
+    sizes = SETTINGS.waves if few else SETTINGS.blocks
+    kinds = SeriesProfile, Waves if few else SeriesProfile
+    lanes, planning = (
+        _padded(kind, series, size_for(count, fitting) or count)
+        for kind, fitting in zip(kinds, (SETTINGS.harmonics, sizes), strict=True)
+    )
+    return ProfileTables(lanes, planning, height)
+
+
+def _padded(kind: type[SeriesProfile], series: Series, size: int) -> SeriesProfile:
+    room = (0, size - series.cos.size)
+    cos, sin = (jnp.asarray(np.pad(c, room)) for c in (series.cos, series.sin))
+    return kind(jnp.asarray(series.mean), cos, sin)
+
+
+@singledispatch
+def _shape_of(profile: AbstractProfile) -> Series | Pieces | None:
+    """What the profile is made of; of functions and classes of the user's, if a series."""
+    return _series_of(profile)
+
+
+@_shape_of.register
+def _(profile: Sine) -> Series:
+    # `2 * jnp.pi` divides in the same order in the profile itself.
+    return Series(0.0, np.zeros(1), np.asarray(profile.slope)[None] / (2 * np.pi))
+
+
+@_shape_of.register
+def _(profile: Fourier) -> Series:
+    cos, sin = np.asarray(profile.cos), np.asarray(profile.sin)
+    used = int(np.max(np.flatnonzero((cos != 0) | (sin != 0)))) + 1
+    return Series(0.0, cos[:used], sin[:used])
+
+
+@_shape_of.register
+def _(profile: Spline) -> Pieces:
+    c = np.asarray(profile.coefficients)
+    before, after, next_ = np.roll(c, 1), np.roll(c, -1), np.roll(c, -2)
+    terms = np.stack(
+        [
+            (before + 4 * c + after) / 6,
+            (after - before) / 2,
+            (before - 2 * c + after) / 2,
+            (next_ - 3 * after + 3 * c - before) / 6,
+        ],
+        axis=1,
+    )
+    return Pieces(np.arange(c.size) / c.size, terms * float(c.size) ** np.arange(4))
+
+
+@_shape_of.register
+def _(profile: Polyline) -> Pieces:
+    return polyline_pieces(profile)
+
+
+@Interpreted
+def _heights(profile: AbstractProfile, places: Array) -> Array:
+    return jax.vmap(profile)(places)
+
+
+def _series_of(profile: AbstractProfile) -> Series | None:
+    """The series that meets a profile at twice the places that it is made of."""
+    count = SETTINGS.samples
+    values = _heights(profile, _places(2 * count))
+    waves = np.fft.rfft(values[::2]) / count
+    waves[1:] *= 2
+    sizes, largest = np.abs(waves), max(float(np.max(np.abs(values))), 1e-300)
+    used = int(np.max(np.flatnonzero(sizes > SETTINGS.negligible * largest), initial=1))
+    if used > SETTINGS.harmonics[-1] or not np.all(np.isfinite(values)):
+        return None
+    short = np.where(np.arange(waves.size) <= used, waves, 0)
+    short[1:] /= 2
+    fine = np.fft.irfft(np.pad(short, (0, count - waves.size + 1)) * 2 * count, 2 * count)
+    if np.max(np.abs(fine - values)) > SETTINGS.met * largest:
+        return None
+    return Series(float(waves[0].real), waves.real[1 : used + 1], -waves.imag[1 : used + 1])

@@ -1,0 +1,47 @@
+"""Sizes of tables: measured, with what lost."""
+
+from typing import NamedTuple
+
+
+class Settings(NamedTuple):
+    """Of series, of pieces, of points of loads."""
+
+    # Harmonics of a series in lanes (`profiles.py`). A sweep of every slip takes 0.022 s
+    # with 1, 0.028 with 4, 0.044 with 16, 0.081 with 64; each size is a loop to compile, so
+    # no 8, whose 0.051 s are no gain. (A larger loop until the right one is there: last
+    # digits would depend on what has run before.)
+    harmonics: tuple[int, ...] = (1, 4, 16, 64)
+    # In planning: up to so many as an axis (`waves.py`), more in blocks. A plan of 64 cells
+    # takes 3, 4, 12 and 36 ms.
+    waves: tuple[int, ...] = (4, 8)
+    blocks: tuple[int, ...] = (16, 64)
+    # Samples of a function that may be a series: twice what 64 harmonics need, and as many
+    # between them, which the series must meet.
+    samples: int = 256
+    negligible: float = 1e-15  # of the largest coefficient: what is left out
+    met: float = 4e-14  # of the largest value: how well samples between must be met
+
+    # Pieces of a profile (`pieces.py`) and bins that find them.
+    pieces: tuple[int, ...] = (64, 512, 4096)
+    bins: int = 2  # for each piece of the room, at least
+    few: int = 2  # pieces that may end within a bin
+    # Samples a period, which are static: few sizes, few programs.
+    points_a_period: tuple[int, ...] = (256, 1024, 4096, 8192)
+
+    # Points of a load (`loads.py`).
+    points: tuple[int, ...] = (8, 64, 1024)
+
+    # Bristles as power series (`bristles.py`).
+    nodes: int = 16
+    # The paper's linear springs need degree 1, its angular spring 3 to 6 at slopes of 0.1
+    # and eps = 0.1.
+    degrees: tuple[int, ...] = (1, 4, 8)
+    least: float = 1e-14  # of the largest value: coefficients below are left out
+
+
+SETTINGS = Settings()
+
+
+def size_for(count: int, sizes: tuple[int, ...]) -> int | None:
+    """The smallest size that holds `count`; None where none does."""
+    return next((size for size in sizes if size >= count), None)

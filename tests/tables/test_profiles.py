@@ -1,0 +1,109 @@
+"""Profiles as tables: exact to rounding, a few classes of a few sizes."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax.tables import PiecewiseProfile, SeriesProfile, Waves, profile_tables
+
+P = fx.profiles
+RNG = np.random.default_rng(5)
+Y = np.concatenate([RNG.uniform(-3, 3, 500), [0.0, 0.25, 0.5, 1.0, -1.0, 0.75]])
+
+
+def series(harmonics):
+    sizes = 0.02 / np.arange(1, harmonics + 1) ** 2
+    return P.Fourier(RNG.normal(size=harmonics) * sizes, RNG.normal(size=harmonics) * sizes)
+
+
+def smooth(y):
+    return 0.02 * jnp.exp(jnp.sin(2 * jnp.pi * y)) + 0.01 * jnp.cos(6 * jnp.pi * y)
+
+
+PROFILES = {
+    "sine": P.Sine(0.3),
+    "one harmonic": series(1),
+    "three": series(3),
+    "eight": series(8),
+    "nine": series(9),
+    "sixty": series(60),
+    "spline": P.Spline(0.02 * np.sin(2 * np.pi * np.arange(7) / 7 + 0.3)),
+    "long spline": P.Spline(0.02 * np.sin(2 * np.pi * np.arange(150) / 150)),
+    "polyline": P.Polyline([0.1, 0.3, 0.75], [0.0, 0.05, 0.01], 0.01),
+    "from zero": P.Polyline([0.0, 0.3, 0.75], [0.0, 0.05, 0.01], 0.02),
+    "function": P.Custom(smooth),
+}
+
+
+def errors(profile, table):
+    """Of w, w' and w'', relative to their sizes."""
+    found = []
+    for _ in range(3):
+        expected = np.asarray(jax.vmap(profile)(Y))
+        off = np.abs(np.asarray(jax.vmap(table)(Y)) - expected)
+        found.append(float(off.max() / np.abs(expected).max()))
+        profile, table = jax.grad(profile), jax.grad(table)
+    return found
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_tables_are_the_profile_to_rounding(name):
+    tables = profile_tables(PROFILES[name])
+    assert tables.is_table
+    for table in (tables.lanes, tables.planning):
+        # Slopes carry the rounding of samples times the highest harmonic in use, and of
+        # long splines that of differences, as in the profile itself.
+        rough = name in ("function", "long spline")
+        worst = [2e-14, 1e-13, 2e-12] if rough else [2e-14, 3e-14, 1e-13]
+        assert np.all(np.array(errors(PROFILES[name], table)) <= worst)
+
+
+def shapes(table):
+    return type(table), *(np.shape(leaf) for leaf in jax.tree_util.tree_leaves(table))
+
+
+def test_few_classes_and_sizes_stand_for_all():
+    lanes = {shapes(profile_tables(p).lanes) for p in PROFILES.values()}
+    planning = {shapes(profile_tables(p).planning) for p in PROFILES.values()}
+    assert len(lanes) == 6  # 1, 4, 16 and 64 harmonics; two of pieces
+    assert len(planning) == 6  # 4 and 8 as an axis, 16 and 64 in blocks; two of pieces
+    assert isinstance(profile_tables(PROFILES["sine"]).planning, Waves)
+    assert isinstance(profile_tables(PROFILES["nine"]).planning, SeriesProfile)
+    assert isinstance(profile_tables(PROFILES["spline"]).lanes, PiecewiseProfile)
+
+
+def test_the_height_is_that_of_the_samples():
+    for name in ("sine", "spline", "polyline", "function"):
+        profile = PROFILES[name]
+        places = np.arange(profile.points) / profile.points
+        expected = float(np.abs(jax.vmap(profile)(places)).max())
+        assert profile_tables(profile).height == pytest.approx(expected, rel=1e-14)
+
+
+def test_a_mean_height_is_kept():
+    raised = P.Custom(lambda y: 0.3 + 0.02 * jnp.sin(2 * jnp.pi * y))
+    table = profile_tables(raised).lanes
+    assert float(table(0.25)) == pytest.approx(0.32, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    "fn",
+    [
+        lambda y: 0.02 * jnp.abs(jnp.sin(2 * jnp.pi * y)) ** 3,
+        lambda y: 0.02 * jnp.exp(-(((y - 0.5) / 0.01) ** 2)),
+        lambda y: 0.02 * jnp.sin(2 * jnp.pi * y) + 1e-6 * jnp.sin(2 * jnp.pi * 255 * y),
+    ],
+    ids=["kinks", "a narrow bump", "a wave between the samples"],
+)
+def test_what_no_series_meets_stays_itself(fn):
+    profile = P.Custom(fn, points=4096)
+    tables = profile_tables(profile)
+    assert not tables.is_table
+    assert tables.lanes is profile
+
+
+def test_more_harmonics_than_any_size_have_one_of_their_own():
+    table = profile_tables(series(100)).lanes
+    assert table.cos.shape == (100,)
