@@ -23,6 +23,7 @@ FLOORS = {
         {"_checks"},
         {"_compile", "_text", "numerics", "intervals"},
         {"profiles", "bristles", "supports", "loads"},
+        {"tables"},
         {"model"},
         {"measured", "limit", "wiggly", "certificate", "slide_laws"},
         {"io", "sweeps", "convergence"},

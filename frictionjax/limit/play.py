@@ -18,18 +18,23 @@ from .._checks import (
     require,
     with_nan,
 )
-from .._compile import Program
+from .._compile import Program, padded_size
+from ..loads import AbstractPull
 from ..model import (
+    SETTINGS,
     Coefficients,
     Scene,
     coefficients_jit,
     dissipation_potential,
     known_scene,
+    known_turning_points,
+    padded_edges,
     require_times,
     strip_of,
     strips_at,
 )
 from ..supports import AbstractSupport
+from ..tables import load_table
 
 
 class LimitStatus(Outcome):
@@ -80,32 +85,58 @@ def _then(first: tuple[Array, Array], second: tuple[Array, Array]) -> tuple[Arra
 
 
 def limit_on_grid(
-    scene: Scene, found: Coefficients, grid: Float[Array, " m"]
+    load: AbstractPull,
+    support: AbstractSupport,
+    z0: Real,
+    found: Coefficients,
+    grid: Float[Array, " m"],
 ) -> tuple[Float[Array, " m"], Float[Array, " m"]]:
     """State and cumulative dissipation on a sorted grid that holds the turning points.
 
     Between grid points the load is monotone, so the solution is too, and a clip to the
     strip at the grid point is exact: there is no time-stepping error.
     """
-    loads = jax.vmap(scene.load)(grid)
-    lower, upper = jax.vmap(lambda load: strip(scene.support, found, load))(loads)
+    loads = jax.vmap(load)(grid)
+    lower, upper = jax.vmap(lambda load: strip(support, found, load))(loads)
     lower, upper = jax.lax.associative_scan(_then, (lower, upper))
-    z = jnp.clip(scene.z0, lower, upper)
-    moves = jnp.diff(z, prepend=scene.z0)
+    z = jnp.clip(z0, lower, upper)
+    moves = jnp.diff(z, prepend=z0)
     spent = dissipation_potential(found.rho_plus, found.rho_minus, moves)
     return z, jnp.cumsum(spent)
 
 
 @Program
-def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSolution:
-    turns = scene.turning_points()
-    order = jnp.argsort(jnp.concatenate([ts, turns]))
-    z, dissipation = limit_on_grid(scene, found, jnp.concatenate([ts, turns])[order])
+def _limit_at(
+    load: AbstractPull,
+    support: AbstractSupport,
+    z0: Real,
+    turns: Float[Array, " turns"],
+    found: Coefficients,
+    ts: Float[Array, " n"],
+) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
+    grid = jnp.concatenate([ts, turns])
+    order = jnp.argsort(grid)
+    z, dissipation = limit_on_grid(load, support, z0, found, grid[order])
     back = jnp.argsort(order)[: ts.shape[0]]
     # Too little room for the turning points of a traced load is NaN, never a wrong number,
     # and so are derivatives: added, NaN would leave them as they are.
     poison = jnp.where(jnp.any(jnp.isnan(turns)), jnp.nan, 1.0)
-    return LimitSolution(ts, z[back] * poison, dissipation[back] * poison)
+    return z[back] * poison, dissipation[back] * poison
+
+
+def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSolution:
+    if not is_concrete(scene, ts):
+        parts = scene.load, scene.support, scene.z0, scene.turning_points()
+        return LimitSolution(ts, *_limit_at(*parts, found, ts))
+    turns = known_turning_points(scene.load, scene.duration, scene.turns)
+    edges = padded_edges(turns, scene.duration)
+    # Rooms for times: another number of them compiles nothing.
+    times = np.full(padded_size(ts.size, SETTINGS.times), float(scene.duration))
+    times[: ts.size] = ts
+    law = Coefficients(jnp.asarray(found.rho_plus), jnp.asarray(found.rho_minus))
+    table = load_table(scene.load)
+    z, dissipation = _limit_at(table, scene.support, scene.z0, edges, law, times)
+    return LimitSolution(ts, z[: ts.size], dissipation[: ts.size])
 
 
 def require_start_in_strip(scene: Scene) -> None:

@@ -6,6 +6,8 @@ from .friction_coefficients import coefficients as coefficients
 from .friction_coefficients import coefficients_jit as coefficients_jit
 from .friction_law import dissipation_potential as dissipation_potential
 from .friction_law import friction as friction
+from .load_edges import known_turning_points as known_turning_points
+from .load_edges import padded_edges as padded_edges
 from .potentials import AbstractPotential as AbstractPotential
 from .potentials import BristlePotential as BristlePotential
 from .potentials import GivenPotential as GivenPotential
@@ -13,9 +15,13 @@ from .potentials import potential as potential
 from .potentials import smallest_stretch as smallest_stretch
 from .scene import Scene as Scene
 from .scene import known_scene as known_scene
-from .scene import load_range as load_range
 from .scene import require_times as require_times
 from .scene import require_told_apart as require_told_apart
 from .settings import SETTINGS as SETTINGS
 from .strip import strip_of as strip_of
 from .strip import strips_at as strips_at
+from .tabulated import TabulatedScene as TabulatedScene
+from .tabulated import tabulated_scene as tabulated_scene
+from .tabulated_potential import potential_at_rest as potential_at_rest
+from .tabulated_potential import potential_in_reach as potential_in_reach
+from .tabulated_potential import tabulated_potentials as tabulated_potentials

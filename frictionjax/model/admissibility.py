@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Real, is_concrete, no_more, require
-from .._compile import Program, in_chunks
+from .._compile import Interpreted, Program, in_chunks
 from ..bristles import AbstractBristle
 from ..numerics import smallest
 from ..supports import AbstractSupport
@@ -19,14 +19,15 @@ from .friction_coefficients import Coefficients, coefficients_jit
 from .given_rest import require_given
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
 from .settings import SETTINGS
+from .tabulated_potential import potential_in_reach
 
 _EPS64 = float(np.finfo(np.float64).eps)
 
 
-@Program
-def _bristle_facts(potential: BristlePotential):
-    bounds = potential.bristle.slope_bounds()
-    return bounds.lower, bounds.upper, rounding_of_alpha(potential.bristle)
+@Interpreted
+def _bristle_facts(bristle: AbstractBristle):
+    bounds = bristle.slope_bounds()
+    return bounds.lower, bounds.upper, rounding_of_alpha(bristle)
 
 
 def rounding_of_alpha(bristle: AbstractBristle) -> Real:
@@ -54,7 +55,7 @@ def admissible_coefficients(potential: AbstractPotential) -> Coefficients:
 
 
 def _require_coefficients(potential: BristlePotential, found: Coefficients) -> None:
-    read = found, _bristle_facts(potential)
+    read = found, _bristle_facts(potential.bristle)
     found, (lower, upper, noise) = jax.tree_util.tree_map(float, read)
     low, high = found.omega_minus, found.omega_plus
     slopes = f"omega_minus = {low:.6g}, omega_plus = {high:.6g}"
@@ -115,7 +116,8 @@ def _some_margins(potential: AbstractPotential, eps: Float[Array, " few"]):
 def _margins(
     potential: AbstractPotential, eps: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    return in_chunks(_some_margins, SETTINGS.margins, (potential,), (eps,))
+    near = potential_in_reach(potential, np.max(eps))
+    return in_chunks(_some_margins, SETTINGS.margins, (near,), (eps,))
 
 
 def _fits(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:

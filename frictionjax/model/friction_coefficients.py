@@ -12,6 +12,7 @@ from .._compile import Program
 from ..bristles import pulling_text
 from ..numerics import periodic_extrema, slope_of
 from .potentials import AbstractPotential, BristlePotential
+from .tabulated_potential import potential_at_rest
 
 OfBristle = Any
 """A traced real scalar, or None in the abstract setting, where there is no bristle."""
@@ -110,4 +111,9 @@ def with_errors(found: Coefficients, plus: Real, minus: Real) -> Coefficients:
     )
 
 
-coefficients_jit = Program(coefficients)
+_of_tables = Program(coefficients)
+
+
+def coefficients_jit(potential: AbstractPotential) -> Coefficients:
+    """The same, compiled once for all potentials of known numbers."""
+    return _of_tables(potential_at_rest(potential))

@@ -31,14 +31,17 @@ from .._checks import (
 )
 from .._compile import Program
 from ..bristles import AbstractBristle, pulling_text
-from ..loads import AbstractLoad
+from ..loads import AbstractLoad, AbstractPull
 from ..profiles import AbstractProfile
 from ..supports import AbstractSupport
+from ..tables import load_table
 from .admissibility import admissible_coefficients, require_convex
+from .load_edges import known_turning_points, padded_edges
 from .potentials import AbstractPotential, BristlePotential, potential
 from .settings import SETTINGS
 
 _ANEW = ByIdentity()  # the scene built of one with other leaves
+_FAR = ByIdentity()  # the largest |z| in m that the load reaches
 _ALPHA = ByIdentity()  # the normal force in N that was computed when it was checked
 
 
@@ -179,17 +182,18 @@ def _room_for_turns(load: AbstractLoad, duration: Any) -> int:
     return 1 << max(2, (count - 1).bit_length()) if count else 0
 
 
-def load_range(scene: Scene) -> tuple[Real, Real]:
-    """Smallest and largest load on [0, T]: it is monotone between turning points."""
-    ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
-    values = jax.vmap(scene.load)(jnp.concatenate([ends, scene.turning_points()]))
-    return jnp.min(values), jnp.max(values)
+def _edges(scene: Scene) -> np.ndarray:
+    turns = known_turning_points(scene.load, scene.duration, scene.turns)
+    return padded_edges(turns, scene.duration)
 
 
 @Program
-def _forces_met(scene: Scene) -> tuple[Real, Real, Real]:
-    """Smallest and largest load, and the support's force at z0, in N."""
-    return *load_range(scene), scene.support.force(jnp.asarray(scene.z0))
+def _forces_met(
+    load: AbstractPull, support: AbstractSupport, edges: Array, z0: Real
+) -> tuple[Real, Real, Real]:
+    """Smallest and largest load, monotone between edges, and Phi' at z0, in N."""
+    values = jax.vmap(load)(edges)
+    return jnp.min(values), jnp.max(values), support.force(z0)
 
 
 def _require_hypotheses(scene: Scene) -> None:
@@ -198,7 +202,9 @@ def _require_hypotheses(scene: Scene) -> None:
     found = admissible_coefficients(scene.potential)
     if found.alpha is not None:
         _ALPHA.put(scene, float(found.alpha))
-    low, high, start = (float(v) for v in _forces_met(scene))
+    parts = load_table(scene.load), scene.support
+    met = _forces_met(*parts, _edges(scene), np.asarray(scene.z0))
+    low, high, start = (float(v) for v in met)
     finite = np.isfinite(low) and np.isfinite(high)
     require(finite, "load", f"[{low:.6g}, {high:.6g}]", "finite values on [0, duration]")
     low = min(low - float(found.rho_plus), start)
@@ -207,11 +213,11 @@ def _require_hypotheses(scene: Scene) -> None:
 
 
 @Program
-def _farthest(scene: Scene) -> Real:
-    """Largest |z| in m that the load reaches on the flat surface, or that of z0."""
-    forces = jnp.stack(load_range(scene))
-    states = jax.vmap(scene.support.state_of)(forces)
-    return jnp.maximum(jnp.max(jnp.abs(states)), jnp.abs(scene.z0))
+def _farthest(load: AbstractPull, support: AbstractSupport, edges: Array) -> Real:
+    """Largest |z| in m that the load reaches on the flat surface."""
+    values = jax.vmap(load)(edges)
+    ends = jnp.stack([jnp.min(values), jnp.max(values)])
+    return jnp.max(jnp.abs(jax.vmap(support.state_of)(ends)))
 
 
 def known_scene(scene: Any) -> Scene:
@@ -252,7 +258,12 @@ def require_told_apart(scene: Scene, eps: Any) -> None:
     """
     if not is_concrete(scene, eps):
         return
-    least, far = float(np.min(np.asarray(eps, dtype=float))), float(_farthest(scene))
+    far = _FAR.get(scene)
+    if far is None:
+        reached = _farthest(load_table(scene.load), scene.support, _edges(scene))
+        far = max(float(reached), abs(float(scene.z0)))
+        _FAR.put(scene, far)
+    least = float(np.min(np.asarray(eps, dtype=float)))
     smallest = SETTINGS.told_apart * far
     allowed = (
         f"eps >= {no_less(smallest, 4)}: wells at {far:.3g} m that floats can tell apart"

@@ -9,6 +9,9 @@ class Settings(NamedTuple):
     # Scenes (`scene.py`).
     traced_turns: int = 64  # of a load whose numbers are traced: room for them
     most_turns: int = 2**20  # in a scene: 8 MB a copy of their times
+    # Rooms for edges of a load: the smallest, and up to where each is four times the last.
+    edges: int = 8
+    many_edges: int = 2048
     # Smallest eps, of the largest |z|: rounding of z itself is 1e-4 eps there. (At 1e-13 to
     # 3e-13 most sweeps of five scenes held ROUGH_SURVEY, at accuracy 1e-3; at 5e-13 to
     # 8e-13 a stiff one did, and 1 in 100 above.)

@@ -6,9 +6,12 @@ from jaxtyping import Array, Float
 
 from .._checks import Real
 from .._compile import Program, in_chunks
+from ..loads import AbstractPull
 from ..supports import AbstractSupport
+from ..tables import load_table
 from .scene import Scene
 from .settings import SETTINGS
+from .tabulated import TabulatedScene
 
 
 def strip_of(
@@ -19,18 +22,29 @@ def strip_of(
 
 
 @Program
-def _strips(scene: Scene, rho_plus: Real, rho_minus: Real, times: Float[Array, " n"]):
-    loads = jax.vmap(scene.load)(times)
-    ends = jax.vmap(lambda load: strip_of(scene.support, rho_plus, rho_minus, load))
+def _strips(
+    load: AbstractPull,
+    support: AbstractSupport,
+    rho_plus: Real,
+    rho_minus: Real,
+    times: Float[Array, " n"],
+):
+    loads = jax.vmap(load)(times)
+    ends = jax.vmap(lambda load: strip_of(support, rho_plus, rho_minus, load))
     return loads, *ends(loads)
 
 
 def strips_at(
-    scene: Scene, rho_plus: float, rho_minus: float, times: Float[np.ndarray, " n"]
+    scene: Scene | TabulatedScene,
+    rho_plus: float,
+    rho_minus: float,
+    times: Float[np.ndarray, " n"],
 ) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
     """Load in N, `z_minus` and `z_plus` in m at each time, for known values."""
     if times.size == 0:
         return times, times, times
     rho = np.asarray(rho_plus, dtype=float), np.asarray(rho_minus, dtype=float)
-    load, lower, upper = in_chunks(_strips, SETTINGS.times, (scene, *rho), (times,))
-    return load, lower, upper
+    load = load_table(scene.load) if isinstance(scene, Scene) else scene.load
+    fixed = load, scene.support, *rho
+    loads, lower, upper = in_chunks(_strips, SETTINGS.times, fixed, (times,))
+    return loads, lower, upper

@@ -10,7 +10,15 @@ from jaxtyping import Array, Float
 from .._checks import Real
 from .._compile import Program, in_chunks
 from ..model import SETTINGS as MODEL_SETTINGS
-from ..model import AbstractPotential, BristlePotential, Coefficients, Scene, strips_at
+from ..model import (
+    AbstractPotential,
+    BristlePotential,
+    Coefficients,
+    Scene,
+    known_turning_points,
+    strips_at,
+    tabulated_potentials,
+)
 from ..numerics import slope_of
 from .settings import SETTINGS
 
@@ -63,11 +71,11 @@ def slide_data(
 
     None where the load turns more often than there are moments: nothing slides long.
     """
-    turns = np.asarray(scene.turning_points())
-    turns = np.unique(turns[turns < float(scene.duration)])
+    turns = np.unique(known_turning_points(scene.load, scene.duration, scene.turns))
     if turns.size >= MODEL_SETTINGS.times - SETTINGS.moments:
         return None
-    wells = _wells(scene.potential, SETTINGS.small_eps * float(np.max(eps)))
+    small = SETTINGS.small_eps * float(np.max(eps))
+    wells = _wells(tabulated_potentials(scene.potential, small)[0], small)
     return SlideData(*wells, *_moments(scene, found, turns))
 
 

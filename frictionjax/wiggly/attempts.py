@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .._compile import WORKERS
-from ..model import Scene
+from ..model import TabulatedScene
 from ..numerics import concatenated, rows_of
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import (
@@ -85,7 +85,7 @@ class SoFar(NamedTuple):
 class AttemptContext(NamedTuple):
     """What all attempts share."""
 
-    scene: Scene
+    scene: TabulatedScene
     path: Path
     lanes: LaneScene
     tableau: Tableau

@@ -7,7 +7,7 @@ import numpy as np
 
 from .._checks import quiet_where_extreme, viscosity_of
 from .._compile import WORKERS, crew
-from ..model import Scene
+from ..model import Scene, tabulated_scene
 from ..numerics import rows_of
 from .attempts import AttemptContext, Cellwise, SoFar, merged
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
@@ -50,16 +50,17 @@ def integrate_cells(
     than the lanes' own, to compare with. None where the load turns more often than the
     scene has room for.
     """
-    path = path_of(scene)
+    tables = tabulated_scene(scene, eps)
+    path = path_of(tables)
     if path is None:
         return None
     accuracy = min(accuracy, SETTINGS.loosest)
-    lanes = lane_scene(scene, float(eps.max()))
+    lanes = lane_scene(tables)
     wanted = _sums(balanced, suprema)
     _prepare(lanes, eps.size, ts.size, wanted, tableau)
     plan = plan_of_cells(
         scene=scene,
-        lanes=lanes,
+        tables=tables,
         path=path,
         eps=eps,
         gamma=gamma,
@@ -68,7 +69,7 @@ def integrate_cells(
         method=method,
     )
     sweep = AttemptContext(
-        scene=scene,
+        scene=tables,
         path=path,
         lanes=lanes,
         tableau=tableau,
@@ -190,7 +191,7 @@ def _by_slip_maps(
 
 def prepare_cells(scene: Scene, eps: np.ndarray, times: int) -> None:
     """Have the loop for cells of these eps compiled, before `integrate_cells` asks."""
-    lanes = lane_scene(scene, float(eps.max()))
+    lanes = lane_scene(tabulated_scene(scene, eps))
     _prepare(lanes, eps.size, times, _sums(balanced=True, suprema=True))
 
 

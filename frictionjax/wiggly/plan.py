@@ -2,25 +2,18 @@
 
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
 from .._checks import Real, viscosity_of
 from .._compile import Program, in_chunks
-from ..model import (
-    AbstractPotential,
-    BristlePotential,
-    Coefficients,
-    Scene,
-    coefficients_jit,
-)
-from ..profiles import AbstractProfile
+from ..model import AbstractPotential, TabulatedScene, padded_edges
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import CellBounds, Requirements, wells_of
+from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps, pull_between
 from .equation import StepPlan as StepPlan
-from .equation import WiggleFolds, plan_steps, power_series_of, pull_of
 from .lanes import LaneScene
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, slow_ends
@@ -30,17 +23,25 @@ from .ways import Way, by_brackets, ends_before_tips_follow, ways_of
 
 
 @Program
-def _plans(scene, rho_plus, rho_minus, accuracy, eps, gamma) -> StepPlan:
-    pull = pull_of(scene, Coefficients(rho_plus, rho_minus))
-    return jax.vmap(lambda e, g: plan_steps(scene, e, g, accuracy, pull))(eps, gamma)
+def _plans(parts: SteppedParts, pull: PullRange, accuracy, eps, gamma) -> StepPlan:
+    return jax.vmap(lambda e, g: plan_steps(parts, e, g, accuracy, pull))(eps, gamma)
 
 
-def _controls(scene, eps, gamma, accuracy, rho: tuple | None = None) -> StepPlan:
-    """Step control of all cells. `rho`: plus and minus, N, where they are known."""
-    if rho is None:
-        found = coefficients_jit(scene.potential)
-        rho = found.rho_plus, found.rho_minus
-    fixed = scene, *map(np.asarray, rho), np.asarray(accuracy)
+_pull = Program(pull_between)
+
+
+def _controls(scene: TabulatedScene, eps, gamma, accuracy: float) -> StepPlan:
+    """Step control of all cells."""
+    edges = padded_edges(scene.turning_points, scene.duration)
+    rho = np.asarray(scene.rho_plus), np.asarray(scene.rho_minus)
+    pull = _pull(scene.load, scene.support, edges, *rho)
+    parts = SteppedParts(
+        potential=scene.potential,
+        support=scene.support,
+        duration=jnp.asarray(scene.duration),
+        z0=jnp.asarray(scene.z0),
+    )
+    fixed = parts, pull, np.asarray(accuracy)
     return in_chunks(_plans, SETTINGS.cells, fixed, (eps, gamma))
 
 
@@ -50,12 +51,17 @@ def _tips(potential: AbstractPotential, z0: Real, eps: Array):
 
 
 def ground_of(
-    scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray, folds: WiggleFolds
+    scene: TabulatedScene,
+    path: Path,
+    eps: np.ndarray,
+    gamma: np.ndarray,
+    folds: WiggleFolds,
 ) -> CellBounds:
     """What brackets need to know of each cell."""
     lags = lag_forces(scene.potential, eps, folds, path.speed * viscosity_of(eps, gamma))
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
-    well, tip = in_chunks(_tips, SETTINGS.cells, (scene.potential, scene.z0), (eps,))
+    fixed = scene.potential, np.asarray(scene.z0)
+    well, tip = in_chunks(_tips, SETTINGS.cells, fixed, (eps,))
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
     return CellBounds(
         eps,
@@ -71,28 +77,17 @@ def ground_of(
     )
 
 
-def _relaxation(scene: Scene, path: Path, eps: np.ndarray, gamma: np.ndarray):
+def _relaxation(scene: TabulatedScene, path: Path, eps: np.ndarray, gamma: np.ndarray):
     """Time in s until z0 is within a thousandth of a well of the strip (Lemma 7)."""
-    far = abs(float(scene.z0) - path.states[0])
+    far = abs(scene.z0 - path.states[0])
     efolds = np.log(np.maximum(far / (SETTINGS.near_strip * eps), 1.0))
     return efolds * viscosity_of(eps, gamma) / path.stiffness
 
 
-@Program
-def _heights(profile: AbstractProfile, places: Array) -> Array:
-    return jax.vmap(profile)(places)
-
-
-def lane_scene(scene: Scene, highest: float) -> LaneScene:
-    """The scene as lanes see it, with the bristle as a series where one converges."""
-    potential = scene.potential
-    if isinstance(potential, BristlePotential):
-        scan = np.arange(potential.points) / potential.points
-        height = float(np.max(np.abs(_heights(potential.profile, scan))))
-        bristle = power_series_of(potential.bristle, 1.01 * highest * height)
-        potential = BristlePotential(potential.profile, bristle)
-    law = coefficients_jit(scene.potential)
-    return LaneScene(potential, scene.support, scene.load, law.rho_plus, law.rho_minus)
+def lane_scene(scene: TabulatedScene) -> LaneScene:
+    """The scene as lanes see it."""
+    rho = np.asarray(scene.rho_plus), np.asarray(scene.rho_minus)
+    return LaneScene(scene.lane_potential, scene.support, scene.load, *rho)
 
 
 def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
@@ -150,7 +145,7 @@ def _with_brackets(
 
 
 def _along(
-    scene: Scene,
+    scene: TabulatedScene,
     path: Path,
     ground: CellBounds,
     needs: Requirements,
@@ -187,8 +182,7 @@ class Planned(NamedTuple):
 
 
 def planned(
-    scene: Scene,
-    lanes: LaneScene,
+    scene: TabulatedScene,
     path: Path,
     eps: np.ndarray,
     gamma: np.ndarray,
@@ -197,10 +191,7 @@ def planned(
     method: str,
 ) -> Planned:
     """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
-    # The bristle as a series compiles faster too.
-    scene = eqx.tree_at(lambda s: s.potential, scene, lanes.potential)
-    rho = path.rho_plus, path.rho_minus
-    control = _controls(scene, eps, gamma, accuracy, rho)
+    control = _controls(scene, eps, gamma, accuracy)
     ground = ground_of(scene, path, eps, gamma, control.folds)
     needs = _needs(ground, path, accuracy)
     brackets = by_brackets(path, eps, needs, times, method)

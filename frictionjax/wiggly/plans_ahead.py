@@ -6,8 +6,7 @@
 import numpy as np
 
 from .._checks import ByIdentity
-from ..model import Scene
-from .lanes import LaneScene
+from ..model import Scene, TabulatedScene
 from .limit_path import Path
 from .plan import Planned, planned
 
@@ -16,7 +15,7 @@ _AHEAD = ByIdentity()  # the last plan that was made ahead for a scene, and what
 
 def plan_of_cells(
     scene: Scene,
-    lanes: LaneScene,
+    tables: TabulatedScene,
     path: Path,
     eps: np.ndarray,
     gamma: np.ndarray,
@@ -31,7 +30,7 @@ def plan_of_cells(
     if known is not None and known[0] == asked:
         plan = known[1]
     else:
-        plan = planned(scene, lanes, path, eps, gamma, times, accuracy, method)
+        plan = planned(tables, path, eps, gamma, times, accuracy, method)
     if ahead:
         _AHEAD.put(scene, (asked, plan))
     return plan

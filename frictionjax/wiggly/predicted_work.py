@@ -5,14 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from .._checks import quiet_where_extreme, viscosity_of
-from ..model import BristlePotential, Scene
-from ..profiles import Fourier
+from ..model import BristlePotential, Scene, TabulatedScene, tabulated_scene
+from ..tables import SeriesBristle, SeriesProfile
 from .enclosure import Requirements, cost_of, longest_lane, wells_a_leg, wells_of
-from .equation import SeriesBristle
 from .equation import StepPlan as StepPlan
-from .lanes import LaneScene
 from .limit_path import Path, path_of
-from .plan import lane_scene
 from .plans_ahead import plan_of_cells
 from .settings import SETTINGS
 from .ways import Way, slides_of
@@ -46,13 +43,13 @@ def workload(
     method: str,
 ) -> Workload | None:
     """Work of the cells (eps, gamma), shape (cells,); None where lanes do not serve."""
-    path = path_of(scene)
+    tables = tabulated_scene(scene, eps)
+    path = path_of(tables)
     if path is None:
         return None
     accuracy = min(accuracy, SETTINGS.loosest)
-    lanes = lane_scene(scene, float(eps.max()))
     plan = plan_of_cells(
-        scene, lanes, path, eps, gamma, times, accuracy, method, ahead=True
+        scene, tables, path, eps, gamma, times, accuracy, method, ahead=True
     )
     control, ground, needs, way = plan
     by_map = way == Way.SLIP_MAP
@@ -67,7 +64,7 @@ def workload(
     total = np.where(by_map, SETTINGS.map_steps * run_ups * steps * growth, total)
     chain = np.where(by_map, SETTINGS.map_chain * rounds * steps * growth, chain)
     jobs, segments = _rows(path, eps, needs, times)
-    return Workload(total, chain, jobs, segments, maps, rounds, _weight_of(lanes))
+    return Workload(total, chain, jobs, segments, maps, rounds, _weight_of(tables))
 
 
 def _longest_chains(slides: np.ndarray, cut: np.ndarray) -> np.ndarray:
@@ -116,12 +113,12 @@ def _rows(
     return 2 * (tiles + sampled), stops + 2 * tiles + 4 * sampled
 
 
-def _weight_of(lanes: LaneScene) -> float:
-    potential = lanes.potential
+def _weight_of(scene: TabulatedScene) -> float:
+    potential = scene.lane_potential
     if not isinstance(potential, BristlePotential):
         return 1.0
     profile, bristle = potential.profile, potential.bristle
-    harmonics = profile.cos.shape[0] if isinstance(profile, Fourier) else 1
+    harmonics = profile.cos.shape[0] if isinstance(profile, SeriesProfile) else 1
     shape = SETTINGS.no_series
     if isinstance(bristle, SeriesBristle):
         shape = 1 + SETTINGS.a_degree * (bristle.ahead.shape[0] - 2)

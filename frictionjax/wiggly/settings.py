@@ -72,10 +72,10 @@ class Settings(NamedTuple):
     run_up: float = 2500.0  # of a slip map, at most
     # Drag of tips that are still on their way when a slide is over, and a rest begins.
     behind: float = 0.1
-    # What a step costs more: for each harmonic after the first (1.2 at 4, 2.3 at 16, 5.7 at
+    # What a step costs more: for each harmonic after the first (1.3 at 4, 2.0 at 16, 3.7 at
     # 64 were measured), for each degree of the bristle's series after the first (1.35 at
     # 4), for a bristle without one.
-    a_harmonic: float = 0.075
+    a_harmonic: float = 0.06
     a_degree: float = 0.1
     no_series: float = 3.0
 

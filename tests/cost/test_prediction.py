@@ -16,12 +16,13 @@ from frictionjax.cost.machine_cost import (
     keep_machine,
     known_machine,
 )
+from frictionjax.model import tabulated_scene
 from frictionjax.report.job import read_job
 from frictionjax.report.study import expectation, expected_cost, within_budget
 from frictionjax.wiggly.enclosure import marching
 from frictionjax.wiggly.enclosure.layout import lay_out
-from frictionjax.wiggly.limit_path.find_path import path_of
-from frictionjax.wiggly.plan import lane_scene, planned
+from frictionjax.wiggly.limit_path import path_of
+from frictionjax.wiggly.plan import planned
 from frictionjax.wiggly.predicted_work import _longest_chains, _weight_of, workload
 from frictionjax.wiggly.ways import Way
 
@@ -116,8 +117,10 @@ def test_many_short_slides_are_no_matter_for_slip_maps(periods, alone):
     end = 3.0 * periods
     scene = fx.Scene(one.profile, one.bristle, one.support, one.load, end)
     eps = np.array([1.5e-3 if periods == 1 else 1e-2])
-    lanes, path = lane_scene(scene, float(eps[0])), path_of(scene)
-    plan = planned(scene, lanes, path, eps, np.array([0.5]), 61, 1e-3, "auto")
+    tables = tabulated_scene(scene, eps)
+    plan = planned(
+        tables, path_of(tables), eps, np.array([0.5]), 61, accuracy=1e-3, method="auto"
+    )
     assert plan.way == (Way.ONE_LANE if alone else Way.SLIP_MAP)
 
 
@@ -150,12 +153,12 @@ def test_the_rows_of_tables_are_foreseen(monkeypatch, eps, gamma, times, method)
 def test_tables_grow_with_the_times_and_not_their_square():
     """The layout of 20 001 times took 0.4 GB, of 200 001 it failed."""
     cell = np.array([1e-3]), np.array([1.0])
-    path = path_of(scene_of())
-    lanes = lane_scene(scene_of(), 1e-3)
+    scene = tabulated_scene(scene_of(), 1e-3)
+    path = path_of(scene)
     ts = np.sort(np.concatenate([np.linspace(0.0, 3.0, 20_000), [1.5, 1.5]]))
-    plan = planned(scene_of(), lanes, path, *cell, ts.size, 1e-3, "resolved")
+    plan = planned(scene, path, *cell, ts.size, accuracy=1e-3, method="resolved")
     tracemalloc.start()
-    parts = scene_of(), path, cell[0], ts, plan.needs, plan.ground.fast_slides
+    parts = scene, path, cell[0], ts, plan.needs, plan.ground.fast_slides
     found = lay_out(*parts, 1e-3)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
@@ -172,10 +175,11 @@ def test_work_follows_from_the_numbers():
     small = np.array([1e-5, 1e-7]), np.array([1.0, 1.0])
     some = workload(scene_of(), *small, TIMES.size, 1e-3, "windowed")
     assert some.steps[1] < 2 * some.steps[0]
-    waves = fx.profiles.Fourier(np.zeros(16), 0.01 * np.eye(16)[0])
+    waves = fx.profiles.Fourier(np.zeros(16), 0.005 * 0.5 ** np.arange(16))
     parts = scene_of()
     bumpy = fx.Scene(waves, parts.bristle, parts.support, parts.load, 3.0)
-    assert _weight_of(bumpy) > 1.5 * _weight_of(parts)
+    weights = [_weight_of(tabulated_scene(scene, 1e-3)) for scene in (bumpy, parts)]
+    assert weights[0] > 1.5 * weights[1]
 
 
 def test_a_machine_is_found_from_its_times(monkeypatch):

@@ -3,7 +3,7 @@
 import numpy as np
 
 import frictionjax as fx
-from frictionjax.model.scene import _farthest
+from frictionjax.model.scene import _edges, _farthest
 from frictionjax.model.settings import SETTINGS as MODEL_SETTINGS
 from frictionjax.wiggly.sums.settings import SETTINGS
 
@@ -59,7 +59,8 @@ TENS = 1e-12, 1e-11, 1e-10, 1e-9
 
 def eps_of(scene: fx.Scene, times=(1.0, 1.3, 2.0, 6.0)) -> np.ndarray:
     """From the smallest allowed, and powers of ten: folds lie at turning points there."""
-    least = 1.0001 * MODEL_SETTINGS.told_apart * float(_farthest(scene))
+    far = float(_farthest(scene.load, scene.support, _edges(scene)))
+    least = 1.0001 * MODEL_SETTINGS.told_apart * far
     return np.unique([*(least * np.asarray(times)), *(e for e in TENS if e > least)])
 
 

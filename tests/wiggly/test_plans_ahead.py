@@ -24,9 +24,9 @@ def counted(monkeypatch):
     """Lists the eps of every plan that is made."""
     made, plan = [], plans_ahead.planned
 
-    def planned(scene, lanes, path, eps, *rest):
+    def planned(tables, path, eps, *rest):
         made.append(eps.tolist())
-        return plan(scene, lanes, path, eps, *rest)
+        return plan(tables, path, eps, *rest)
 
     monkeypatch.setattr(plans_ahead, "planned", planned)
     return made

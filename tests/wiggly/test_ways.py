@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from paths import path_of
 
 import frictionjax as fx
 from frictionjax.wiggly.enclosure import SETTINGS, Requirements
-from frictionjax.wiggly.limit_path import path_of
 from frictionjax.wiggly.ways import Way, by_brackets, ways_of
 
 SCENE = fx.Scene(

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import Scene
+from ...model import TabulatedScene
 from ...numerics import rows_of
 from ..lanes import Lanes, Segments
 from ..limit_path import Path, slopes_at, states_at
@@ -95,7 +95,11 @@ def _lane_segments(
 
 
 def plan_brackets(
-    scene: Scene, path: Path, ground: CellBounds, brackets: Brackets, starts: Starts
+    scene: TabulatedScene,
+    path: Path,
+    ground: CellBounds,
+    brackets: Brackets,
+    starts: Starts,
 ) -> BracketPlan:
     """Jobs and segments: one lane of the bracket each; one alone from a known start."""
     kinks = path.edges[1:-1]
@@ -192,7 +196,9 @@ def _forgetful(
     return has[jobs.cell] & inside & slower & (memory <= 0.5 * SETTINGS.brief)
 
 
-def segments_of(scene: Scene, path: Path, start: np.ndarray, end: np.ndarray) -> Segments:
+def segments_of(
+    scene: TabulatedScene, path: Path, start: np.ndarray, end: np.ndarray
+) -> Segments:
     """Segments with the path as their guide; slopes from inside each segment."""
     length = np.maximum(end - start, 0.0)
     guides = states_at(scene, path, np.concatenate([start, end]))

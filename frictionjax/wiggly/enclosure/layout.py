@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import Scene
+from ...model import TabulatedScene
 from ...numerics import rows_of
 from ..limit_path import Path
 from .bracket_rows import BracketRows
@@ -48,7 +48,7 @@ class Layout(NamedTuple):
 
 
 def lay_out(
-    scene: Scene,
+    scene: TabulatedScene,
     path: Path,
     eps: np.ndarray,
     ts: np.ndarray,

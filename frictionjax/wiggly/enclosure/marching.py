@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..._compile import WORKERS, crew
-from ...model import Scene
+from ...model import TabulatedScene
 from ...numerics import concatenated, rows_of
 from ..equation import Status
 from ..lanes import SETTINGS as LANE_SETTINGS
@@ -82,7 +82,7 @@ class BracketContext(NamedTuple):
     `lanes_run` is called as lanes set off.
     """
 
-    scene: Scene
+    scene: TabulatedScene
     lanes: LaneScene
     path: Path
     ground: CellBounds

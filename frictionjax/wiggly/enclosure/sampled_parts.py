@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import Scene
+from ...model import TabulatedScene
 from ...numerics import concatenated, rows_of, stacked
 from ..limit_path import SETTINGS as PATH_SETTINGS
 from ..limit_path import (
@@ -42,7 +42,7 @@ class Parts(NamedTuple):
 class CellSlides(NamedTuple):
     """Slides of all cells, shape (cells,) each: those of the path, and the fast ones."""
 
-    scene: Scene
+    scene: TabulatedScene
     path: Path
     eps: np.ndarray
     needs: Requirements
@@ -197,7 +197,7 @@ def _graded(slides: CellSlides, parts: Parts) -> list[Parts]:
     return done
 
 
-def _is_even(scene: Scene, path: Path, parts: Parts) -> np.ndarray:
+def _is_even(scene: TabulatedScene, path: Path, parts: Parts) -> np.ndarray:
     """Whether nodes of each part see the path's speed, which is much the same there."""
     low, high = parts.low, parts.high
     nodes = speeds_at(scene, path, nodes_inside(low, high))

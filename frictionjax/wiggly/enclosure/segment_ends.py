@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import Scene
+from ...model import TabulatedScene
 from ..lanes import guide_of
 from ..limit_path import Path, states_at
 from .brackets import segments_of
@@ -24,7 +24,7 @@ def stretches_of(opening: np.ndarray, stops: np.ndarray) -> np.ndarray:
 
 
 def follow_path(
-    scene: Scene, path: Path, eps: np.ndarray, accuracy: float, cuts: list[Cut]
+    scene: TabulatedScene, path: Path, eps: np.ndarray, accuracy: float, cuts: list[Cut]
 ) -> list[Cut]:
     """With more stops where cubics of segments would leave the path; a cut for each eps.
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import Scene
+from ...model import TabulatedScene
 from ...numerics import rows_of
 from ..equation import WiggleFolds
 from ..limit_path import Path, slopes_at, states_at, times_at
@@ -53,7 +53,7 @@ class Starts(NamedTuple):
     ahead_tip: np.ndarray
 
 
-def way_at(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
+def way_at(scene: TabulatedScene, path: Path, times: np.ndarray) -> np.ndarray:
     """Way in m that the path has come at each time."""
     piece = path.piece_of(times)
     states = states_at(scene, path, times)
@@ -76,7 +76,7 @@ def _run_up(path: Path) -> np.ndarray:
 
 
 def starts_of(
-    scene: Scene,
+    scene: TabulatedScene,
     path: Path,
     ground: CellBounds,
     cell: np.ndarray,
@@ -202,7 +202,9 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
     return starts, begin <= end
 
 
-def slow_share(scene: Scene, path: Path, time: np.ndarray, state: np.ndarray) -> np.ndarray:
+def slow_share(
+    scene: TabulatedScene, path: Path, time: np.ndarray, state: np.ndarray
+) -> np.ndarray:
     """Share of the lag and memory of the fastest slide that there is at these times.
 
     Both grow with the square of the speed; slides may have been faster a moment before.

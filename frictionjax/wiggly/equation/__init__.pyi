@@ -9,8 +9,6 @@ from .energy_balance import slopes_between as slopes_between
 from .field import Point as Point
 from .field import TipField as TipField
 from .landscape import WiggleFolds as WiggleFolds
-from .series_bristle import SeriesBristle as SeriesBristle
-from .series_bristle import power_series_of as power_series_of
 from .settings import SETTINGS as SETTINGS
 from .status import ENDED as ENDED
 from .status import FLAGS as FLAGS
@@ -18,8 +16,11 @@ from .status import FailedCells as FailedCells
 from .status import Status as Status
 from .status import status_of as status_of
 from .status import warn_of_failed as warn_of_failed
+from .step_plan import PullRange as PullRange
+from .step_plan import SteppedParts as SteppedParts
 from .step_plan import StepPlan as StepPlan
 from .step_plan import accuracies_of as accuracies_of
 from .step_plan import plan_steps as plan_steps
+from .step_plan import pull_between as pull_between
 from .step_plan import pull_of as pull_of
 from .step_plan import require_accuracy as require_accuracy

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 
 from ..._checks import Real
-from ...loads import AbstractLoad
+from ...loads import AbstractPull
 from ...model import AbstractPotential
 from ...supports import AbstractSupport
 
@@ -36,7 +36,7 @@ class TipField(eqx.Module):
 
     potential: AbstractPotential
     support: AbstractSupport
-    load: AbstractLoad
+    load: AbstractPull
     eps: Real
     viscosity: Real
     well: Real | float = 0.0

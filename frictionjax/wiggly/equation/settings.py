@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Settings(NamedTuple):
-    """Of plans of steps, of energy balances, of power series of bristles."""
+    """Of plans of steps and of energy balances."""
 
     # Plans of steps (`step_plan.py`).
     # Accuracy over tolerance. At 100 and `in_slips` of 0.1, errors at gamma = 0.65 were 1.6
@@ -73,14 +73,6 @@ class Settings(NamedTuple):
     # anywhere from 3e-5 to 3e-4.)
     of_energies: float = 1e-4
     rounding: float = 1e-15  # of energies
-
-    # Bristles as power series (`series_bristle.py`).
-    series_nodes: int = 16
-    # Degrees that get a program of their own: one for each would compile too often. The
-    # paper's linear springs need 1, its angular spring 3 to 6 at slopes of 0.1 and eps =
-    # 0.1.
-    degrees: tuple[int, ...] = (1, 4, 8)
-    negligible: float = 1e-14  # of the largest value: coefficients below are left out
 
     # Warnings (`status.py`).
     named: int = 4  # cells in the text

@@ -6,11 +6,12 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Array, Float
 
 from ..._checks import Real, known_numbers, require, require_real
-from ...loads import steep_times
-from ...model import Coefficients, Scene, coefficients, load_range
+from ...loads import AbstractPull, steep_times
+from ...model import AbstractPotential, Coefficients, Scene, coefficients
+from ...supports import AbstractSupport
 from ..stepping import Control
 from .landscape import Landscape, WiggleFolds, landscape
 from .settings import SETTINGS
@@ -84,14 +85,26 @@ def pull_of(scene: Scene, found: Coefficients) -> PullRange:
     """The same for all cells: sampled between turning points, and over reached states."""
     ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
     edges = jnp.sort(jnp.concatenate([ends, scene.turning_points()]))
-    times = jax.vmap(partial(steep_times, scene.load))(edges[:-1], edges[1:]).ravel()
-    slopes = jax.vmap(scene.load.slope)(times)
-    low, high = load_range(scene)
-    forces = jnp.linspace(low - found.rho_plus, high - found.rho_minus, 9)
-    states = jax.vmap(scene.support.state_of)(forces)
-    stiffness = jax.vmap(scene.support.stiffness_at)(states)
+    rho = found.rho_plus, found.rho_minus
+    return pull_between(scene.load, scene.support, edges, *rho)
+
+
+def pull_between(
+    load: AbstractPull,
+    support: AbstractSupport,
+    edges: Float[Array, " n"],
+    rho_plus: Real,
+    rho_minus: Real,
+) -> PullRange:
+    """The same of a load with these turning points, its ends among them, in s."""
+    times = jax.vmap(partial(steep_times, load))(edges[:-1], edges[1:]).ravel()
+    slopes, values = jax.vmap(load.slope)(times), jax.vmap(load)(edges)
+    low, high = jnp.min(values), jnp.max(values)
+    forces = jnp.linspace(low - rho_plus, high - rho_minus, 9)
+    states = jax.vmap(support.state_of)(forces)
+    stiffness = jax.vmap(support.stiffness_at)(states)
     softest = jnp.min(stiffness)
-    beyond = high - low - (found.rho_plus - found.rho_minus)
+    beyond = high - low - (rho_plus - rho_minus)
     way = jnp.maximum(beyond, 0.0) / softest
     return PullRange(jnp.max(jnp.abs(slopes)), softest, way)
 
@@ -169,14 +182,28 @@ def _of_few_wells(way: Real, start: Real, accuracy: Real) -> Real:
     return jnp.maximum(jnp.clip(share**SETTINGS.power, SETTINGS.fewest, 1.0), near)
 
 
+class SteppedParts(NamedTuple):
+    """What plans of steps read of a scene whose pull is known."""
+
+    potential: AbstractPotential
+    support: AbstractSupport
+    duration: Real
+    z0: Real
+
+
 def plan_steps(
-    scene: Scene, eps: Real, gamma: Real, accuracy: Real, pull: PullRange | None = None
+    scene: Scene | SteppedParts,
+    eps: Real,
+    gamma: Real,
+    accuracy: Real,
+    pull: PullRange | None = None,
 ) -> StepPlan:
     """Step control for an error of `accuracy` eps in z at times outside slips.
 
     `pull`: that of the scene, where it is known.
     """
     if pull is None:
+        assert isinstance(scene, Scene)
         pull = pull_of(scene, coefficients(scene.potential))
     ground = landscape(scene.potential, eps)
     memory = remembered_slips(ground, pull, eps, gamma)

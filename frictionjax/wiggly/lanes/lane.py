@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Int
 
 from ..._checks import Real
-from ...loads import AbstractLoad
+from ...loads import AbstractPull
 from ...model import AbstractPotential
 from ...supports import AbstractSupport
 from ..equation import (
@@ -61,7 +61,7 @@ class LaneScene(eqx.Module):
 
     potential: AbstractPotential
     support: AbstractSupport
-    load: AbstractLoad
+    load: AbstractPull
     rho_plus: Any
     rho_minus: Any
 

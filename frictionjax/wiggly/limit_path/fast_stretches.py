@@ -7,13 +7,15 @@ is between two nodes of a survey; its speed tells nothing of that elsewhere, its
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ...model import Scene
+from ...model import TabulatedScene
 from .path import Path, speeds_at, states_at
 from .sampled_slide import nodes_of, through_nodes
 from .settings import SETTINGS
 
 
-def _zoomed(scene: Scene, path: Path, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def _zoomed(
+    scene: TabulatedScene, path: Path, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
     """Times closer and closer to the steepest place of each interval, on both sides."""
     share, found = np.arange(SETTINGS.parts + 1) / SETTINGS.parts, []
     for _ in range(SETTINGS.zooms):
@@ -25,12 +27,12 @@ def _zoomed(scene: Scene, path: Path, low: np.ndarray, high: np.ndarray) -> np.n
     return np.concatenate([*found, 0.5 * (low + high)], axis=-1)
 
 
-def _states(scene: Scene, path: Path, times: np.ndarray) -> np.ndarray:
+def _states(scene: TabulatedScene, path: Path, times: np.ndarray) -> np.ndarray:
     return states_at(scene, path, times.ravel()).reshape(times.shape)
 
 
 def probes_of(
-    scene: Scene,
+    scene: TabulatedScene,
     path: Path,
     low: Float[np.ndarray, " n"],
     high: Float[np.ndarray, " n"],

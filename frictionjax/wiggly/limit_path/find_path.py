@@ -1,21 +1,14 @@
 """The path of a scene: where it turns and touches, and where it is fast."""
 
 import numpy as np
-from jaxtyping import Array
 
-from ..._compile import Program
-from ...model import Scene, coefficients_jit, strips_at
+from ...model import TabulatedScene, strips_at
 from .fast_stretches import nodes_inside, probes_of, unseen_of
 from .path import Path, Probes, slopes_at, states_at, stiffness_at, times_at
 from .settings import SETTINGS
 
 
-@Program
-def _turns(scene: Scene) -> Array:
-    return scene.turning_points()
-
-
-def _looked_at(scene: Scene, path: Path) -> Path:
+def _looked_at(scene: TabulatedScene, path: Path) -> Path:
     """With the largest speed on slides, probed, and the smallest stiffness there."""
     low, high = path.touch, path.edges[1:]
     probes = probes_of(scene, path, low, high)
@@ -34,18 +27,16 @@ def _looked_at(scene: Scene, path: Path) -> Path:
     )
 
 
-def path_of(scene: Scene) -> Path | None:
+def path_of(scene: TabulatedScene) -> Path | None:
     """The path of a scene; None where the load turns more often than there is room for."""
-    turns = np.asarray(_turns(scene))
-    duration = float(scene.duration)
+    turns, duration = scene.turning_points, scene.duration
     if np.any(np.isnan(turns)):
         return None
-    edges = np.unique(np.concatenate([[0.0], turns[turns < duration], [duration]]))
-    found = coefficients_jit(scene.potential)
-    rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
+    edges = np.unique(np.concatenate([[0.0], turns, [duration]]))
+    rho_plus, rho_minus = scene.rho_plus, scene.rho_minus
     loads, lower, upper = strips_at(scene, rho_plus, rho_minus, edges)
     states = np.empty(edges.size)
-    states[0] = np.clip(float(scene.z0), lower[0], upper[0])
+    states[0] = np.clip(scene.z0, lower[0], upper[0])
     for i in range(1, edges.size):
         states[i] = np.clip(states[i - 1], lower[i], upper[i])
     moves = np.diff(states)

@@ -12,9 +12,11 @@ import numpy as np
 from jaxtyping import Array, Float, Int, Shaped
 
 from ..._compile import Program, in_chunks
+from ...loads import AbstractPull
 from ...model import SETTINGS as MODEL_SETTINGS
-from ...model import Scene, strips_at
+from ...model import TabulatedScene, strips_at
 from ...numerics import find_root
+from ...supports import AbstractSupport
 
 
 class Probes(NamedTuple):
@@ -68,40 +70,53 @@ class Path(NamedTuple):
 
 
 @Program
-def _rates(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"]):
+def _rates(
+    load: AbstractPull,
+    support: AbstractSupport,
+    times: Float[Array, " n"],
+    states: Float[Array, " n"],
+):
     """l' in N/s at the times and Phi'' in N/m at the states."""
-    slopes = jax.vmap(scene.load.slope)(times)
-    return slopes, jax.vmap(scene.support.stiffness_at)(states)
+    return jax.vmap(load.slope)(times), jax.vmap(support.stiffness_at)(states)
 
 
 @Program
-def _times_at(scene: Scene, states, rho, early, late):
+def _times_at(load: AbstractPull, support: AbstractSupport, states, rho, early, late):
     """Time in [early, late] at which the edge that belongs to `rho` is at each state."""
-    load = jax.vmap(scene.load)
-    wanted = jax.vmap(scene.support.force)(states) + rho
+    load = jax.vmap(load)
+    wanted = jax.vmap(support.force)(states) + rho
     rising = jnp.where(load(late) >= load(early), 1.0, -1.0)
     return (find_root(lambda t: rising * (load(t) - wanted), early, late),)
 
 
 @Program
-def _state_under(scene: Scene, times: Float[Array, " n"], pull: Float[Array, " n"]):
-    loads = jax.vmap(scene.load)(times)
-    return (jax.vmap(scene.support.state_of)(loads - pull),)
+def _state_under(
+    load: AbstractPull,
+    support: AbstractSupport,
+    times: Float[Array, " n"],
+    pull: Float[Array, " n"],
+):
+    return (jax.vmap(support.state_of)(jax.vmap(load)(times) - pull),)
 
 
 def times_at(
-    scene: Scene, path: Path, piece: Int[np.ndarray, " n"], states: Float[np.ndarray, " n"]
+    scene: TabulatedScene,
+    path: Path,
+    piece: Int[np.ndarray, " n"],
+    states: Float[np.ndarray, " n"],
 ) -> Float[np.ndarray, " n"]:
     """When the path is at each state, on the slide of each piece."""
     if states.size == 0:
         return states
     columns = states, path.rho[piece], path.touch[piece], path.edges[piece + 1]
-    (found,) = in_chunks(_times_at, MODEL_SETTINGS.times, (scene,), columns)
+    (found,) = in_chunks(
+        _times_at, MODEL_SETTINGS.times, (scene.load, scene.support), columns
+    )
     return np.clip(found, columns[2], columns[3])
 
 
 def arrivals_at(
-    scene: Scene,
+    scene: TabulatedScene,
     states: Float[np.ndarray, " n"],
     pull: Float[np.ndarray, " n"],
     early: Float[np.ndarray, " n"],
@@ -109,18 +124,22 @@ def arrivals_at(
 ) -> Float[np.ndarray, " n"]:
     """Time in [early, late] at which `l - Phi'` is `pull` (N) at each state."""
     columns = states, pull, early, late
-    return in_chunks(_times_at, MODEL_SETTINGS.times, (scene,), columns)[0]
+    return in_chunks(_times_at, MODEL_SETTINGS.times, (scene.load, scene.support), columns)[
+        0
+    ]
 
 
 def state_under(
-    scene: Scene, times: Float[np.ndarray, " n"], pull: Float[np.ndarray, " n"]
+    scene: TabulatedScene, times: Float[np.ndarray, " n"], pull: Float[np.ndarray, " n"]
 ) -> Float[np.ndarray, " n"]:
     """State in m at which `l - Phi'` is `pull` (N) at each time."""
-    return in_chunks(_state_under, MODEL_SETTINGS.times, (scene,), (times, pull))[0]
+    return in_chunks(
+        _state_under, MODEL_SETTINGS.times, (scene.load, scene.support), (times, pull)
+    )[0]
 
 
 def states_at(
-    scene: Scene, path: Path, times: Float[np.ndarray, " n"]
+    scene: TabulatedScene, path: Path, times: Float[np.ndarray, " n"]
 ) -> Float[np.ndarray, " n"]:
     """The path's state in m at each time."""
     piece = path.piece_of(times)
@@ -132,7 +151,7 @@ def states_at(
 
 
 def slopes_at(
-    scene: Scene,
+    scene: TabulatedScene,
     path: Path,
     times: Float[np.ndarray, " n"],
     states: Float[np.ndarray, " n"],
@@ -142,20 +161,27 @@ def slopes_at(
         return times
     piece = path.piece_of(times)
     slides = (path.direction[piece] != 0) & (times > path.touch[piece])
-    slope, stiffness = in_chunks(_rates, MODEL_SETTINGS.times, (scene,), (times, states))
+    slope, stiffness = in_chunks(
+        _rates, MODEL_SETTINGS.times, (scene.load, scene.support), (times, states)
+    )
     return np.where(slides, slope / stiffness, 0.0)
 
 
 def speeds_at(
-    scene: Scene, path: Path, times: Float[np.ndarray, "*shape"]
+    scene: TabulatedScene, path: Path, times: Float[np.ndarray, "*shape"]
 ) -> Float[np.ndarray, "*shape"]:
     """The path's speed in m/s at times of any shape."""
     flat = times.ravel()
     return slopes_at(scene, path, flat, states_at(scene, path, flat)).reshape(times.shape)
 
 
-def stiffness_at(scene: Scene, states: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
+def stiffness_at(
+    scene: TabulatedScene, states: Float[np.ndarray, " n"]
+) -> Float[np.ndarray, " n"]:
     """Phi'' in N/m at states (n,) in m."""
     return in_chunks(
-        _rates, MODEL_SETTINGS.times, (scene,), (np.zeros_like(states), states)
+        _rates,
+        MODEL_SETTINGS.times,
+        (scene.load, scene.support),
+        (np.zeros_like(states), states),
     )[1]

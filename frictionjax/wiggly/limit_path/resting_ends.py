@@ -3,13 +3,13 @@
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ...model import Scene
+from ...model import TabulatedScene
 from .path import Path, slopes_at, times_at
 from .settings import SETTINGS
 
 
 def slow_ends(
-    scene: Scene,
+    scene: TabulatedScene,
     path: Path,
     eps: Float[np.ndarray, " cells"],
     lag: Float[np.ndarray, " cells"],

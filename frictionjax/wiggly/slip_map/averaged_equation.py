@@ -13,7 +13,9 @@ import numpy as np
 from jaxtyping import Array
 
 from ..._compile import Program, in_chunks
-from ...model import Scene
+from ...loads import AbstractPull
+from ...model import TabulatedScene
+from ...supports import AbstractSupport
 from .settings import SETTINGS
 from .transit import steady_transit_times
 from .well_pull import WellPull
@@ -44,7 +46,19 @@ def _grid(wells: np.ndarray) -> np.ndarray:
 
 
 @Program
-def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, number):
+def _march(
+    load: AbstractPull,
+    support: AbstractSupport,
+    table,
+    low,
+    fold,
+    sign,
+    eps,
+    origin,
+    first,
+    time,
+    number,
+):
     pitch = (_RANGE[1] - _RANGE[0]) / (SETTINGS.table_rows - 1)
 
     def one(
@@ -67,8 +81,8 @@ def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, numbe
             return length, length * rise / (pitch * force)
 
         def force_at(time: Array, at: Array) -> Array:
-            held = scene.support.force(origin + sign * eps * (first + at))
-            return sign * (scene.load(time) - held) - fold
+            held = support.force(origin + sign * eps * (first + at))
+            return sign * (load(time) - held) - fold
 
         def step(before: tuple, at: Array) -> tuple[tuple, tuple]:
             # Newton's method for log X: in T it diverged where X is 1e-7 of the load.
@@ -80,7 +94,7 @@ def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, numbe
                 force = jnp.exp(log)
                 length, slope = law(force)
                 later = time + wells * length
-                rate = sign * scene.load.slope(later)
+                rate = sign * load.slope(later)
                 left = force - force_at(later, at)
                 change = left / (force * (1 - wells * slope * rate))
                 return log - jnp.clip(change, -SETTINGS.farthest, SETTINGS.farthest), change
@@ -90,11 +104,11 @@ def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, numbe
             here = jnp.where(jnp.abs(change) < SETTINGS.last_change, jnp.exp(log), jnp.nan)
             length, slope = law(here)
             later = time + wells * length
-            kept = jnp.exp(slope * sign * scene.load.slope(later))
+            kept = jnp.exp(slope * sign * load.slope(later))
             return (later, here, at), (here, later, kept)
 
         begin = force_at(time, number[0])
-        gain = law(begin)[1] * sign * scene.load.slope(time)
+        gain = law(begin)[1] * sign * load.slope(time)
         _, rows = jax.lax.scan(step, (time, begin, number[0]), number[1:])
         start = begin, time, jnp.exp(gain)
         return [jnp.concatenate([a[None], b]) for a, b in zip(start, rows, strict=True)]
@@ -103,7 +117,15 @@ def _march(scene: Scene, table, low, fold, sign, eps, origin, first, time, numbe
 
 
 def lags_of(
-    scene: Scene, track: WellPull, eps, viscosity, origin, first, time, force, wells
+    scene: TabulatedScene,
+    track: WellPull,
+    eps,
+    viscosity,
+    origin,
+    first,
+    time,
+    force,
+    wells,
 ) -> Lags:
     """Slides of `wells` from the lattice points `first`, passed at `time` (s); all (C,).
 
@@ -114,5 +136,6 @@ def lags_of(
     table = np.log(steady_transit_times(track, viscosity, np.exp(logs)))
     number = _grid(wells)
     columns = table, low, track.fold, track.sign, eps, origin, first, time, number
-    force, time, kept = in_chunks(_march, SETTINGS.slides, (scene,), columns)
+    parts = scene.load, scene.support
+    force, time, kept = in_chunks(_march, SETTINGS.slides, parts, columns)
     return Lags(number, force, time, kept)

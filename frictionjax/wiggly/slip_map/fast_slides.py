@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import Scene
+from ...model import TabulatedScene
 from ...numerics import concatenated, rows_of
 from ..limit_path import SETTINGS as PATH_SETTINGS
 from ..limit_path import Path
@@ -124,7 +124,7 @@ class FastSlideFinder(NamedTuple):
     slow. `tail`: as of `follow`.
     """
 
-    scene: Scene
+    scene: TabulatedScene
     path: Path
     eps: np.ndarray
     viscosity: np.ndarray

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import Scene
+from ...model import TabulatedScene
 from ...numerics import rows_of, stacked
 from ..limit_path import arrivals_at, state_under
 from .averaged_equation import lags_of
@@ -25,7 +25,7 @@ from .transit import steady_transit_times
 from .transit_times import TransitTimes
 
 
-def _horizon(scene: Scene, slides: Slides, first, time, force) -> np.ndarray:
+def _horizon(scene: TabulatedScene, slides: Slides, first, time, force) -> np.ndarray:
     """Wells before the end of the piece: where the fold holds the tip, or at this pace."""
     sign, fold = slides.track.sign, slides.track.fold
     end = state_under(scene, slides.late, sign * fold)
@@ -37,7 +37,7 @@ def _horizon(scene: Scene, slides: Slides, first, time, force) -> np.ndarray:
     )
 
 
-def _cut(scene: Scene, slides: Slides, now, first, time, tail, share, past):
+def _cut(scene: TabulatedScene, slides: Slides, now, first, time, tail, share, past):
     """Panels of the slides `now` from where they are, and times guessed at their nodes."""
     chosen, first, time = rows_of(slides, now), first[now], time[now]
     force = force_beyond(scene, chosen, first, time)
@@ -71,7 +71,9 @@ def _cut(scene: Scene, slides: Slides, now, first, time, tail, share, past):
     return panels, np.concatenate([none, *forces])
 
 
-def _guess(scene: Scene, slides: Slides, panels: Panels, force, time) -> np.ndarray:
+def _guess(
+    scene: TabulatedScene, slides: Slides, panels: Panels, force, time
+) -> np.ndarray:
     """Times at the nodes where the force beyond the fold is as given."""
     chosen = rows_of(slides, panels.slide)
     sign, wide = chosen.track.sign[:, None], np.ones_like(force)
@@ -92,7 +94,7 @@ def _leaves(kept, share: float):
     return (kept > share) & (kept < 1 / share)
 
 
-def follow(scene: Scene, slides: Slides, tail: float) -> list[TransitTimes | None]:
+def follow(scene: TabulatedScene, slides: Slides, tail: float) -> list[TransitTimes | None]:
     """Times of passage of every slide, from where it sets off to its end or until slow.
 
     `tail`: last coefficients of panels, in wells.

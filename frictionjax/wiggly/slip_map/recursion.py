@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ...model import Scene
+from ...model import TabulatedScene
 from ...numerics import rows_of
 from .settings import SETTINGS
 from .transit import SupportPull, pull_at, transit_times
@@ -83,13 +83,15 @@ class Solved(NamedTuple):
 
 
 def _pull(
-    scene: Scene, slides: Slides, number: np.ndarray, times: np.ndarray
+    scene: TabulatedScene, slides: Slides, number: np.ndarray, times: np.ndarray
 ) -> SupportPull:
     states = slides.origin[:, None] + (slides.track.sign * slides.eps)[:, None] * number
     return pull_at(scene, times, states)
 
 
-def force_beyond(scene: Scene, slides: Slides, number: np.ndarray, times: np.ndarray):
+def force_beyond(
+    scene: TabulatedScene, slides: Slides, number: np.ndarray, times: np.ndarray
+):
     """Force in N beyond the fold at lattice points (C,)."""
     pull = _pull(scene, slides, number[:, None], times[:, None])
     force = slides.track.sign * (pull.load[:, 0, 0] - pull.support[:, 0, 0])
@@ -114,7 +116,7 @@ def _chained(opens: np.ndarray, uncoupled: np.ndarray, coupled: np.ndarray) -> n
     return start
 
 
-def _newton(scene: Scene, slides: Slides, panels: Panels, times: np.ndarray):
+def _newton(scene: TabulatedScene, slides: Slides, panels: Panels, times: np.ndarray):
     """Times at the nodes of all panels together, so that the recursion holds there."""
     span = panels.span
     powers = (2 / span)[:, None] ** np.arange(1, SETTINGS.degree + 1)
@@ -144,7 +146,9 @@ def _newton(scene: Scene, slides: Slides, panels: Panels, times: np.ndarray):
     return times, found.kept, to_come
 
 
-def solved_on(scene: Scene, slides: Slides, panels: Panels, times, least) -> Solved:
+def solved_on(
+    scene: TabulatedScene, slides: Slides, panels: Panels, times, least
+) -> Solved:
     times, kept, size = _newton(scene, slides, panels, times)
     series = (times - times[:, :1]) @ TO_PANEL_SERIES.T
     length = (times[:, -1] - times[:, 0]) / panels.span

@@ -14,7 +14,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..._compile import Program, in_chunks
-from ...model import Scene
+from ...loads import AbstractPull
+from ...model import TabulatedScene
+from ...supports import AbstractSupport
 from .settings import SETTINGS
 from .well_pull import GAUSS_NODES, GAUSS_POINTS, GAUSS_WEIGHTS, TO_LEGENDRE, WellPull
 
@@ -155,21 +157,26 @@ def one_transit_time(
 
 
 @Program
-def _series(scene: Scene, times: Float[Array, " n"], states: Float[Array, " n"]):
+def _series(
+    load: AbstractPull,
+    support: AbstractSupport,
+    times: Float[Array, " n"],
+    states: Float[Array, " n"],
+):
     def derivatives(fn: Callable) -> Callable:
         first = jax.grad(fn)
         second = jax.grad(first)
         third = jax.grad(second)
         return lambda x: jnp.stack([fn(x), first(x), second(x), third(x)])
 
-    load = jax.vmap(derivatives(scene.load))(times)
-    support = jax.vmap(derivatives(scene.support.force))(states)
-    return load, support
+    of_load = jax.vmap(derivatives(load))(times)
+    return of_load, jax.vmap(derivatives(support.force))(states)
 
 
-def pull_at(scene: Scene, times: np.ndarray, states: np.ndarray) -> SupportPull:
+def pull_at(scene: TabulatedScene, times: np.ndarray, states: np.ndarray) -> SupportPull:
     """Taylor series of l and Phi' at times in s and states in m of one shape."""
     columns = times.ravel(), states.ravel()
-    load, support = in_chunks(_series, SETTINGS.near, (scene,), columns)
+    parts = scene.load, scene.support
+    load, support = in_chunks(_series, SETTINGS.near, parts, columns)
     shape = (*times.shape, 4)
     return SupportPull(load.reshape(shape), support.reshape(shape))

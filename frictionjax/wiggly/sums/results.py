@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...model import Scene
+from ...model import TabulatedScene
 from ...numerics import stacked
 from ..enclosure import BracketValues, CellBounds, Layout
 from ..equation import Status
@@ -60,7 +60,7 @@ def _dissipation_of_path(path: Path, times: np.ndarray, states: np.ndarray) -> n
 
 
 def evaluate(
-    scene: Scene,
+    scene: TabulatedScene,
     path: Path,
     ground: CellBounds,
     ts: np.ndarray,

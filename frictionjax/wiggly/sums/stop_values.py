@@ -8,30 +8,44 @@ import numpy as np
 
 from ..._checks import Real
 from ..._compile import Program, in_chunks
-from ...model import Scene
+from ...loads import AbstractPull
+from ...model import AbstractPotential, TabulatedScene
+from ...supports import AbstractSupport
 from ..enclosure import BracketValues, Layout, SampledPeriods
 from ..limit_path import SURPLUS, WORK, SampledSlide, sampled_slides_of
 from .settings import SETTINGS
 
 
 @Program
-def _energies(scene: Scene, eps, well, tip, t, guide):
+def _energies(
+    potential: AbstractPotential,
+    support: AbstractSupport,
+    load: AbstractPull,
+    eps,
+    well,
+    tip,
+    t,
+    guide,
+):
     """z in m at stops, E_eps of z less E of the guide, and the size of its parts, in J."""
 
     def one(eps: Real, well: Real, tip: Real, t: Real, guide: Real):
-        z = eps * (well + tip) + scene.potential.offset(tip, eps)
-        wiggle = scene.potential.tip_energy_change(tip, eps)
-        held, at_guide = scene.support.energy(z), scene.support.energy(guide)
-        pull = scene.load(t) * (z - guide)
+        z = eps * (well + tip) + potential.offset(tip, eps)
+        wiggle = potential.tip_energy_change(tip, eps)
+        held, at_guide = support.energy(z), support.energy(guide)
+        pull = load(t) * (z - guide)
         size = jnp.abs(held) + jnp.abs(at_guide) + jnp.abs(pull) + jnp.abs(wiggle)
         return z, held - at_guide - pull + wiggle, size
 
     return jax.vmap(one)(eps, well, tip, t, guide)
 
 
-def states_at_stops(scene: Scene, eps, well, tip, t, guide) -> tuple[np.ndarray, ...]:
+def states_at_stops(
+    scene: TabulatedScene, eps, well, tip, t, guide
+) -> tuple[np.ndarray, ...]:
     """z in m at stops, E_eps of z less E of the guide, and the size of its parts, in J."""
-    return tuple(in_chunks(_energies, SETTINGS.stops, (scene,), (eps, well, tip, t, guide)))
+    parts = scene.potential, scene.support, scene.load
+    return tuple(in_chunks(_energies, SETTINGS.stops, parts, (eps, well, tip, t, guide)))
 
 
 class StopValues(NamedTuple):
@@ -50,7 +64,7 @@ class StopValues(NamedTuple):
 
 
 def stop_values_of(
-    scene: Scene, layout: Layout, values: BracketValues, eps: np.ndarray
+    scene: TabulatedScene, layout: Layout, values: BracketValues, eps: np.ndarray
 ) -> StopValues:
     """What was found at every stop of a layout."""
     brackets, a, segments = layout.brackets, values.arrivals, values.segments

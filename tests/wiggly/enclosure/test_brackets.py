@@ -3,15 +3,16 @@
 import jax
 import numpy as np
 import pytest
+from paths import path_of
 from reference import System, sine
 from reference import solve as solve_plainly
 
 import frictionjax as fx
+from frictionjax.model import tabulated_scene
 from frictionjax.wiggly import batch as engine
 from frictionjax.wiggly import plan as planning
 from frictionjax.wiggly.enclosure import close as rounds
 from frictionjax.wiggly.enclosure.starts import starts_of
-from frictionjax.wiggly.limit_path.find_path import path_of
 from frictionjax.wiggly.limit_path.path import states_at, times_at
 
 TIMES = np.linspace(0.0, 3.0, 31)
@@ -202,7 +203,9 @@ def test_values_just_before_slips_at_small_eps():
     """Where a tip that is 1e-5 of a period off would slip too early."""
     scene, eps, gamma = scene_of(), 1e-7, 2.0
     path = path_of(scene)
-    control = planning._controls(scene, np.full(64, eps), np.full(64, gamma), 1e-3)
+    control = planning._controls(
+        tabulated_scene(scene, eps), np.full(64, eps), np.full(64, gamma), 1e-3
+    )
     wells = np.round(np.linspace(0.1, 0.9, 300) / eps)
     # 0.6% of a period before the strip's edge is at a fold; slides at gamma = 2 hardly lag.
     levels = float(control.folds.state_plus[0]) + (wells - 0.006) * eps
@@ -223,9 +226,12 @@ def test_brackets_hold_the_tip():
     """Lanes set off below and above every trajectory that there is."""
     scene, eps, gamma = scene_of(), 2e-3, 1.0
     path = path_of(scene)
-    control = planning._controls(scene, np.full(64, eps), np.full(64, gamma), 1e-3)
+    control = planning._controls(
+        tabulated_scene(scene, eps), np.full(64, eps), np.full(64, gamma), 1e-3
+    )
     folds = jax.tree_util.tree_map(lambda v: np.asarray(v)[:1], control.folds)
-    ground = planning.ground_of(scene, path, np.array([eps]), np.array([gamma]), folds)
+    tables = tabulated_scene(scene, eps)
+    ground = planning.ground_of(tables, path, np.array([eps]), np.array([gamma]), folds)
     begin = np.linspace(0.1, 2.9, 200)
     far = np.full(200, 3.0)
     starts = starts_of(scene, path, ground, np.zeros(200, int), begin, far, far)

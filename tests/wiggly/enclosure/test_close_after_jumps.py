@@ -2,15 +2,16 @@
 
 import numpy as np
 import pytest
+from paths import path_of
 
 import frictionjax as fx
+from frictionjax.model import tabulated_scene
 from frictionjax.wiggly.enclosure.brackets import BracketPlan
 from frictionjax.wiggly.enclosure.marching import BracketContext, no_effort
 from frictionjax.wiggly.enclosure.settings import SETTINGS
 from frictionjax.wiggly.enclosure.starts import CellBounds
 from frictionjax.wiggly.lanes.queue import Lanes, SegmentEnds, Segments
-from frictionjax.wiggly.limit_path.find_path import path_of
-from frictionjax.wiggly.plan import lane_scene, planned
+from frictionjax.wiggly.plan import planned
 from frictionjax.wiggly.ways import Way
 
 
@@ -41,8 +42,7 @@ def test_one_lane_goes_through_where_slides_are_brief(rise, alone):
     """Brackets across them do not close: maps and brackets took 18 s in vain."""
     scene = scene_under([0.0, 1.0, 1.0 + rise, 2.0], [0.0, 1.0, 2.0, -1.0])
     cells = np.array([1e-4]), np.array([0.5])
-    lanes = lane_scene(scene, 1e-4)
-    plan = planned(scene, lanes, path_of(scene), *cells, 2, 1e-3, "auto")
+    plan = planned(tabulated_scene(scene, 1e-4), path_of(scene), *cells, 2, 1e-3, "auto")
     assert plan.way == (Way.ONE_LANE if alone else Way.SLIP_MAP)
     assert np.isinf(plan.needs.tile).tolist() == [alone]
 

@@ -4,13 +4,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from paths import path_of
 
 import frictionjax as fx
 from frictionjax.wiggly.enclosure.brackets import segments_of
 from frictionjax.wiggly.enclosure.segment_ends import Cut, follow_path
 from frictionjax.wiggly.lanes.queue import guide_of
 from frictionjax.wiggly.lanes.running_extrema import Guide
-from frictionjax.wiggly.limit_path.find_path import path_of
 from frictionjax.wiggly.limit_path.path import states_at
 
 BRISTLE = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 from fast_slides import BRISTLES, PROFILES, SCENES, SINE, TIMES
+from paths import path_of
 
 import frictionjax as fx
 from frictionjax.wiggly import batch as engine
 from frictionjax.wiggly.enclosure import chains, finder, marching
-from frictionjax.wiggly.limit_path.find_path import path_of
 from frictionjax.wiggly.slip_map.fast_slides import FastSlide
 from frictionjax.wiggly.slip_map.transit_times import TransitTimes
 

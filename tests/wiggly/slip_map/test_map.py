@@ -8,15 +8,16 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from fast_slides import COS, SCENES, SIN, TIMES
+from paths import path_of
 from reference import System, series, sine
 from reference import solve as solve_plainly
 from scipy.integrate import solve_ivp
 
 import frictionjax as fx
+from frictionjax.model import tabulated_scene
 from frictionjax.wiggly import batch as engine
 from frictionjax.wiggly.equation.landscape import Landscape, landscape
-from frictionjax.wiggly.limit_path.find_path import path_of
-from frictionjax.wiggly.plan import lane_scene, planned
+from frictionjax.wiggly.plan import planned
 from frictionjax.wiggly.slip_map import map as slip_map
 from frictionjax.wiggly.slip_map import recursion
 from frictionjax.wiggly.slip_map.transit import pull_at, transit_times
@@ -221,11 +222,11 @@ def test_errors_of_a_wrong_map_are_seen(monkeypatch):
 def test_maps_are_made_where_they_are_cheaper():
     """A hundred slips are integrated, millions mapped; by name as asked for."""
     scene, eps = SCENES["sine"], np.array([3e-2, 1e-6])
-    path, lanes = path_of(scene), lane_scene(scene, 3e-2)
+    path, tables = path_of(scene), tabulated_scene(scene, 3e-2)
 
     def by_map(gamma, method):
         gammas = np.full(eps.size, gamma)
-        plan = planned(scene, lanes, path, eps, gammas, TIMES.size, 1e-3, method)
+        plan = planned(tables, path, eps, gammas, TIMES.size, 1e-3, method)
         return (plan.way == Way.SLIP_MAP).tolist()
 
     assert by_map(0.5, "auto") == [False, True]

@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from paths import path_of
 
 import frictionjax as fx
+from frictionjax.model import tabulated_scene
 from frictionjax.wiggly import batch as engine
-from frictionjax.wiggly.limit_path import path_of, states_at
 from frictionjax.wiggly.limit_path import resting_ends as slow_ends
-from frictionjax.wiggly.plan import lane_scene, planned
+from frictionjax.wiggly.limit_path import states_at
+from frictionjax.wiggly.plan import planned
 from frictionjax.wiggly.slip_map import fast_slides, onsets
 
 SCENE = fx.Scene(
@@ -100,10 +102,9 @@ def answered(asking, answer):
 def test_slides_are_found_from_answers_alone(gap):
     """Without any lane: tips where the path is, brackets that have closed or not."""
     eps = np.array([2e-4, 5e-4])
-    lanes = lane_scene(SCENE, float(eps.max()))
     path = path_of(SCENE)
     parts = eps, np.full(2, 0.5), TIMES.size, 1e-3, "windowed"
-    ground = planned(SCENE, lanes, path, *parts).ground
+    ground = planned(tabulated_scene(SCENE, eps), path, *parts).ground
     folds = ground.folds
     finder = fast_slides.FastSlideFinder(
         scene=SCENE,

@@ -8,9 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from paths import path_of
 
 import frictionjax as fx
-from frictionjax.wiggly.limit_path.find_path import path_of
 from frictionjax.wiggly.limit_path.path import Path
 from frictionjax.wiggly.limit_path.sampled_slide import (
     BEHIND,

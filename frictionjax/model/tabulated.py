@@ -1,0 +1,61 @@
+"""A scene as tables of numbers: what engines work with, whoever wrote its parts."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from .._checks import ByIdentity
+from ..loads import AbstractPull
+from ..supports import AbstractSupport
+from ..tables import load_table
+from .friction_coefficients import coefficients_jit
+from .load_edges import known_turning_points
+from .potentials import AbstractPotential
+from .scene import Scene
+from .tabulated_potential import tabulated_potentials
+
+
+class TabulatedScene(NamedTuple):
+    """A scene of known numbers, at every eps up to the one it was made for.
+
+    `potential`: as planning evaluates it; `lane_potential`: as lanes do. `turning_points`
+    (n,): in s, inside (0, duration); NaN where the scene has no room for all. `rho_plus`,
+    `rho_minus` in N.
+    """
+
+    potential: AbstractPotential
+    lane_potential: AbstractPotential
+    support: AbstractSupport
+    load: AbstractPull
+    duration: float
+    z0: float
+    turning_points: Float[np.ndarray, " n"]
+    rho_plus: float
+    rho_minus: float
+
+
+_TABLES = ByIdentity()  # of scenes: the last eps, and the tables for it
+
+
+def tabulated_scene(scene: Scene, eps: Any) -> TabulatedScene:
+    """The tables of a known scene for cells of these eps (m)."""
+    highest = float(np.max(np.asarray(eps)))
+    known = _TABLES.get(scene)
+    if known is not None and known[0] == highest:
+        return known[1]
+    law = coefficients_jit(scene.potential)
+    planning, lanes = tabulated_potentials(scene.potential, highest)
+    tables = TabulatedScene(
+        potential=planning,
+        lane_potential=lanes,
+        support=scene.support,
+        load=load_table(scene.load),
+        duration=float(scene.duration),
+        z0=float(scene.z0),
+        turning_points=known_turning_points(scene.load, scene.duration, scene.turns),
+        rho_plus=float(law.rho_plus),
+        rho_minus=float(law.rho_minus),
+    )
+    _TABLES.put(scene, (highest, tables))
+    return tables

@@ -1,0 +1,126 @@
+"""Scenes as tables: what is compiled does not depend on who wrote the parts."""
+
+import re
+
+import jax
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax.model import coefficients, coefficients_jit, tabulated_scene
+from frictionjax.tables import PiecewiseProfile, SeriesBristle
+from frictionjax.wiggly import limit_path
+
+P, B, L = fx.profiles, fx.bristles, fx.loads
+SLANTED = B.SlantedSpring(20.0, 1.3, 1.0, 0.3)
+PROFILES = {
+    "sine": P.Sine(0.2),
+    "series": P.Fourier([0.02, 0.01, 0.0], [0.01, 0.0, 0.004]),
+    "many waves": P.Fourier(np.zeros(71), 0.02 * 0.5 ** np.arange(71)),
+    "spline": P.Spline(0.02 * np.sin(2 * np.pi * np.arange(12) / 12)),
+    "polyline": P.Polyline([0.0, 0.5], [0.0, 0.04], 0.4),
+}
+BRISTLES = {
+    "vertical": B.VerticalSpring(20.0, 1.3, 1.0),
+    "slanted": SLANTED,
+    "angular": B.AngularSpring(8.0, 1.3, 1.0, 0.1),
+}
+LOADS = {
+    "sine": L.Sine(6.0, 2.0),
+    "triangle": L.Triangle(6.0, 2.0),
+    "ramp": L.Ramp(4.0),
+    "points": L.PiecewiseLinear([0.0, 0.7, 1.5], [0.0, 6.0, -6.0]),
+}
+
+
+def scene_of(profile="sine", bristle="vertical", load="sine"):
+    spring = fx.supports.Spring(2.0)
+    return fx.Scene(PROFILES[profile], BRISTLES[bristle], spring, LOADS[load], 2.0)
+
+
+@pytest.mark.parametrize("bristle", BRISTLES)
+@pytest.mark.parametrize("profile", PROFILES)
+def test_coefficients_are_those_of_the_parts(profile, bristle):
+    potential = fx.potential(PROFILES[profile], BRISTLES[bristle])
+    found, expected = coefficients_jit(potential), jax.jit(coefficients)(potential)
+    for name, value in vars(expected).items():
+        if value is not None:
+            assert float(getattr(found, name)) == pytest.approx(float(value), rel=1e-12)
+
+
+@pytest.mark.parametrize("bristle", BRISTLES)
+@pytest.mark.parametrize("profile", PROFILES)
+def test_forces_are_those_of_the_parts(profile, bristle):
+    scene = scene_of(profile, bristle)
+    tables = tabulated_scene(scene, [1e-3, 1e-2])
+    y = np.linspace(-1, 1, 101)
+    for potential in (tables.potential, tables.lane_potential):
+        for eps in (1e-2, 1e-3, 1e-6):
+            both = [
+                jax.vmap(lambda place, p=p, e=eps: p.tip_force(place, e))(y)
+                for p in (potential, scene.potential)
+            ]
+            for found, expected in zip(*both, strict=True):
+                size = float(np.abs(expected).max())
+                assert np.max(np.abs(np.asarray(found - expected))) < 1e-12 * size
+
+
+def compiled(log):
+    """Names of the programs of the library that JAX says it has compiled."""
+    said = [re.search(r"compilation of jit\((\w+)\)", r.getMessage()) for r in log.records]
+    names = {match[1] for match in said if match}
+    # What JAX compiles for steps that it makes one by one has the name of the step.
+    return {name for name in names if name.startswith("_") or name in ENGINE}
+
+
+ENGINE = {"run_queue", "coefficients", "pull_between"}
+
+
+def test_scenes_of_all_classes_run_the_same_programs(caplog):
+    """After one scene of each size, others compile nothing of the library."""
+
+    def solved(*names):
+        with jax.log_compiles(True):
+            assert fx.solve(scene_of(*names), 1e-2, 1.0, [1.0, 2.0], dissipation=False).ok
+        names = compiled(caplog)
+        caplog.clear()
+        return names
+
+    solved("sine", "vertical", "sine")
+    solved("polyline", "angular", "points")
+    assert solved("sine", "slanted", "triangle") == set()
+    assert solved("sine", "vertical", "ramp") == set()
+    assert solved("spline", "angular", "points") == set()
+    # A size of its own, which no other test can have compiled.
+    assert "run_queue" in solved("many waves")
+
+
+def test_tables_are_kept_for_the_last_eps():
+    scene = scene_of()
+    assert tabulated_scene(scene, 1e-3) is tabulated_scene(scene, [1e-5, 1e-3])
+    assert tabulated_scene(scene, 1e-2) is not tabulated_scene(scene, 1e-3)
+
+
+def test_turning_points_and_rooms_for_them():
+    scene = scene_of(load="triangle")
+    np.testing.assert_allclose(tabulated_scene(scene, 1e-3).turning_points, [0.5, 1.5])
+    path = limit_path.path_of(tabulated_scene(scene, 1e-3))
+    np.testing.assert_allclose(path.edges, [0.0, 0.5, 1.5, 2.0])
+
+
+def test_what_no_table_holds_is_compiled_for_itself():
+    load = L.Custom(lambda t: 6 * t)
+    scene = scene_of().replace(load=load)
+    assert tabulated_scene(scene, 1e-3).load is scene.load
+    given = fx.potentials.GivenPotential if hasattr(fx, "potentials") else fx.GivenPotential
+    other = given(lambda Y: jax.numpy.sin(2 * np.pi * Y))
+    tables = tabulated_scene(
+        fx.Scene(potential=other, support=scene.support, load=LOADS["sine"], duration=2.0),
+        1e-3,
+    )
+    assert tables.potential is other
+    near = tabulated_scene(scene_of(bristle="angular"), 1e-3)
+    assert isinstance(near.potential.bristle, SeriesBristle)
+    assert isinstance(
+        tabulated_scene(scene_of("spline"), 1e-3).potential.profile, PiecewiseProfile
+    )
