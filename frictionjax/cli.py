@@ -226,6 +226,9 @@ def _numbers(**given: str | None) -> dict[str, Any]:
     help="Seconds of computation: the best of the scene's accuracy and 1e-3 to 1e-6, or "
     "with --accuracy the eps, that fit.",
 )
+@click.option(
+    "--rows", is_flag=True, help="Every row of the map of --heights, and how they differ."
+)
 @_out("study")
 @_progress
 def study(
@@ -254,6 +257,8 @@ def study(
     wanted = _numbers(eps=eps, gamma=gamma)
     if accuracy is not None:
         wanted["accuracy"] = accuracy
+    if surface["rows"] and budget is not None:
+        _refuse("--rows", "budget")
     job = read_job(scene, **surface)
     job = job._replace(study=job.study | wanted)
     prepare_study(job, method)  # while its cost is found

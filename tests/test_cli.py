@@ -148,6 +148,21 @@ def test_study_of_a_measured_map(tmp_path):
     assert isinstance(profile, fx.profiles.Fourier)
 
 
+def test_study_of_every_row_of_a_map(tmp_path):
+    folder = tmp_path / "out"
+    options = ["--heights", grooves(tmp_path), "--harmonics", "2", "--rows"]
+    result = run("study", *SMALL, *options, "--out", folder)
+    assert result.exit_code == 0, result.stderr
+    assert result.stderr.startswith("Expected: 3 rows, each about ")
+    assert "Orders over the rows of the map" in result.stdout
+    with xr.open_dataset(folder / "study.nc", engine="h5netcdf") as data:
+        assert data.scene.values.tolist() == [0, 1, 2]
+        assert int(data.status.max()) == fx.Status.OK
+    with xr.open_dataset(folder / "orders.nc", engine="h5netcdf") as orders:
+        assert orders.order.sizes == {"scene": 3, "gamma": 2}
+    assert {"spread.nc", "convergence.png"} <= {path.name for path in folder.iterdir()}
+
+
 def test_figures(tmp_path):
     result = run("figures", "--out", tmp_path / "figures")
     assert result.exit_code == 0, result.stderr
@@ -175,6 +190,8 @@ def test_help_without_a_command():
         (["study", "none.toml"], "none.toml: cannot be read (No such file"),
         (["study", "--heights", "none.txt"], "none.txt: No such file"),
         (["study", "--row", "1"], "row = 1: needs --heights FILE"),
+        (["study", "--rows"], "rows = True: needs --heights FILE with a map, and no --row"),
+        (["study", "--rows", "--budget", "9"], "--budget: not with --rows"),
         (["friction", "--bristle", "soft"], "'soft' is not one of 'slanted', 'angular'"),
         (["cost", "--order-within", "0.1", "--methods", "auto"], "not with --order-within"),
         (

@@ -65,7 +65,7 @@ class RowCoefficients(NamedTuple):
     `period` in m, one for all rows. `used`: indices of the rows used. `refused`: index
     and reason of the rows whose fit the bristle does not admit. `error`: standard error of
     the friction of the mean profile (rows moved into phase), by name; empty where it
-    cannot be told.
+    cannot be told. `profiles`: of the rows used.
     """
 
     values: dict[str, Float[np.ndarray, " rows"]]
@@ -73,6 +73,7 @@ class RowCoefficients(NamedTuple):
     used: list[int]
     refused: dict[int, str]
     error: dict[str, float]
+    profiles: Sequence[Fourier] = ()
 
     @property
     def mean(self) -> dict[str, float]:
@@ -108,22 +109,25 @@ def row_coefficients(
     fits = fit_rows_in_phase(x, heights, period, harmonics, smoothing)
     found: list[dict[str, float]] = []
     used: list[int] = []
+    profiles: list[Fourier] = []
     refused: dict[int, str] = {}
     for index, fit in enumerate(fits):
+        profile = _row_profile(fit)
         try:
-            found.append(_law(_row_profile(fit), bristle) | {"explained": fit.explained})
+            found.append(_law(profile, bristle) | {"explained": fit.explained})
             used.append(index)
+            profiles.append(profile)
         except ValueError as error:
             refused[index] = str(error)
     first = next(iter(refused.values()), "")
     require(bool(found), "rows", "none admissible", f"one that is; row 0: {first}")
     values = {name: np.array([law[name] for law in found]) for name in found[0]}
     error = _jackknife(fits, bristle)
-    return RowCoefficients(values, fits[0].period, used, refused, error)
+    return RowCoefficients(values, fits[0].period, used, refused, error, profiles)
 
 
 def _row_profile(fit: SeriesFit) -> Fourier:
-    """The profile of one row, for its friction alone."""
+    """The profile of one row, without errors of its own."""
     return Fourier(as_real(fit.cos), as_real(fit.sin))
 
 

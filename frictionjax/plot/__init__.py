@@ -7,6 +7,7 @@ from .design_maps import draw_design_map as draw_design_map
 from .dissipation import draw_dissipation as draw_dissipation
 from .loop import draw_loop as draw_loop
 from .paper import draw_mu_angular, draw_mu_slanted, draw_nap
+from .scenes import draw_scenes as draw_scenes
 from .slide_profile import draw_slide_profile_fit
 from .trace_fit import draw_trace_fit
 from .trajectories import draw_trajectories as draw_trajectories
@@ -22,6 +23,7 @@ __all__ = [
     "draw_mu_slanted",
     "draw_nap",
     "draw_profile_fit",
+    "draw_scenes",
     "draw_slide_profile_fit",
     "draw_trace_fit",
     "draw_trajectories",

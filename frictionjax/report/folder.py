@@ -17,6 +17,9 @@ def study_figures(
 ) -> Iterator[tuple[str, Figure]]:
     """The pictures of a study by file name, those that its data allow."""
     data = found.dataset
+    if found.spread is not None:
+        yield "convergence", found.plot()
+        return
     yield "convergence", plot.draw_convergence(data, found.orders, found.curves)
     if bool((data.status == 0).any()):
         yield "trajectories", plot.draw_trajectories(data)
@@ -57,5 +60,8 @@ def write_study(
     folder: Path, found: Study, scene: Scene, law: Coefficients, toml: str, text: str
 ) -> None:
     """Write data, orders, tables, scene and pictures of a study into `folder`."""
-    write_record(folder, {"study": found.dataset, "orders": found.orders}, toml, text)
+    data = {"study": found.dataset, "orders": found.orders}
+    if found.spread is not None:
+        data["spread"] = found.spread
+    write_record(folder, data, toml, text)
     write_figures(folder, study_figures(found, scene, law))

@@ -35,13 +35,17 @@ def named_bristle(name: str) -> AbstractBristle:
 
 
 class Job(NamedTuple):
-    """A scene, its file, and what is known of the measured surface, where there is one."""
+    """A scene, its file, and what is known of the measured surface, where there is one.
+
+    `scenes`: one for each row of a map, by its number, where all are asked for.
+    """
 
     scene: Scene
     study: dict[str, Any]
     notes: list[str]
     rows: RowCoefficients | None
     row: int | None = None
+    scenes: dict[int, Scene] | None = None
 
     @property
     def error(self) -> dict[str, float]:
@@ -53,18 +57,36 @@ def read_job(
     path: str | None,
     bristle: str | None = None,
     heights: str | None = None,
+    rows: bool = False,
     **surface: Any,
 ) -> Job:
     """The scene of a file (None: the embedded one), its bristle and surface exchanged.
 
     `surface`: of a measured surface in `heights` its `period`, `harmonics`, `row` and
-    `smoothing`, and options of `read_heights`. What warns of the surface is a note. Raises
-    `ValueError`, one line, for whatever is wrong.
+    `smoothing`, and options of `read_heights`. `rows`: every row of the map as a scene of
+    its own too. What warns of the surface is a note. Raises `ValueError`, one line, for
+    whatever is wrong.
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SlopesUndetermined)
         job = _read_job(path, bristle, heights, **surface)
+    if rows:
+        job = _with_rows(job)
     return job._replace(notes=job.notes + _said_of(caught))
+
+
+def _with_rows(job: Job) -> Job:
+    """With a scene for each row that the bristle admits."""
+    many = job.rows is not None and job.row is None
+    require(many, "rows", True, "--heights FILE with a map, and no --row")
+    bristle = job.scene.bristle
+    assert job.rows is not None
+    assert bristle is not None
+    scenes = {
+        index: with_surface(job.scene, profile, bristle)
+        for index, profile in zip(job.rows.used, job.rows.profiles, strict=True)
+    }
+    return job._replace(scenes=scenes)
 
 
 def _said_of(caught: list[warnings.WarningMessage]) -> list[str]:

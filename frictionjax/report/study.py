@@ -14,6 +14,7 @@ from ..wiggly import is_ours, prepare_cells, require_accuracy, solver_of
 from .job import Job
 
 _TIMES = 401  # pictures follow the slips of the larger eps
+_TIMES_A_ROW = 101  # of a map: nobody draws each, and files of all would be large
 
 
 def expected_cost(job: Job, method: str) -> CostPrediction | None:
@@ -37,6 +38,8 @@ def expectation(job: Job, method: str) -> str:
     if found is None:
         solver_of(method)
         return f"unknown time, as nobody has measured {method}"
+    if job.scenes:
+        return f"{len(job.scenes)} rows, each about {found}"
     return str(found)
 
 
@@ -79,7 +82,8 @@ def within_budget(
 
 def study_times(job: Job) -> np.ndarray:
     """Times in s at which a study keeps the state."""
-    return np.linspace(0.0, float(job.scene.duration), _TIMES)
+    count = _TIMES_A_ROW if job.scenes else _TIMES
+    return np.linspace(0.0, float(job.scene.duration), count)
 
 
 def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
@@ -88,8 +92,8 @@ def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
     Raises `ValueError` as `sweep` does.
     """
     in_background(_import_results, "imports", daemon=True)
-    ts = study_times(job)
-    data = sweep(job.scene, ts=ts, method=method, progress=progress, **job.study)
+    scenes, ts = job.scenes or job.scene, study_times(job)
+    data = sweep(scenes, ts=ts, method=method, progress=progress, **job.study)
     from .study_results import write_results
 
     return write_results(job, data, folder)

@@ -15,6 +15,7 @@ from .tables import (
     lemma_table,
     order_table,
     row_table,
+    spread_table,
     sweep_table,
 )
 
@@ -39,12 +40,15 @@ def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
     sections.append(("Friction coefficients", coefficient_table(law, job.error)))
     if job.rows is not None:
         sections.append(("Friction over the rows of the map", row_table(job.rows)))
-    sections += [
-        ("Cells", sweep_table(data)),
-        ("Orders of convergence", f"{order_table(found.orders)}\n{_COVERS}"),
-        ("Lemmas 7 to 9", lemma_table(found.orders)),
-        ("Failed cells", failed_table(found.failed)),
-    ]
+    if found.spread is not None:
+        sections.append(("Orders over the rows of the map", spread_table(found.spread)))
+    else:
+        sections += [
+            ("Cells", sweep_table(data)),
+            ("Orders of convergence", f"{order_table(found.orders)}\n{_COVERS}"),
+            ("Lemmas 7 to 9", lemma_table(found.orders)),
+        ]
+    sections.append(("Failed cells", failed_table(found.failed)))
     text = joined(sections)
     toml = scene_document(scene, job.study)
     write_study(folder, found, scene, law, toml, text)

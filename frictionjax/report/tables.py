@@ -250,6 +250,36 @@ def _order_cells(orders: xr.Dataset, line: xr.Dataset, prefix: str) -> tuple[str
     )
 
 
+def spread_table(spread: xr.Dataset) -> str:
+    """One line for each error and gamma: median and 90% of orders and constants."""
+    rows = [
+        (
+            name,
+            f"{gamma:.4g}",
+            _ranged(spread[f"{prefix}order"].sel(gamma=gamma), "{:.3f}"),
+            _ranged(spread[f"{prefix}order_predicted"].sel(gamma=gamma), "{:.3f}"),
+            _ranged(spread[f"{prefix}constant"].sel(gamma=gamma), "{:.3g}"),
+            f"{int(spread.scenes.sel(gamma=gamma))}",
+        )
+        for prefix, name in _ERRORS
+        if f"{prefix}order" in spread
+        for gamma in spread.gamma.values
+    ]
+    header = ("error", "gamma", "order [5%, 95%]", "predicted", "constant", "rows")
+    return (
+        f"{table(header, rows, left=1)}\n"
+        "(Median, and between which values 90% of the rows lie. Orders and constants of\n"
+        "each row are for eps -> 0, by its law where its errors follow one.)"
+    )
+
+
+def _ranged(quantiles: xr.DataArray, form: str) -> str:
+    low, middle, high = (
+        form.format(float(quantiles.sel(quantile=q))) for q in (0.05, 0.5, 0.95)
+    )
+    return f"{middle} [{low}, {high}]"
+
+
 def lemma_table(orders: xr.Dataset) -> str:
     """One line a gamma: the lemmas' exponent, and their constants as measured."""
     rows = []
@@ -264,11 +294,19 @@ def failed_table(failed: Sequence[dict[str, Any]]) -> str:
     """One line a failed cell with the reason; says so where none failed."""
     if not failed:
         return "no cell failed"
+    several = "scene" in failed[0]
     rows = [
-        (f"{cell['gamma']:.4g}", f"{cell['eps']:.4g}", cell["status"], cell["message"])
+        (
+            *((str(cell["scene"]),) if several else ()),
+            f"{cell['gamma']:.4g}",
+            f"{cell['eps']:.4g}",
+            cell["status"],
+            cell["message"],
+        )
         for cell in failed
     ]
-    return _with_meanings(("gamma", "eps/m", "status", "why"), rows)
+    scene = ("scene",) if several else ()
+    return _with_meanings((*scene, "gamma", "eps/m", "status", "why"), rows)
 
 
 def flag_names(variable: xr.DataArray) -> dict[int, str]:

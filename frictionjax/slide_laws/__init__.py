@@ -6,6 +6,7 @@ Its periodic solution says how far the tip lags behind the limit and runs ahead 
 every eps and gamma; its limits for eps -> 0 are the laws of the orders.
 """
 
+from .ingredients import LAW_DIMS as LAW_DIMS
 from .ingredients import SlideData as SlideData
 from .ingredients import slide_data as slide_data
 from .predictions import NO_LAW as NO_LAW

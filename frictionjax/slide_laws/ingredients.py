@@ -64,6 +64,13 @@ _ATTRIBUTES = {
 }
 
 
+LAW_DIMS = {
+    name: "law_place" if field in ("phase", "force", "change") else "law_moment"
+    for name, field in _ATTRIBUTES.items()
+}
+"""Along what these arrays are."""
+
+
 def slide_data(
     scene: Scene, found: Coefficients, eps: Float[np.ndarray, " cells"]
 ) -> SlideData | None:

@@ -17,8 +17,9 @@ from ..convergence import (
     local_orders,
 )
 from ..slide_laws import NO_LAW, Prediction, SlideData, predict_errors
-from ..sweeps import whole_grid
+from ..sweeps import one_scene, whole_grid
 from ..wiggly import Status, status_of, warn_of_failed
+from .scene_spread import spread_over_scenes
 
 _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
 
@@ -29,6 +30,8 @@ class Study(NamedTuple):
     `orders`: over gamma; `local_orders`: over gamma and neighbouring pairs of eps;
     `failed`: one dict for each cell that failed, with gamma, eps, status and message;
     `curves`: over gamma and eps, what the laws predict for each error and what was fitted.
+    Of several scenes all have the dimension `scene` in front, failed cells their scene,
+    and `spread` holds quantiles of orders and constants over the scenes; else it is None.
     """
 
     orders: xr.Dataset
@@ -36,11 +39,17 @@ class Study(NamedTuple):
     failed: list[dict[str, Any]]
     dataset: xr.Dataset
     curves: xr.Dataset
+    spread: xr.Dataset | None = None
 
     def plot(self) -> Any:
-        """Errors against eps with the fitted orders, as a matplotlib Figure."""
-        from ..plot import draw_convergence
+        """Errors against eps with the fitted orders, as a matplotlib Figure.
 
+        Of several scenes: the errors of all, and how their orders spread.
+        """
+        from ..plot import draw_convergence, draw_scenes
+
+        if self.spread is not None:
+            return draw_scenes(self.dataset, self.orders)
         return draw_convergence(self.dataset, self.orders, self.curves)
 
 
@@ -70,7 +79,8 @@ def study(dataset: xr.Dataset) -> Study:
     `order_seen` and, where a law is used, `.curves`. (The paper proves no rate for the sup
     error.)
 
-    Cells that failed are left out, and a warning (`FailedCells`) names them.
+    Cells that failed are left out, and a warning (`FailedCells`) names them. Each of
+    several scenes is studied alone; `.spread` tells how they differ.
 
     Raises `ValueError` where the data set lacks what `sweep` puts there.
     """
@@ -78,12 +88,41 @@ def study(dataset: xr.Dataset) -> Study:
     given = getattr(dataset, "variables", None)
     allowed = "a data set that `sweep` has made"
     require(given is not None, "dataset", type(dataset).__name__, allowed)
-    dataset = whole_grid(dataset)
     missing = ", ".join(sorted(needed - set(given or ())))
     allowed = "one that `sweep` has made, with suprema=True"
     require(not missing, "dataset", f"one without {missing}", allowed)
-    codes = dataset.status.transpose("gamma", "eps").values
-    warn_of_failed(codes, dataset.gamma.values, dataset.eps.values)
+    dataset = whole_grid(dataset)
+    codes = dataset.status.transpose(..., "gamma", "eps").values
+    several = "scene" in dataset.dims
+    labels = dataset.scene.values if several else ()
+    warn_of_failed(codes, dataset.gamma.values, dataset.eps.values, labels)
+    return _study_of_scenes(dataset) if several else _study_of_one(dataset)
+
+
+def _study_of_scenes(dataset: xr.Dataset) -> Study:
+    labels = dataset.scene
+    found = [_study_of_one(one_scene(dataset.isel(scene=i))) for i in range(labels.size)]
+
+    def joined(parts: list[xr.Dataset]) -> xr.Dataset:
+        return xr.concat(parts, labels, join="exact", combine_attrs="drop_conflicts")
+
+    orders = joined([one.orders for one in found])
+    failed = [
+        {"scene": label, **cell}
+        for label, one in zip(labels.values.tolist(), found, strict=True)
+        for cell in one.failed
+    ]
+    return Study(
+        orders=orders,
+        local_orders=joined([one.local_orders for one in found]),
+        failed=failed,
+        dataset=dataset,
+        curves=joined([one.curves for one in found]),
+        spread=spread_over_scenes(orders),
+    )
+
+
+def _study_of_one(dataset: xr.Dataset) -> Study:
     gammas = dataset.gamma.values
     laws = _predictions(dataset)
     columns: dict[str, np.ndarray] = {}

@@ -1,5 +1,6 @@
 """Cells of a sweep by solvers of diffrax, in vmapped blocks on all cores."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import jax
@@ -7,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import cells_of, with_nan
-from .._compile import crew, progress_bar
+from .._compile import crew
 from ..model import Scene
 from ..numerics import concatenated, rows_of
 from .diffrax_cells import Cell, run_block
@@ -44,15 +45,22 @@ def _blocks(eps: np.ndarray, gamma: np.ndarray) -> list[Block]:
 
 
 def run_blocks(
-    scene: Scene, eps, gamma, ts, accuracy: float, solver, balanced: bool, progress: bool
+    scene: Scene,
+    eps,
+    gamma,
+    ts,
+    accuracy: float,
+    solver,
+    balanced: bool,
+    report: Callable[[float], None],
 ) -> dict[str, np.ndarray]:
     """Values of all cells by name, as `sweep` keeps them, in the order of `cells_of`."""
     blocks = _blocks(eps, gamma)
     tight = jnp.asarray(accuracy)
-    return _cell_values(_run(scene, blocks, ts, tight, solver, balanced, progress))
+    return _cell_values(_run(scene, blocks, ts, tight, solver, balanced, report))
 
 
-def _run(scene, blocks, ts, accuracy, solver, balanced, progress: bool) -> Cell:
+def _run(scene, blocks, ts, accuracy, solver, balanced, report) -> Cell:
     """Run the blocks on all cores and put the cells back in order."""
 
     @with_nan
@@ -68,17 +76,12 @@ def _run(scene, blocks, ts, accuracy, solver, balanced, progress: bool) -> Cell:
         )
         return jax.tree_util.tree_map(lambda a: np.asarray(a)[: block.cells.size], found)
 
-    total = sum(block.cost for block in blocks) * (1 + 1e-9)  # never above 100% by rounding
-    bar = progress_bar("cells", progress)
-    with bar:
-        done = [one(blocks[-1])]  # the shortest compiles the program for all
-        bar.update(blocks[-1].cost / total)
-        for found, block in zip(
-            crew("blocks").map(one, blocks[:-1]), blocks[:-1], strict=True
-        ):
-            done.append(found)
-            bar.update(block.cost / total)
-        bar.update(bar.total - bar.n)
+    total = sum(block.cost for block in blocks)
+    done = [one(blocks[-1])]  # the shortest compiles the program for all
+    report(blocks[-1].cost / total)
+    for found, block in zip(crew("blocks").map(one, blocks[:-1]), blocks[:-1], strict=True):
+        done.append(found)
+        report(block.cost / total)
     order = np.argsort(np.concatenate([b.cells for b in [blocks[-1], *blocks[:-1]]]))
     return rows_of(concatenated(done), order)
 

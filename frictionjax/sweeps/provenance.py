@@ -1,6 +1,7 @@
 """Units, meanings and origin of a data set, in its attributes."""
 
 import platform
+from collections.abc import Sequence
 from functools import lru_cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
@@ -42,6 +43,15 @@ _MEANING = {
     "load": ("N", "load l(t)"),
     "z_minus": ("m", "lower edge of the strip"),
     "z_plus": ("m", "upper edge of the strip"),
+    "scene": (None, "label of the scene"),
+    "parts": (None, "parts and numbers of the scene"),
+    "law_phase": ("1", "phase in a well"),
+    "law_well_force": ("N", "force of a well, W'"),
+    "law_well_force_change": ("N m-1", "its change with eps"),
+    "law_length": ("s", "length of a stretch of time"),
+    "law_pull": ("N", "change of the load in it"),
+    "law_speed": ("m s-1", "speed of the limit in it"),
+    "law_stiffness": ("N m-1", "stiffness of the support in it"),
 }
 
 
@@ -71,13 +81,13 @@ def explain(data: "xr.Dataset", meanings: dict[str, tuple[str | None, str]]) -> 
     status["flag_meanings"] = FLAGS["flag_meanings"]
 
 
-def origin(title: str, scene: Scene, **facts: Any) -> dict[str, Any]:
-    """Where a data set comes from: the scene, versions, and more facts."""
+def origin(title: str, scene: Scene | str, **facts: Any) -> dict[str, Any]:
+    """Where a data set comes from: the scene (or its text), versions, and more facts."""
     known = _versions(*_PACKAGES)
     return {
         "title": title,
         "source": f"frictionjax {_versions('frictionjax')[0]}",
-        "scene": scene_text(scene),
+        "scene": scene if isinstance(scene, str) else scene_text(scene),
         "dtype": "float64",
         "versions": ", ".join(map(" ".join, zip(_PACKAGES, known, strict=True))),
         "python": platform.python_version(),
@@ -86,10 +96,12 @@ def origin(title: str, scene: Scene, **facts: Any) -> dict[str, Any]:
 
 
 def describe(
-    data: "xr.Dataset", scene: Scene, accuracy: float, solver: str
+    data: "xr.Dataset", scenes: Sequence[Scene], accuracy: float, solver: str
 ) -> "xr.Dataset":
     """Attach units, long names, CF flags and provenance to the data set of a sweep."""
     explain(data, _MEANING)
     title = "Convergence of a wiggly viscous system to directional dry friction"
+    several = f"{len(scenes)} scenes, see the variable parts"
+    scene = several if "scene" in data.dims else scenes[0]
     data.attrs = origin(title, scene, method=solver, accuracy=accuracy)
     return data

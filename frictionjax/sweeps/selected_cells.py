@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from .._checks import require
+from ..slide_laws import LAW_DIMS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -17,6 +18,8 @@ def whole_grid(dataset: "xr.Dataset") -> "xr.Dataset":
 
     Raises `ValueError` where a coordinate was dropped: then nobody knows the value.
     """
+    if "scene" in dataset.coords and dataset["scene"].ndim == 0:
+        dataset = one_scene(dataset)
     for name in (*_AXES, "time"):
         known = name in dataset.coords
         allowed = f"the values of {name}, as `isel({name}=0)` leaves them, not `drop=True`"
@@ -24,6 +27,19 @@ def whole_grid(dataset: "xr.Dataset") -> "xr.Dataset":
         if dataset[name].ndim == 0:
             dataset = _with_axis(dataset, name)
     return dataset
+
+
+def one_scene(dataset: "xr.Dataset") -> "xr.Dataset":
+    """A data set of several scenes of which one was selected, as that scene's own."""
+    laws = {
+        name: dataset[name].dropna(dim).values
+        for name, dim in LAW_DIMS.items()
+        if name in dataset
+    }
+    known = {name: values for name, values in laws.items() if values.size}
+    own = dataset.drop_vars(["scene", "parts", *laws], errors="ignore")
+    label, parts = dataset["scene"].item(), dataset["parts"].item()
+    return own.assign_attrs(scene=f"{label}: {parts}", **known)
 
 
 def _with_axis(dataset: "xr.Dataset", name: str) -> "xr.Dataset":

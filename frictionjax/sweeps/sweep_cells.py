@@ -1,72 +1,25 @@
-"""All cells eps x gamma of a scene as a data set."""
+"""All cells eps x gamma of a scene, or of several, as a data set."""
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._checks import as_real, cells_of, grid_of, require_flags, viscosity_of, with_nan
+from .._checks import as_real, grid_of, require_flags, with_nan
 from .._compile import progress_bar
-from ..limit import LimitSolution, require_start_in_strip, solve_limit
-from ..model import (
-    Scene,
-    coefficients_jit,
-    known_scene,
-    require_reach,
-    require_times,
-    require_told_apart,
-    strips_at,
-)
-from ..slide_laws import slide_data
-from ..wiggly import Status, integrate_cells, is_ours, require_accuracy, warn_of_failed
+from ..model import Scene
+from ..wiggly import is_ours, require_accuracy, warn_of_failed
 from .provenance import describe
+from .scene_columns import SceneColumns, SweepRequest, scene_columns
+from .scene_family import SceneFamily, columns_of_family, family_of, times_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def _run_lanes(
-    scene, eps, gamma, ts, accuracy, method, balanced, progress, suprema
-) -> dict | None:
-    """Values of all cells through lanes, by name; None where they cannot say."""
-    lane_eps, lane_gamma = cells_of(eps, gamma)
-    with progress_bar("cells", progress) as bar:
-
-        def report(share: float) -> None:
-            bar.update(min(share, bar.total - bar.n))
-
-        found = integrate_cells(
-            scene=scene,
-            eps=lane_eps,
-            gamma=lane_gamma,
-            ts=np.asarray(ts),
-            accuracy=accuracy,
-            method=method,
-            balanced=balanced,
-            report=report,
-            suprema=suprema,
-        )
-    if found is None:
-        return None
-    values = found._asdict()
-    values["status"] = values["status"].astype(np.int8)
-    values["how"] = values["how"].astype(np.int8)
-    values["bracket"] = values.pop("gap")
-    failed = ~np.isin(values["status"], (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY))
-    for name in ("residual", "dissipation_gap", "dissipation_error", *_SUPREMA):
-        values[name] = np.where(failed, np.nan, values[name])
-    unused = ["running_residual", "survey_work_error"]
-    if not balanced:
-        unused += ["dissipation", "dissipation_error", "residual", "dissipation_gap"]
-    return {name: value for name, value in values.items() if name not in unused}
-
-
-_DIMS = ("gamma", "eps", "time")
-_SUPREMA = ("sup_error", "strip_excess", "survey_error")
-
-
 @with_nan
 def sweep(
-    scene: Scene,
+    scene: Scene | Sequence[Scene] | Mapping[Any, Scene],
     eps: Any,
     gamma: Any,
     ts: Any = None,
@@ -97,54 +50,61 @@ def sweep(
     (`law_...`: the force of a well, the speeds of the limit); it goes to NetCDF and back
     without loss.
 
+    Several scenes, in a list or under labels (strings or integers) in a mapping, make a
+    data set with the dimension `scene` in front, the limit's values and the laws' arrays
+    too, and their `parts` in words; they share the times. Each scene's values are those of
+    its own sweep.
+
     A cell that fails has its status and NaNs and does not disturb the others; one warning
     (`FailedCells`, a `UserWarning`) names such cells.
 
     Raises `ValueError` for arguments out of range, z0 outside the strip at t = 0 (Theorem
     1 does not apply), or an eps at which the bristle loses contact.
     """
-    scene = known_scene(scene)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
     require_flags(progress=progress, dissipation=dissipation, suprema=suprema)
-    ts = require_times(scene, ts)
-    require_start_in_strip(scene)
-    require_reach(scene.potential, eps)
-    require_told_apart(scene, eps)
-    solver = None if is_ours(method) else _general(method)
-    limit = solve_limit(scene, ts)
-    balanced, wanted = bool(dissipation), float(as_real(accuracy))
-    values, name = None, str(method)
-    if solver is None:
-        values = _run_lanes(
-            scene, eps, gamma, ts, wanted, name, balanced, progress, bool(suprema)
-        )
-    if values is None:
-        from .diffrax_blocks import run_blocks
-
-        solver = _general(method) if solver is None else solver
-        name = type(solver).__name__
-        values = run_blocks(scene, eps, gamma, ts, wanted, solver, balanced, progress)
-    if not suprema:
-        values = {key: v for key, v in values.items() if key not in _SUPREMA}
-    shape = (gamma.size, eps.size)
-    columns: dict[str, tuple] = {
-        key: (_DIMS[: value.ndim + 1], value.reshape(*shape, *value.shape[1:]))
-        for key, value in values.items()
-    }
-    columns["viscosity"] = (_DIMS[:2], viscosity_of(eps, gamma[:, None]))
-    columns |= {key: (_DIMS[2:], v) for key, v in _limit_values(scene, limit).items()}
+    family = family_of(scene, eps)
+    request = SweepRequest(
+        eps=eps,
+        gamma=gamma,
+        ts=times_of(family, ts),
+        accuracy=float(as_real(accuracy)),
+        method=str(method),
+        solver=None if is_ours(method) else _general(method),
+        balanced=bool(dissipation),
+        suprema=bool(suprema),
+    )
+    found = _all_columns(family, request, progress)
     import xarray as xr  # 0.4 s, which another thread may spend while cells run
 
+    columns = (
+        found[0].columns
+        if family.labels is None
+        else columns_of_family(found, family.scenes)
+    )
+    codes = columns["status"][1]
+    warn_of_failed(codes, gamma, eps, family.labels or (), frames=1)  # `with_nan`
+    coords = {"gamma": gamma, "eps": eps, "time": np.asarray(request.ts)}
+    if family.labels is not None:
+        coords["scene"] = np.array(family.labels)
     # All variables at once: one by one they are aligned anew, 1 ms each.
-    warn_of_failed(columns["status"][1], gamma, eps, frames=1)  # `with_nan`
-    data = xr.Dataset(columns, coords={"gamma": gamma, "eps": eps, "time": np.asarray(ts)})
-    data = describe(data, scene, accuracy=wanted, solver=name)
-    if suprema:
-        found = coefficients_jit(scene.potential)
-        known = slide_data(scene, found, np.asarray(eps))
-        data.attrs |= {} if known is None else known.attributes()
+    data = xr.Dataset(columns, coords=coords)
+    data = describe(data, family.scenes, request.accuracy, found[0].method)
+    if family.labels is None:
+        data.attrs |= found[0].laws
     return data
+
+
+def _all_columns(
+    family: SceneFamily, request: SweepRequest, progress: bool
+) -> list[SceneColumns]:
+    with progress_bar("cells", progress) as bar:
+
+        def report(share: float) -> None:
+            bar.update(min(share / len(family.scenes), bar.total - bar.n))
+
+        return family.each(lambda scene: scene_columns(scene, request, report))
 
 
 def _general(method: Any) -> Any:
@@ -152,17 +112,3 @@ def _general(method: Any) -> Any:
     from ..wiggly import solver_of  # and diffrax, 0.5 s
 
     return solver_of(method)
-
-
-def _limit_values(scene: Scene, limit: LimitSolution) -> dict[str, np.ndarray]:
-    found = coefficients_jit(scene.potential)
-    rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
-    load, lower, upper = strips_at(scene, rho_plus, rho_minus, np.asarray(limit.ts))
-    values = {
-        "z_limit": limit.z,
-        "dissipation_limit": limit.dissipation,
-        "load": load,
-        "z_minus": lower,
-        "z_plus": upper,
-    }
-    return {name: np.asarray(value) for name, value in values.items()}

@@ -1,6 +1,8 @@
 """How a computation ended."""
 
 import warnings
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -41,22 +43,25 @@ class FailedCells(UserWarning):
 
 
 def warn_of_failed(
-    codes: Int[np.ndarray, "g e"],
+    codes: Int[np.ndarray, "*scenes g e"],
     gamma: Float[np.ndarray, " g"],
     eps: Float[np.ndarray, " e"],
+    scenes: Sequence[Any] = (),
     frames: int = 0,
 ) -> None:
     """One warning that names the cells (gamma, eps) whose status is not OK.
 
-    `frames`: how many lie between the caller and the line that it is given for.
+    `scenes`: labels, where there are several. `frames`: how many lie between the caller
+    and the line that it is given for.
     """
-    failed = np.argwhere(codes != int(Status.OK))
-    if not failed.size:
+    failed = np.argwhere(codes != int(Status.OK)).tolist()
+    if not failed:
         return
-    named = [
-        f"gamma = {gamma[i]:.6g}, eps = {eps[j]:.6g}: {status_of(int(codes[i, j])).name}"
-        for i, j in failed[: SETTINGS.named].tolist()
-    ]
+    named = []
+    for *scene, i, j in failed[: SETTINGS.named]:
+        of = f"scene {scenes[scene[0]]}, " if scene else ""
+        name = status_of(int(codes[(*scene, i, j)])).name
+        named.append(f"{of}gamma = {gamma[i]:.6g}, eps = {eps[j]:.6g}: {name}")
     more = (
         f" and {len(failed) - SETTINGS.named} more" if len(failed) > SETTINGS.named else ""
     )

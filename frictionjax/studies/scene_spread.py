@@ -1,0 +1,42 @@
+"""How far orders and constants of a study spread over its scenes."""
+
+import numpy as np
+import xarray as xr
+
+QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
+_PREFIXES = ("", "dissipation_", "strip_")
+_NUMBERS = ("order", "order_seen", "order_predicted", "constant", "constant_predicted")
+_LEMMAS = ("C0", "C")
+
+
+def spread_over_scenes(orders: xr.Dataset) -> xr.Dataset:
+    """Quantiles over the scenes of a study's orders and constants, for each gamma.
+
+    NaNs are left out; `scenes` counts those whose order of the sup error is known.
+    """
+    wanted = [prefix + name for prefix in _PREFIXES for name in _NUMBERS] + [*_LEMMAS]
+    columns = {
+        name: (("quantile", "gamma"), _quantiles(orders[name]))
+        for name in wanted
+        if name in orders
+    }
+    known = np.isfinite(orders.order.transpose("scene", "gamma").values)
+    data = xr.Dataset(
+        {**columns, "scenes": ("gamma", np.count_nonzero(known, axis=0))},
+        coords={"quantile": list(QUANTILES), "gamma": orders.gamma.values},
+    )
+    for name in columns:
+        data[name].attrs = dict(orders[name].attrs)
+    data["scenes"].attrs["long_name"] = "scenes whose order is known"
+    data["quantile"].attrs["long_name"] = "share of the scenes that lie below"
+    return data
+
+
+def _quantiles(column: xr.DataArray) -> np.ndarray:
+    values = column.transpose("scene", "gamma").values
+    found = np.full((len(QUANTILES), values.shape[1]), np.nan)
+    for place, row in enumerate(values.T):
+        known = row[np.isfinite(row)]
+        if known.size:
+            found[:, place] = np.quantile(known, QUANTILES)
+    return found

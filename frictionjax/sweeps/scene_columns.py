@@ -1,0 +1,135 @@
+"""Values of all cells eps x gamma of one scene, by their names in a data set."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Array, Float
+
+from .._checks import cells_of, viscosity_of
+from ..limit import LimitSolution, solve_limit
+from ..model import Scene, coefficients_jit, strips_at
+from ..slide_laws import slide_data
+from ..wiggly import Status, integrate_cells
+
+DIMS = ("gamma", "eps", "time")
+SUPREMA = ("sup_error", "strip_excess", "survey_error")
+
+Columns = dict[str, tuple[tuple[str, ...], Any]]
+
+
+class SweepRequest(NamedTuple):
+    """What is asked of every scene, checked.
+
+    `eps` (m) falling, `gamma` rising, `ts` in s, `accuracy` in eps. `method`: of the lanes;
+    `solver`: of diffrax, instead, where one is asked for.
+    """
+
+    eps: Float[np.ndarray, " e"]
+    gamma: Float[np.ndarray, " g"]
+    ts: Float[Array, " n"]
+    accuracy: float
+    method: str
+    solver: Any
+    balanced: bool
+    suprema: bool
+
+
+class SceneColumns(NamedTuple):
+    """Columns of one scene with their dims, what the laws need, and who has integrated."""
+
+    columns: Columns
+    laws: dict[str, np.ndarray]
+    method: str
+
+
+def scene_columns(
+    scene: Scene, request: SweepRequest, report: Callable[[float], None]
+) -> SceneColumns:
+    """Solve all cells of a scene; `report` is told each share that is done."""
+    limit = solve_limit(scene, request.ts)
+    values, method = None, request.method
+    if request.solver is None:
+        values = _by_lanes(scene, request, report)
+    if values is None:
+        values, method = _by_diffrax(scene, request, report)
+    if not request.suprema:
+        values = {name: v for name, v in values.items() if name not in SUPREMA}
+    shape = request.gamma.size, request.eps.size
+    columns: Columns = {
+        name: (DIMS[: value.ndim + 1], value.reshape(*shape, *value.shape[1:]))
+        for name, value in values.items()
+    }
+    columns["viscosity"] = (DIMS[:2], viscosity_of(request.eps, request.gamma[:, None]))
+    columns |= {name: (DIMS[2:], v) for name, v in _limit_values(scene, limit).items()}
+    known = None
+    if request.suprema:
+        found = coefficients_jit(scene.potential)
+        known = slide_data(scene, found, np.asarray(request.eps))
+    return SceneColumns(columns, {} if known is None else known.attributes(), method)
+
+
+def _by_lanes(
+    scene: Scene, request: SweepRequest, report: Callable[[float], None]
+) -> dict | None:
+    """Values of all cells, by name; None where lanes do not serve."""
+    lane_eps, lane_gamma = cells_of(request.eps, request.gamma)
+    found = integrate_cells(
+        scene=scene,
+        eps=lane_eps,
+        gamma=lane_gamma,
+        ts=np.asarray(request.ts),
+        accuracy=request.accuracy,
+        method=request.method,
+        balanced=request.balanced,
+        report=report,
+        suprema=request.suprema,
+    )
+    if found is None:
+        return None
+    values = found._asdict()
+    values["status"] = values["status"].astype(np.int8)
+    values["how"] = values["how"].astype(np.int8)
+    values["bracket"] = values.pop("gap")
+    failed = ~np.isin(values["status"], (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY))
+    for name in ("residual", "dissipation_gap", "dissipation_error", *SUPREMA):
+        values[name] = np.where(failed, np.nan, values[name])
+    unused = ["running_residual", "survey_work_error"]
+    if not request.balanced:
+        unused += ["dissipation", "dissipation_error", "residual", "dissipation_gap"]
+    return {name: value for name, value in values.items() if name not in unused}
+
+
+def _by_diffrax(
+    scene: Scene, request: SweepRequest, report: Callable[[float], None]
+) -> tuple[dict[str, np.ndarray], str]:
+    """Values of all cells, and the name of the solver."""
+    from ..wiggly import solver_of  # and diffrax, 0.5 s
+    from .diffrax_blocks import run_blocks
+
+    solver = solver_of(request.method) if request.solver is None else request.solver
+    values = run_blocks(
+        scene=scene,
+        eps=request.eps,
+        gamma=request.gamma,
+        ts=request.ts,
+        accuracy=request.accuracy,
+        solver=solver,
+        balanced=request.balanced,
+        report=report,
+    )
+    return values, type(solver).__name__
+
+
+def _limit_values(scene: Scene, limit: LimitSolution) -> dict[str, np.ndarray]:
+    found = coefficients_jit(scene.potential)
+    rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
+    load, lower, upper = strips_at(scene, rho_plus, rho_minus, np.asarray(limit.ts))
+    values = {
+        "z_limit": limit.z,
+        "dissipation_limit": limit.dissipation,
+        "load": load,
+        "z_minus": lower,
+        "z_plus": upper,
+    }
+    return {name: np.asarray(value) for name, value in values.items()}

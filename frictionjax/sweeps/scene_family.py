@@ -1,0 +1,105 @@
+"""Scenes of one sweep: one alone, or several under their labels."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Array, Float
+
+from .._checks import as_text, require
+from ..limit import require_start_in_strip
+from ..model import (
+    Scene,
+    known_scene,
+    require_reach,
+    require_times,
+    require_told_apart,
+)
+from ..slide_laws import LAW_DIMS
+from .provenance import scene_text
+from .scene_columns import Columns, SceneColumns
+
+
+class SceneFamily(NamedTuple):
+    """Scenes and what they are called; `labels` is None for one that was given alone."""
+
+    scenes: list[Scene]
+    labels: list[str] | list[int] | None
+
+    def each(self, work: Callable[[Scene], Any]) -> list[Any]:
+        """What `work` makes of each; `ValueError`s name the scene that they are of."""
+        if self.labels is None:
+            return [work(self.scenes[0])]
+        made = []
+        for label, scene in zip(self.labels, self.scenes, strict=True):
+            try:
+                made.append(work(scene))
+            except ValueError as error:
+                raise ValueError(f"scene {label!r}: {error}") from None
+        return made
+
+
+def family_of(given: Any, eps: Float[np.ndarray, " e"]) -> SceneFamily:
+    """The scenes of an argument, each as it can be solved at these eps (m).
+
+    Raises `ValueError` for what is neither a scene nor a list or mapping of them, and as
+    `sweep` does for each of them.
+    """
+    if isinstance(given, Mapping):
+        family = SceneFamily(list(given.values()), _labels(list(given)))
+    elif isinstance(given, list | tuple):
+        family = SceneFamily(list(given), list(range(len(given))))
+    else:
+        family = SceneFamily([given], None)
+    require(family.scenes, "scene", as_text(given), "a Scene, or several")
+
+    def solvable(scene: Any) -> Scene:
+        scene = known_scene(scene)
+        require_start_in_strip(scene)
+        require_reach(scene.potential, eps)
+        require_told_apart(scene, eps)
+        return scene
+
+    return family._replace(scenes=family.each(solvable))
+
+
+def _labels(names: list[Any]) -> list[Any]:
+    kinds = {type(name) for name in names}
+    good = kinds in ({str}, {int})
+    require(good, "scenes", f"labels {names[:4]}", "labels that are all str, or all int")
+    return names
+
+
+def times_of(family: SceneFamily, ts: Any) -> Float[Array, " n"]:
+    """Times in s for all scenes: those asked for, or even ones where none are.
+
+    Raises `ValueError` as `require_times`, and where none are asked for and durations
+    differ.
+    """
+    if ts is None:
+        ends = sorted({float(scene.duration) for scene in family.scenes})
+        needs = f"times ts, as scenes last from {ends[0]:.6g} to {ends[-1]:.6g} s"
+        require(len(ends) == 1, "ts", None, needs)
+    return family.each(lambda scene: require_times(scene, ts))[0]
+
+
+def columns_of_family(found: list[SceneColumns], scenes: list[Scene]) -> Columns:
+    """Columns of all scenes, `scene` in front; a column that one lacks is NaN there.
+
+    Laws are columns too, filled up with NaN: they differ in length.
+    """
+    names = dict.fromkeys(name for one in found for name in one.columns)
+    columns: Columns = {}
+    for name in names:
+        some = next(one.columns[name] for one in found if name in one.columns)
+        none = np.full(np.shape(some[1]), np.nan)
+        values = [one.columns[name][1] if name in one.columns else none for one in found]
+        columns[name] = (("scene", *some[0]), np.stack(values))
+    for name, dim in LAW_DIMS.items():
+        rows = [np.asarray(one.laws.get(name, ()), dtype=float) for one in found]
+        room = max(row.size for row in rows)
+        if room:
+            filled = [np.pad(r, (0, room - r.size), constant_values=np.nan) for r in rows]
+            columns[name] = (("scene", dim), np.stack(filled))
+    columns["parts"] = (("scene",), np.array([scene_text(scene) for scene in scenes]))
+    return columns
