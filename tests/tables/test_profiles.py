@@ -67,7 +67,7 @@ def shapes(table):
 def test_few_classes_and_sizes_stand_for_all():
     lanes = {shapes(profile_tables(p).lanes) for p in PROFILES.values()}
     planning = {shapes(profile_tables(p).planning) for p in PROFILES.values()}
-    assert len(lanes) == 6  # 1, 4, 16 and 64 harmonics; two of pieces
+    assert len(lanes) == 7  # 1, 4, 8, 16 and 64 harmonics; two of pieces
     assert len(planning) == 6  # 4 and 8 as an axis, 16 and 64 in blocks; two of pieces
     assert isinstance(profile_tables(PROFILES["sine"]).planning, Waves)
     assert isinstance(profile_tables(PROFILES["nine"]).planning, SeriesProfile)
