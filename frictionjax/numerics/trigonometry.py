@@ -126,7 +126,7 @@ def _plus(a: tuple, b: tuple) -> tuple:
 def _groups(
     powers: list[tuple], cos: Float[Array, " harmonics"], sin: Float[Array, " harmonics"]
 ) -> tuple[Float[Array, "*shape"], Float[Array, "*shape"]]:
-    """`sum_n (cos_n - i sin_n) z^(n - 1)`, imaginary part first; `powers` of z, from z on."""
+    """`sum_n (cos_n - i sin_n) z^(n - 1)`, imaginary part first, from `powers` z, z^2.."""
     total: Any = None
     shape = jnp.shape(powers[0][0])
     for first in reversed(range(0, cos.shape[0], _GROUP)):
