@@ -48,7 +48,12 @@ FLOORS = {
         {"batch"},
         {"trajectory"},
     ],
-    "design": [{"common"}, {"bristle", "surface"}, {"slide", "measured_trace"}, {"trace"}],
+    "design": [
+        {"common"},
+        {"bristle", "surface"},
+        {"slide", "measured_trace"},
+        {"trace", "ensembles"},
+    ],
     "design.surface": [
         {"barrier", "settings", "status"},
         {"starts", "open_directions", "reachable", "history"},

@@ -2,10 +2,10 @@ from .bristle import AngleFit as AngleFit
 from .bristle import fit_angle as fit_angle
 from .bristle import intervals_text as intervals_text
 from .common import Target as Target
-from .common import design_map as design_map
 from .common import surface_heights as surface_heights
-from .common import tolerance as tolerance
 from .common import write_heights as write_heights
+from .ensembles import design_map as design_map
+from .ensembles import tolerance as tolerance
 from .measured_trace import Trace as Trace
 from .measured_trace import simulate_trace as simulate_trace
 from .slide import check_design as check_design

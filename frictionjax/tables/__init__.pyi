@@ -1,6 +1,7 @@
 from .bristles import SeriesBristle as SeriesBristle
 from .bristles import bristle_at_rest as bristle_at_rest
 from .bristles import bristle_series as bristle_series
+from .bristles import with_terms as with_terms
 from .loads import load_table as load_table
 from .pieces import PiecewiseProfile as PiecewiseProfile
 from .profiles import ProfileTables as ProfileTables
@@ -8,3 +9,4 @@ from .profiles import profile_tables as profile_tables
 from .settings import SETTINGS as SETTINGS
 from .waves import SeriesProfile as SeriesProfile
 from .waves import Waves as Waves
+from .waves import with_harmonics as with_harmonics

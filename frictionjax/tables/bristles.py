@@ -53,6 +53,15 @@ class SeriesBristle(AbstractBristle):
         return Rod(total[0], total[1])
 
 
+def with_terms(bristle: AbstractBristle, count: int) -> AbstractBristle:
+    """A series with `count` terms, the further ones 0; other bristles as they are."""
+    if not isinstance(bristle, SeriesBristle):
+        return bristle
+    room = (0, count - bristle.ahead.shape[0])
+    ahead, climb = (jnp.pad(terms, room) for terms in (bristle.ahead, bristle.climb))
+    return SeriesBristle(ahead, climb, bristle.per_height)
+
+
 @Interpreted
 def _slopes(bristle: AbstractBristle, etas: Array) -> tuple[Array, Array]:
     """A' and F' at heights (n,) in m."""

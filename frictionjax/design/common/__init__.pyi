@@ -1,6 +1,7 @@
 from .aligned_text import aligned as aligned
 from .design_result import DesignResult as DesignResult
 from .free_numbers import FreeParameter as FreeParameter
+from .free_numbers import entries_of as entries_of
 from .free_numbers import free_parameter as free_parameter
 from .free_numbers import require_bounds as require_bounds
 from .free_numbers import with_arrays as with_arrays
@@ -9,8 +10,6 @@ from .heights import write_heights as write_heights
 from .law import AbstractLaw as AbstractLaw
 from .law import FixedLaw as FixedLaw
 from .law import FreeLaw as FreeLaw
-from .manufacturing import tolerance as tolerance
-from .maps import design_map as design_map
 from .quantities import MEANING as MEANING
 from .quantities import QUANTITIES as QUANTITIES
 from .quantities import OnSlopes as OnSlopes

@@ -23,12 +23,5 @@ class Settings(NamedTuple):
     alike: float = 1e-5  # six digits look the same
     rounded: float = 4 * _ULP  # how far a bound may be off its range
 
-    # Maps of designs (`maps.py`).
-    smallest_wave: float = 1e-13  # of the first: the last one of an asymmetric profile
-    most_waves: int = 512
-
-    # Numbers that spread (`manufacturing.py`).
-    chunk: int = 4096  # samples of one compiled call
-
 
 SETTINGS = Settings()

@@ -17,6 +17,7 @@ class Settings(NamedTuple):
 
     # Slides (`slide_friction.py`).
     lanes: int = 4  # eps at least that are solved at once: one program for a few of them
+    designs_at_once: int = 64  # slides of a call wait for the slowest (`design_slides.py`)
     open: float = 1e-7  # of log D over a period: mean forces right to that
     # Of the force: more than that by a viscosity that floats resolve is told.
     added: float = 1e-5

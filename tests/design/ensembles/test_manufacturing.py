@@ -87,3 +87,23 @@ def test_wrong_arguments_are_named(change, words):
     given = {"profile": WAVES, "bristle": SLANTED, "spreads": {"angle": 0.1}} | change
     with pytest.raises(ValueError, match=words):
         fx.tolerance(**given)
+
+
+def test_slides_at_an_eps_spread_with_the_numbers():
+    profile, bristle = fx.profiles.Sine(0.1), fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
+    spreads = {"profile.slope": 0.01}
+    found = fx.tolerance(profile, bristle, spreads, samples=40, seed=3, eps=1e-2)
+    data = found.data
+    alone = fx.steady_slide(profile, bristle, 1e-2)
+    for name in data.force.values:
+        nominal = float(data.slide_nominal.sel(force=name))
+        assert nominal == pytest.approx(float(getattr(alone, name)), rel=1e-7)
+    samples = data.slide_samples.values
+    np.testing.assert_allclose(data.slide_mean, samples.mean(axis=0))
+    np.testing.assert_allclose(data.slide_std, samples.std(axis=0, ddof=1))
+    # At this eps slides feel the slope nearly as the limit does: the same draws.
+    limit = data.samples.sel(quantity="rho_plus").values
+    assert np.corrcoef(samples[:, 0], limit)[0, 1] > 0.999
+    assert np.all(data.status == int(fx.Status.OK))
+    assert "Steady slides at eps = 0.01 m, 0 without one" in repr(found)
+    assert "slide_mean" not in fx.tolerance(profile, bristle, spreads, samples=10).data

@@ -20,10 +20,19 @@ from ..._checks import (
 )
 from ..._compile import Program
 from ...bristles import AbstractBristle
-from ...model import coefficients_jit, potential
+from ...model import BristlePotential, coefficients_jit, potential
 from ...profiles import AbstractProfile, Fourier
-from .free_numbers import FreeParameter, free_parameter, with_arrays
-from .quantities import Slopes, on_slopes, quantity_of, side_of
+from ...supports import Spring
+from ..common import (
+    FreeParameter,
+    Slopes,
+    free_parameter,
+    on_slopes,
+    quantity_of,
+    side_of,
+    with_arrays,
+)
+from ..slide import slide_numbers, slides_of_designs
 from .settings import SETTINGS
 
 SURFACE = ("asymmetry", "steepness")
@@ -81,6 +90,11 @@ def design_map(
     profile: AbstractProfile | None = None,
     steepness: float = 0.2,
     pulling: bool = False,
+    *,
+    eps: Any = None,
+    gamma: Any = 1.0,
+    rate: Any = 1.0,
+    support: Spring | None = None,
 ) -> xr.Dataset:
     """Friction over two numbers of a design, all in one compiled call.
 
@@ -96,6 +110,11 @@ def design_map(
     rho_minus), in (-1, 1), above 0 where the right is harder, `alpha` (N), and
     `admissible`; NaN where that is false. `pulls`: where alpha < 0. Such bristles count as
     admissible with `pulling` only; else nothing but their alpha is given.
+
+    `eps` (m): the steady slides of all admissible designs there too, with `gamma`, `rate`
+    and `support` as in `steady_slide`: `mean_plus, mean_minus, peak_plus, peak_minus` (N)
+    and `status`, `NOT_TRIED` where the design is not admissible, or the bristle loses its
+    contact at this eps. About 20 ms a design: choose axes for it.
 
     Raises `ValueError` for unknown names, values that are not finite or positive, and a
     profile that is missing, or too much.
@@ -118,6 +137,14 @@ def design_map(
     columns = {
         name: (dims, np.asarray(values).reshape(shape)) for name, values in found.items()
     }
+    asked = None if eps is None else slide_numbers(eps, gamma, rate, support)
+    if asked is not None:
+        good = np.asarray(found["admissible"])
+        designs = [
+            _design(bristle, profile, frees, surface, slopes, values) if there else None
+            for there, *values in zip(good, *flat, strict=True)
+        ]
+        columns |= slides_of_designs(designs, asked).columns(dims, shape)
     data = xr.Dataset(columns, {names[0]: across, names[1]: up})
     for name, (units, meaning) in _MEANING.items():
         data[name].attrs = {"long_name": meaning} | ({"units": units} if units else {})
@@ -125,8 +152,29 @@ def design_map(
         "bristle": type(bristle).__name__,
         "title": "Friction of designs",
         "pulling": _PULLING[bool(pulling)],
+        **({} if asked is None else asked.attributes()),
     }
     return data
+
+
+def _design(
+    bristle: AbstractBristle,
+    profile: AbstractProfile | None,
+    frees: tuple,
+    surface: tuple,
+    base: np.ndarray,
+    values: Sequence[float],
+) -> BristlePotential:
+    """One design of the map, its parts as they are."""
+    ground = dict(zip(("steepness", "asymmetry"), base, strict=True))
+    for free, name, value in zip(frees, surface, values, strict=True):
+        if free is None:
+            ground[name] = value
+        else:
+            bristle = free.put(bristle, jnp.asarray(value))
+    if profile is None:
+        profile = asymmetric_profile(ground["steepness"], ground["asymmetry"])
+    return BristlePotential(profile, bristle)
 
 
 def _axis(bristle, label: str, given: Any) -> tuple[str, np.ndarray, FreeParameter | None]:
