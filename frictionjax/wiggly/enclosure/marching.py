@@ -183,13 +183,16 @@ class BracketContext(NamedTuple):
         jobs, cells = self._steered(jobs, plan.brief | plan.forgetful)
         order = np.argsort(-work, kind="stable")
         order = order[able[order]]
-        batches = _batches(work[able], self.workers)
+        # What one narrow loop does while its longest lane runs needs no other thread.
+        alone = work[able].sum() <= LANE_SETTINGS.narrow * work[able].max(initial=0.0)
+        workers = 1 if alone else self.workers
+        batches = _batches(work[able], workers)
         ends = np.full((len(SegmentEnds._fields), segments.start.size), np.nan)
         # Overwritten by lanes that run.
         ends[SegmentEnds._fields.index("code")] = int(Status.MAX_STEPS)
-        seat = _seats(order.size, batches * self.workers)
+        seat = _seats(order.size, batches * workers)
         for batch in range(batches):
-            queues = [order[seat == batch + i * batches] for i in range(self.workers)]
+            queues = [order[seat == batch + i * batches] for i in range(workers)]
             for rows, part in self._through(cells, jobs, segments, queues, work):
                 ends[:, rows] = part
             self.report(1 / batches)

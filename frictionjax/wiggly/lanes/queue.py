@@ -135,8 +135,10 @@ def _report(task: LaneTask, motion: LaneState) -> Float[Array, "width 14"]:
     return jnp.stack([*(v + blank for v in values), *counts], axis=-1)
 
 
-def _refill(tables: Tables, work: _Work) -> tuple[LaneTask, LaneState, Int[Array, ""]]:
-    """Give lanes that are through their leg the next one, or the next job."""
+def _refill(
+    tables: Tables, work: _Work
+) -> tuple[LaneTask, LaneState, Int[Array, ""], Bool[Array, " width"]]:
+    """Give lanes that are through their leg the next one, or the next job; and which."""
     task, motion = work.task, work.motion
     jobs, legs, cells, count = tables.jobs, tables.legs, tables.cells, tables.waiting
     idle = task.job >= count
@@ -187,7 +189,7 @@ def _refill(tables: Tables, work: _Work) -> tuple[LaneTask, LaneState, Int[Array
         rejected=jnp.where(change, 0.0, motion.rejected),
         code=jnp.where(fresh, 0.0, motion.code),
     )
-    return moved, set_off, next_job
+    return moved, set_off, next_job, change
 
 
 def _written(
@@ -218,11 +220,24 @@ def run_queue(
     step = jax.vmap(lambda task, motion: step_of_lane(scene, tableau, wanted, task, motion))
     point = jax.vmap(lambda task, time, tip: field_of_lane(scene, task).point(time, tip))
 
+    def under_way(task: LaneTask, motion: LaneState) -> Int[Array, ""]:
+        return jnp.sum((motion.time < task.stop) & (motion.code == 0))
+
     def look(work: _Work) -> _Work:
-        task, motion, next_job = _refill(tables, work)
+        task, motion, next_job, change = _refill(tables, work)
         # From the right of a kink on which the last leg ended.
-        motion = motion._replace(point=point(task, motion.time, motion.tip))
-        motion = jax.lax.fori_loop(0, SETTINGS.chunk, lambda _, m: step(task, m), motion)
+        begin = point(task, motion.time, motion.tip)
+        motion = motion._replace(point=keep(change, begin, motion.point))
+        most = under_way(task, motion)
+
+        def goes(carry: tuple[Array, LaneState]) -> Bool[Array, ""]:
+            few_idle = under_way(task, carry[1]) > (1 - SETTINGS.idle) * most
+            return (carry[0] < SETTINGS.chunk) & few_idle
+
+        def stepped(carry: tuple[Array, LaneState]) -> tuple[Array, LaneState]:
+            return carry[0] + 1, step(task, carry[1])
+
+        motion = jax.lax.while_loop(goes, stepped, (jnp.asarray(0), motion))[1]
         through = (motion.time >= task.stop) | (motion.code != 0)
         through &= task.job < tables.waiting
         found = _written(work.found, task.leg, through, _report(task, motion))

@@ -27,9 +27,12 @@ class Settings(NamedTuple):
     spare: int = 16  # times the legs needed: a loop that is there is taken up to there
 
     # Queues (`queue.py`).
-    # Steps between two looks at which lanes are done: a look costs about two steps, and a
-    # lane that is done idles for half of this.
+    # Steps between two looks at which lanes are done, at most: a look costs about two.
     chunk: int = 16
+    # Share of the lanes under way that idle until the next look. (After 16 steps always:
+    # loops of a few lanes with 201 times take twice as long, of 64 lanes a fifth longer. A
+    # half: a tenth longer; an eighth: the same.)
+    idle: float = 0.25
 
     # Folds (`fold_steps.py`).
     # Folds of e that a tip may leave an unstable branch by in one step. Steps through slips
