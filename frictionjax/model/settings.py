@@ -19,7 +19,7 @@ class Settings(NamedTuple):
     rounded: int = 8  # spacings of floats by which a time may exceed the duration
 
     # Admissibility (`admissibility.py`, `clearance.py`).
-    margins: int = 8  # eps of one compiled call
+    margins: int = 2  # eps of one compiled call
     clearance_places: int = 512  # for the tip and for what is ahead of it
 
     # Digits of the potential (`digits.py`).
@@ -53,7 +53,7 @@ class Settings(NamedTuple):
 
     # Potentials and strips (`potentials.py`, `strip.py`).
     zoom: int = 256  # samples between two neighbours of a scan: its minimum to 1e-8
-    times: int = 1024  # of one compiled call
+    times: int = 512  # of one compiled call
 
 
 SETTINGS = Settings()

@@ -9,7 +9,6 @@ from jaxtyping import Array, Float
 
 from .._checks import Real
 from .._compile import Program, in_chunks
-from ..model import SETTINGS as MODEL_SETTINGS
 from ..model import (
     AbstractPotential,
     BristlePotential,
@@ -79,7 +78,7 @@ def slide_data(
     None where the load turns more often than there are moments: nothing slides long.
     """
     turns = np.unique(known_turning_points(scene.load, scene.duration, scene.turns))
-    if turns.size >= MODEL_SETTINGS.times - SETTINGS.moments:
+    if turns.size >= SETTINGS.moments:
         return None
     small = SETTINGS.small_eps * float(np.max(eps))
     wells = _wells(tabulated_potentials(scene.potential, small)[0], small)

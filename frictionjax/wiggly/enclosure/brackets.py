@@ -7,7 +7,7 @@ import numpy as np
 from ...model import TabulatedScene
 from ...numerics import rows_of
 from ..lanes import Lanes, Segments
-from ..limit_path import Path, slopes_at, states_at
+from ..limit_path import Path, motion_at
 from .settings import SETTINGS
 from .starts import CellBounds, Starts
 
@@ -201,11 +201,11 @@ def segments_of(
 ) -> Segments:
     """Segments with the path as their guide; slopes from inside each segment."""
     length = np.maximum(end - start, 0.0)
-    guides = states_at(scene, path, np.concatenate([start, end]))
     aside = SETTINGS.aside * length
     inside = np.concatenate([start + aside, end - aside])
-    slopes = slopes_at(scene, path, inside, guides)
-    (guide0, guide1), (slope0, slope1) = np.split(guides, 2), np.split(slopes, 2)
+    motion = motion_at(scene, path, np.concatenate([start, end]), beside=inside)
+    guide0, guide1 = np.split(motion.states, 2)
+    slope0, slope1 = np.split(motion.speeds, 2)
     middle = path.piece_of(0.5 * (start + end))
     friction = np.where(path.direction[middle] != 0, path.rho[middle], 0.0)
     none = np.zeros(start.size)

@@ -79,9 +79,7 @@ def _segments_between(cut: Cut) -> tuple[np.ndarray, np.ndarray]:
 
 def _off_path(scene, path: Path, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """How far the cubics of segments are off the path at some times inside, in m."""
+    share = np.array(SETTINGS.leg_places)[:, None]
+    times = starts + share * (ends - starts)
     guide = guide_of(segments_of(scene, path, starts, ends))
-    worst = np.zeros(starts.size)
-    for share in SETTINGS.leg_places:
-        times = starts + share * (ends - starts)
-        worst = np.maximum(worst, np.abs(guide(times) - states_at(scene, path, times)))
-    return worst
+    return np.max(np.abs(guide(times) - states_at(scene, path, times)), axis=0)

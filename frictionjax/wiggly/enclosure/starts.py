@@ -7,7 +7,7 @@ import numpy as np
 from ...model import TabulatedScene
 from ...numerics import rows_of
 from ..equation import WiggleFolds
-from ..limit_path import Path, slopes_at, states_at, times_at
+from ..limit_path import Path, motion_at, slopes_at, times_at
 from ..slip_map import FastSlide, ManyTransitTimes, last_begun
 from .settings import SETTINGS
 
@@ -55,9 +55,7 @@ class Starts(NamedTuple):
 
 def way_at(scene: TabulatedScene, path: Path, times: np.ndarray) -> np.ndarray:
     """Way in m that the path has come at each time."""
-    piece = path.piece_of(times)
-    states = states_at(scene, path, times)
-    return path.travel[piece] + np.abs(states - path.states[piece])
+    return motion_at(scene, path, times).ways
 
 
 def _run_up(path: Path) -> np.ndarray:
@@ -212,8 +210,10 @@ def slow_share(
     before = (
         time - SETTINGS.aside * path.edges[-1]
     )  # a slide may end at full speed, in a kink
-    both = [slopes_at(scene, path, t, state) for t in (time, np.maximum(before, 0.0))]
-    share = np.max(np.abs(both), axis=0) / (path.speed or 1.0)  # nothing slides at 0
+    both = np.append(time, np.maximum(before, 0.0))
+    speeds = np.abs(slopes_at(scene, path, both, np.tile(state, 2)))
+    # Nothing slides at 0.
+    share = np.maximum(*np.split(speeds, 2)) / (path.speed or 1.0)
     return np.minimum(SETTINGS.faster * share**2, 1.0)
 
 

@@ -5,6 +5,7 @@ from .fast_stretches import unseen_of as unseen_of
 from .find_path import path_of as path_of
 from .path import Path as Path
 from .path import arrivals_at as arrivals_at
+from .path import motion_at as motion_at
 from .path import slopes_at as slopes_at
 from .path import speeds_at as speeds_at
 from .path import state_under as state_under

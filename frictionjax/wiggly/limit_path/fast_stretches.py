@@ -4,31 +4,42 @@ A load, or a support, may move the path fast within a stretch that is far shorte
 is between two nodes of a survey; its speed tells nothing of that elsewhere, its way does.
 """
 
+import jax
+import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Array, Bool, Float
 
+from ..._checks import Real
+from ..._compile import Program, in_chunks
+from ...loads import AbstractPull
 from ...model import TabulatedScene
-from .path import Path, speeds_at, states_at
+from ...supports import AbstractSupport
+from .path import Path, motion_at, state_on_path
 from .sampled_slide import nodes_of, through_nodes
 from .settings import SETTINGS
 
 
+@Program
 def _zoomed(
-    scene: TabulatedScene, path: Path, low: np.ndarray, high: np.ndarray
-) -> np.ndarray:
+    load: AbstractPull,
+    support: AbstractSupport,
+    rows: Float[Array, "room 7"],
+    low: Float[Array, " n"],
+    high: Float[Array, " n"],
+) -> tuple[Float[Array, "n times"]]:
     """Times closer and closer to the steepest place of each interval, on both sides."""
-    share, found = np.arange(SETTINGS.parts + 1) / SETTINGS.parts, []
-    for _ in range(SETTINGS.zooms):
-        inner = low[..., None] + (high - low)[..., None] * share
-        rises = np.abs(np.diff(_states(scene, path, inner)))
-        part = np.argmax(rises, axis=-1)[..., None]
-        low, high = (np.take_along_axis(inner, part + k, axis=-1)[..., 0] for k in (0, 1))
-        found += [low, high]
-    return np.concatenate([*found, 0.5 * (low + high)], axis=-1)
+    states = jax.vmap(lambda time: state_on_path(load, support, rows, time)[0])
 
+    def closer(low: Real, high: Real) -> Array:
+        found = []
+        for _ in range(SETTINGS.zooms):
+            inner = low + (high - low) * jnp.arange(SETTINGS.parts + 1) / SETTINGS.parts
+            part = jnp.argmax(jnp.abs(jnp.diff(states(inner))))
+            low, high = inner[part], inner[part + 1]
+            found += [low, high]
+        return jnp.stack([*found, 0.5 * (low + high)])
 
-def _states(scene: TabulatedScene, path: Path, times: np.ndarray) -> np.ndarray:
-    return states_at(scene, path, times.ravel()).reshape(times.shape)
+    return (jax.vmap(closer)(low, high),)
 
 
 def probes_of(
@@ -46,16 +57,20 @@ def probes_of(
     """
     edges = low[:, None] + (high - low)[:, None] * np.arange(samples + 1) / samples
     middles = 0.5 * (edges[:, 1:] + edges[:, :-1])
-    ways = np.diff(_states(scene, path, edges))
-    gaps = np.abs(ways - speeds_at(scene, path, middles) * np.diff(edges))
+    both = motion_at(scene, path, np.append(edges, middles))
+    ways = np.diff(both.states[: edges.size].reshape(edges.shape))
+    speeds = both.speeds[edges.size :].reshape(middles.shape)
+    gaps = np.abs(ways - speeds * np.diff(edges))
     large = gaps > SETTINGS.gap * np.max(np.abs(ways), axis=1, keepdims=True)
     wanted = np.max(np.count_nonzero(large, axis=1), initial=0)
     count = int(
         np.clip(wanted, SETTINGS.suspects * samples, SETTINGS.most_suspects * samples)
     )
     suspects = np.argpartition(-gaps, count, axis=1)[:, :count]
-    early, late = (np.take_along_axis(edges, suspects + k, axis=1) for k in (0, 1))
-    found = [middles, _zoomed(scene, path, early, late)]
+    columns = [np.take_along_axis(edges, suspects + k, 1).ravel() for k in (0, 1)]
+    parts = scene.load, scene.support, path.rows
+    (closer,) = in_chunks(_zoomed, SETTINGS.zoomed, parts, tuple(columns))
+    found = [middles, closer.reshape(low.size, -1)]
     known = getattr(scene.load, "steepest", None)
     if known is not None:
         times = np.full((low.size, 1), float(known))

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...model import TabulatedScene, strips_at
 from .fast_stretches import nodes_inside, probes_of, unseen_of
-from .path import Path, Probes, slopes_at, states_at, stiffness_at, times_at
+from .path import Path, Probes, motion_at, rows_of_path, times_at
 from .settings import SETTINGS
 
 
@@ -13,16 +13,15 @@ def _looked_at(scene: TabulatedScene, path: Path) -> Path:
     low, high = path.touch, path.edges[1:]
     probes = probes_of(scene, path, low, high)
     times = np.concatenate([probes, nodes_inside(low, high)], axis=1)
-    flat = times.ravel()
-    states = states_at(scene, path, flat)
-    speeds = slopes_at(scene, path, flat, states).reshape(times.shape)
+    motion = motion_at(scene, path, times.ravel())
+    speeds = motion.speeds.reshape(times.shape)
     count = times.shape[1] - SETTINGS.nodes
     times, seen, known = times[:, :count], speeds[:, :count], speeds[:, count:]
     unseen = unseen_of(low, high, known, times, seen)
     long = (path.direction != 0) & (high - low > SETTINGS.brief * path.edges[-1])
     return path._replace(
         speed=float(np.max(np.abs(speeds))),
-        stiffness=float(np.min(stiffness_at(scene, states))),
+        stiffness=float(np.min(motion.stiffness)),
         probes=Probes(times, seen, np.where(long, unseen, 0.0)),
     )
 
@@ -56,4 +55,5 @@ def path_of(scene: TabulatedScene) -> Path | None:
     sliding = np.flatnonzero(direction)
     touch = path.touch.copy()
     touch[sliding] = times_at(scene, path, sliding, states[sliding])
-    return _looked_at(scene, path._replace(touch=touch))
+    path = path._replace(touch=touch)
+    return _looked_at(scene, path._replace(rows=rows_of_path(path)))

@@ -4,17 +4,19 @@ Lanes measure from it and start by it; what they find does not depend on it, sin
 and known starts decide which values are accepted.
 """
 
-from typing import NamedTuple
+from functools import partial
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int, Shaped
+from jaxtyping import Array, Bool, Float, Int, Shaped
 
-from ..._compile import Program, in_chunks
+from ..._checks import Real
+from ..._compile import Program, in_chunks, padded_size
 from ...loads import AbstractPull
 from ...model import SETTINGS as MODEL_SETTINGS
-from ...model import TabulatedScene, strips_at
+from ...model import TabulatedScene
 from ...numerics import find_root
 from ...supports import AbstractSupport
 
@@ -42,7 +44,7 @@ class Path(NamedTuple):
     where none does. `travel` (P+1,): way so far, in m. `rho` (P,): force of friction in N
     on the slide. `rho_plus`, `rho_minus`: in N. `speed`, `stiffness`: largest speed of
     slides in m/s, smallest Phi''. `pulled`: what the load goes up and down in all, N.
-    `probes`: speeds on the way.
+    `probes`: speeds on the way. `rows` (room, 7): the pieces for compiled programs.
     """
 
     edges: Float[np.ndarray, " edges"]
@@ -57,6 +59,7 @@ class Path(NamedTuple):
     stiffness: float = 1.0
     pulled: float = 0.0
     probes: Probes = NO_PROBES
+    rows: Float[np.ndarray, "room 7"] = np.zeros((0, 7))
 
     @property
     def width(self) -> float:
@@ -69,15 +72,87 @@ class Path(NamedTuple):
         return np.clip(found, 0, self.direction.size - 1)
 
 
+class Piece(NamedTuple):
+    """A row of a path's table: times in s, states and way in m, force of friction in N."""
+
+    begin: Any
+    touch: Any
+    direction: Any
+    state: Any
+    end_state: Any
+    travel: Any
+    rho: Any
+
+
+def rows_of_path(path: Path) -> Float[np.ndarray, "room 7"]:
+    """The pieces as rows of `Piece`; those that fill the room never begin."""
+    pieces = Piece(
+        begin=path.edges[:-1],
+        touch=path.touch,
+        direction=path.direction,
+        state=path.states[:-1],
+        end_state=path.states[1:],
+        travel=path.travel[:-1],
+        rho=path.rho,
+    )
+    count = path.direction.size
+    rows = np.full((padded_size(count, MODEL_SETTINGS.edges), len(pieces)), np.inf)
+    rows[:count] = np.stack(pieces, axis=1)
+    return rows
+
+
+class Motion(NamedTuple):
+    """The path at times (n,): states and way so far in m, speeds in m/s, Phi'' in N/m."""
+
+    states: Any
+    ways: Any
+    speeds: Any
+    stiffness: Any
+
+
+def state_on_path(
+    load: AbstractPull, support: AbstractSupport, rows: Float[Array, "room 7"], time: Real
+) -> tuple[Real, Piece]:
+    """State in m at a time, and the piece that holds it; traceable."""
+    index = jnp.searchsorted(rows[:, 0], time, side="right", method="scan_unrolled")
+    piece = Piece(*rows[jnp.maximum(index - 1, 0)])
+    edge = support.state_of(load(time) - piece.rho)
+    low = jnp.minimum(piece.state, piece.end_state)
+    edge = jnp.clip(edge, low, jnp.maximum(piece.state, piece.end_state))
+    return jnp.where(_slides(piece, time), edge, piece.state), piece
+
+
+def _slides(piece: Piece, time: Real) -> Bool[Array, ""]:
+    return (piece.direction != 0) & (time > piece.touch)
+
+
+def _speed(load: AbstractPull, rows: Array, time: Real, stiffness: Real) -> Real:
+    index = jnp.searchsorted(rows[:, 0], time, side="right", method="scan_unrolled")
+    piece = Piece(*rows[jnp.maximum(index - 1, 0)])
+    return jnp.where(_slides(piece, time), load.slope(time) / stiffness, 0.0)
+
+
 @Program
-def _rates(
+def _motion(
     load: AbstractPull,
     support: AbstractSupport,
+    rows: Float[Array, "room 7"],
     times: Float[Array, " n"],
-    states: Float[Array, " n"],
-):
-    """l' in N/s at the times and Phi'' in N/m at the states."""
-    return jax.vmap(load.slope)(times), jax.vmap(support.stiffness_at)(states)
+    beside: Float[Array, " n"],
+) -> Motion:
+    def at(time: Real, other: Real) -> Motion:
+        state, piece = state_on_path(load, support, rows, time)
+        stiffness = support.stiffness_at(state)
+        way = piece.travel + jnp.abs(state - piece.state)
+        return Motion(state, way, _speed(load, rows, other, stiffness), stiffness)
+
+    return jax.vmap(at)(times, beside)
+
+
+@Program
+def _speeds(load: AbstractPull, support: AbstractSupport, rows, times, states):
+    stiffness = jax.vmap(support.stiffness_at)(states)
+    return (jax.vmap(partial(_speed, load, rows))(times, stiffness),)
 
 
 @Program
@@ -138,16 +213,32 @@ def state_under(
     )[0]
 
 
+def motion_at(
+    scene: TabulatedScene,
+    path: Path,
+    times: Float[np.ndarray, " n"],
+    beside: Float[np.ndarray, " n"] | None = None,
+) -> Motion:
+    """The path at each time; its speed, from the right at kinks, at times `beside` them."""
+    if times.size == 0:
+        return Motion(times, times, times, times)
+    columns = times, times if beside is None else beside
+    fixed = scene.load, scene.support, path.rows
+    return in_chunks(_motion, MODEL_SETTINGS.times, fixed, columns)
+
+
 def states_at(
-    scene: TabulatedScene, path: Path, times: Float[np.ndarray, " n"]
-) -> Float[np.ndarray, " n"]:
-    """The path's state in m at each time."""
-    piece = path.piece_of(times)
-    _, lower, upper = strips_at(scene, path.rho_plus, path.rho_minus, times)
-    edge = np.where(path.direction[piece] > 0, lower, upper)
-    slides = (path.direction[piece] != 0) & (times > path.touch[piece])
-    ends = np.sort(np.stack([path.states[piece], path.states[piece + 1]]), axis=0)
-    return np.where(slides, np.clip(edge, *ends), path.states[piece])
+    scene: TabulatedScene, path: Path, times: Float[np.ndarray, "*shape"]
+) -> Float[np.ndarray, "*shape"]:
+    """The path's state in m at times of any shape."""
+    return motion_at(scene, path, times.ravel()).states.reshape(times.shape)
+
+
+def speeds_at(
+    scene: TabulatedScene, path: Path, times: Float[np.ndarray, "*shape"]
+) -> Float[np.ndarray, "*shape"]:
+    """The path's speed in m/s at times of any shape, from the right at kinks."""
+    return motion_at(scene, path, times.ravel()).speeds.reshape(times.shape)
 
 
 def slopes_at(
@@ -156,32 +247,8 @@ def slopes_at(
     times: Float[np.ndarray, " n"],
     states: Float[np.ndarray, " n"],
 ) -> Float[np.ndarray, " n"]:
-    """The path's speed in m/s at each time, from the right at kinks."""
+    """The path's speed in m/s at times at which its states are known."""
     if times.size == 0:
         return times
-    piece = path.piece_of(times)
-    slides = (path.direction[piece] != 0) & (times > path.touch[piece])
-    slope, stiffness = in_chunks(
-        _rates, MODEL_SETTINGS.times, (scene.load, scene.support), (times, states)
-    )
-    return np.where(slides, slope / stiffness, 0.0)
-
-
-def speeds_at(
-    scene: TabulatedScene, path: Path, times: Float[np.ndarray, "*shape"]
-) -> Float[np.ndarray, "*shape"]:
-    """The path's speed in m/s at times of any shape."""
-    flat = times.ravel()
-    return slopes_at(scene, path, flat, states_at(scene, path, flat)).reshape(times.shape)
-
-
-def stiffness_at(
-    scene: TabulatedScene, states: Float[np.ndarray, " n"]
-) -> Float[np.ndarray, " n"]:
-    """Phi'' in N/m at states (n,) in m."""
-    return in_chunks(
-        _rates,
-        MODEL_SETTINGS.times,
-        (scene.load, scene.support),
-        (np.zeros_like(states), states),
-    )[1]
+    fixed = scene.load, scene.support, path.rows
+    return in_chunks(_speeds, MODEL_SETTINGS.times, fixed, (times, states))[0]

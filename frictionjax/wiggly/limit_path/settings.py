@@ -20,6 +20,7 @@ class Settings(NamedTuple):
     gap: float = 1e-4  # of the longest way: between the way of an interval and its speed
     parts: int = 16  # of an interval, at every zoom
     zooms: int = 5
+    zoomed: int = 32  # intervals of one compiled call
     typical: float = 0.1  # of the median speed: slower ones are missed by shares of this
 
     # Where slides end slow (`resting_ends.py`).
