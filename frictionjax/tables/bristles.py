@@ -12,6 +12,8 @@ from .._compile import Interpreted
 from ..bristles import AbstractBristle, Rod
 from .settings import SETTINGS, size_for
 
+Numbers = Array | np.ndarray
+
 _NODES = np.cos(np.pi * (np.arange(SETTINGS.nodes) + 0.5) / SETTINGS.nodes)
 _TO_SERIES = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, SETTINGS.nodes - 1))
 
@@ -25,12 +27,12 @@ class SeriesBristle(AbstractBristle):
     it is, shape (2, terms); None where it is none, or nobody asks.
     """
 
-    ahead: Float[Array, " terms"]
-    climb: Float[Array, " terms"]
-    per_height: Real
-    rods: Float[Array, "2 terms"] | None = None
+    ahead: Float[Numbers, " terms"]
+    climb: Float[Numbers, " terms"]
+    per_height: Float[Numbers, ""]
+    rods: Float[Numbers, "2 terms"] | None = None
 
-    def _integral(self, terms: Array, eta: Real) -> Real:
+    def _integral(self, terms: Numbers, eta: Real) -> Real:
         x = eta * self.per_height
         total = jnp.zeros_like(x)
         for power in range(terms.shape[0] - 1, -1, -1):
@@ -76,8 +78,8 @@ def _rods(bristle: AbstractBristle, etas: Array) -> Any:
 
 def bristle_at_rest(bristle: AbstractBristle) -> SeriesBristle:
     """The bristle for eps -> 0: `A'(0)` and `F'(0)` are all that is left of it."""
-    ahead, climb = (jnp.asarray(v) for v in _slopes(bristle, np.zeros(1)))
-    return SeriesBristle(ahead, climb, jnp.asarray(1.0))
+    ahead, climb = _slopes(bristle, np.zeros(1))
+    return SeriesBristle(ahead, climb, np.asarray(1.0))
 
 
 def bristle_series(
@@ -100,6 +102,6 @@ def bristle_series(
     if degree is None or not np.all(np.isfinite(rows)):
         return bristle
     powers = [np.polynomial.chebyshev.cheb2poly(row[: degree + 1]) for row in series]
-    terms = [jnp.asarray(np.pad(p, (0, degree + 1 - p.size))) for p in powers]
-    rods = jnp.stack(terms[2:]) if len(terms) > 2 else None
-    return SeriesBristle(terms[0], terms[1], jnp.asarray(1 / highest), rods)
+    terms = np.stack([np.pad(p, (0, degree + 1 - p.size)) for p in powers])
+    rods = terms[2:] if len(terms) > 2 else None
+    return SeriesBristle(terms[0], terms[1], np.asarray(1 / highest), rods)
