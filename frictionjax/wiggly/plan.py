@@ -3,13 +3,11 @@
 from typing import NamedTuple
 
 import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
 
 from .._checks import Real, viscosity_of
 from .._compile import Program, in_chunks
-from ..model import AbstractPotential, TabulatedScene, padded_edges
+from ..model import TabulatedScene, padded_edges
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import CellBounds, Requirements, wells_of
 from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps, pull_between
@@ -23,31 +21,32 @@ from .ways import Way, by_brackets, ends_before_tips_follow, ways_of
 
 
 @Program
-def _plans(parts: SteppedParts, pull: PullRange, accuracy, eps, gamma) -> StepPlan:
-    return jax.vmap(lambda e, g: plan_steps(parts, e, g, accuracy, pull))(eps, gamma)
+def _plans(parts: SteppedParts, pull: PullRange, accuracy, eps, gamma):
+    """Step control of cells, and the wells and tips of their z0."""
+
+    def one(eps: Real, gamma: Real):
+        plan = plan_steps(parts, eps, gamma, accuracy, pull)
+        return plan, parts.potential.tip(parts.z0, eps)
+
+    return jax.vmap(one)(eps, gamma)
 
 
 _pull = Program(pull_between)
 
 
-def _controls(scene: TabulatedScene, eps, gamma, accuracy: float) -> StepPlan:
-    """Step control of all cells."""
+def _controls(scene: TabulatedScene, eps, gamma, accuracy: float):
+    """Step control of all cells, and the wells and tips of their z0."""
     edges = padded_edges(scene.turning_points, scene.duration)
     rho = np.asarray(scene.rho_plus), np.asarray(scene.rho_minus)
     pull = _pull(scene.load, scene.support, edges, *rho)
     parts = SteppedParts(
         potential=scene.potential,
         support=scene.support,
-        duration=jnp.asarray(scene.duration),
-        z0=jnp.asarray(scene.z0),
+        duration=np.asarray(scene.duration),
+        z0=np.asarray(scene.z0),
     )
     fixed = parts, pull, np.asarray(accuracy)
     return in_chunks(_plans, SETTINGS.cells, fixed, (eps, gamma))
-
-
-@Program
-def _tips(potential: AbstractPotential, z0: Real, eps: Array):
-    return jax.vmap(lambda e: potential.tip(z0, e))(eps)
 
 
 def ground_of(
@@ -56,12 +55,11 @@ def ground_of(
     eps: np.ndarray,
     gamma: np.ndarray,
     folds: WiggleFolds,
+    start: tuple[np.ndarray, np.ndarray],
 ) -> CellBounds:
-    """What brackets need to know of each cell."""
+    """What brackets need to know of each cell; `start`: well and tip of its z0."""
     lags = lag_forces(scene.potential, eps, folds, path.speed * viscosity_of(eps, gamma))
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
-    fixed = scene.potential, np.asarray(scene.z0)
-    well, tip = in_chunks(_tips, SETTINGS.cells, fixed, (eps,))
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
     return CellBounds(
         eps,
@@ -70,8 +68,8 @@ def ground_of(
         lag_minus=lags[1] / path.stiffness,
         shift_plus=shifts[0],
         shift_minus=shifts[1],
-        start_well=well,
-        start_tip=tip,
+        start_well=start[0],
+        start_tip=start[1],
         relaxed=_relaxation(scene, path, eps, gamma),
         fast_slides=none_known(eps.size),
     )
@@ -191,8 +189,8 @@ def planned(
     method: str,
 ) -> Planned:
     """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
-    control = _controls(scene, eps, gamma, accuracy)
-    ground = ground_of(scene, path, eps, gamma, control.folds)
+    control, start = _controls(scene, eps, gamma, accuracy)
+    ground = ground_of(scene, path, eps, gamma, control.folds, start)
     needs = _needs(ground, path, accuracy)
     brackets = by_brackets(path, eps, needs, times, method)
     needs = _with_brackets(path, eps, needs, brackets)

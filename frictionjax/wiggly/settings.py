@@ -18,7 +18,7 @@ class Settings(NamedTuple):
     # Accuracy: looser brackets and surveys save a fifth of the time, and at gamma = 0.75
     # were off by up to 6 times an accuracy of 1e-1, and twice one of 1e-2.
     loosest: float = 1e-3
-    cells: int = 16  # in a compiled call: 64 take 4 ms, 16 one
+    cells: int = 2  # in a compiled call, where one cell takes 0.1 ms
     after_slip: float = 0.05  # at which lanes may set off
     short_rest: float = 0.2  # the shortest that is worth it
     # Lanes set off in the middle of a slip or two, and forget less in their first wells.

@@ -187,8 +187,8 @@ class SteppedParts(NamedTuple):
 
     potential: AbstractPotential
     support: AbstractSupport
-    duration: Real
-    z0: Real
+    duration: Any
+    z0: Any
 
 
 def plan_steps(

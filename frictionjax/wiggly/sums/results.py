@@ -19,7 +19,7 @@ from .cell_sums import (
     way_of,
 )
 from .settings import SETTINGS
-from .stop_values import sampled_slides_at, states_at_stops, stop_values_of
+from .stop_values import sampled_slides_at, stop_values_of
 
 
 class CellResults(NamedTuple):
@@ -74,23 +74,13 @@ def evaluate(
     Suprema are NaN where no extremes were `wanted`.
     """
     eps = ground.eps
-    stops = stop_values_of(scene, layout, values, eps)
-    count = eps.size
-    guide = np.full(count, path.states[0])
-    z_start, energy0, _ = states_at_stops(
-        scene=scene,
-        eps=eps,
-        well=ground.start_well,
-        tip=ground.start_tip,
-        t=np.zeros(count),
-        guide=guide,
-    )
+    stops = stop_values_of(scene, path, ground, layout, values)
     guides = states_at(scene, path, ts)
     of_path = _dissipation_of_path(path, ts, guides)
     whole = float(path.travel[-1])
     surveys = sampled_slides_at(layout.slides, stops)
     rows = []
-    for c in range(count):
+    for c in range(eps.size):
         mine = [i for i, slide in enumerate(layout.slides) if slide.cell == c]
         mine.sort(key=lambda i: layout.slides[i].low)
         cell = way_of(
@@ -107,7 +97,7 @@ def evaluate(
                 stops=stops,
                 layout=layout,
                 output=output,
-                energy0=energy0[c],
+                energy0=stops.start_energy[c],
                 of_path=of_path,
                 path=path,
                 unit=accuracy * eps[c],
@@ -117,7 +107,7 @@ def evaluate(
         used = np.concatenate([cell.chain, output[output >= 0], *_periods(cell)])
         unbalanced = wanted.energies and not _is_balanced(cell, eps[c] * path.width)
         row: Any = {
-            "z": np.where(output >= 0, stops.z[output], z_start[c]),
+            "z": np.where(output >= 0, stops.z[output], stops.start_z[c]),
             "dissipation": energies.dissipation,
             "running_residual": energies.running_residual,
             "residual": energies.residual,

@@ -11,7 +11,7 @@ class Settings(NamedTuple):
     residual: float = 0.05
     # Dissipation over eps times what the load goes: less where nothing folds.
     no_slips: float = 0.1
-    stops: int = 2048  # of one compiled call
+    stops: int = 512  # of one compiled call
 
 
 SETTINGS = Settings()

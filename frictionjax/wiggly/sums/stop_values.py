@@ -11,8 +11,8 @@ from ..._compile import Program, in_chunks
 from ...loads import AbstractPull
 from ...model import AbstractPotential, TabulatedScene
 from ...supports import AbstractSupport
-from ..enclosure import BracketValues, Layout, SampledPeriods
-from ..limit_path import SURPLUS, WORK, SampledSlide, sampled_slides_of
+from ..enclosure import BracketValues, CellBounds, Layout, SampledPeriods
+from ..limit_path import SURPLUS, WORK, Path, SampledSlide, sampled_slides_of
 from .settings import SETTINGS
 
 
@@ -40,18 +40,11 @@ def _energies(
     return jax.vmap(one)(eps, well, tip, t, guide)
 
 
-def states_at_stops(
-    scene: TabulatedScene, eps, well, tip, t, guide
-) -> tuple[np.ndarray, ...]:
-    """z in m at stops, E_eps of z less E of the guide, and the size of its parts, in J."""
-    parts = scene.potential, scene.support, scene.load
-    return tuple(in_chunks(_energies, SETTINGS.stops, parts, (eps, well, tip, t, guide)))
-
-
 class StopValues(NamedTuple):
     """What the sums need of every stop, shape (S,); `sums` (3, S), `extremes` (5, S).
 
-    `size`: of the energies whose differences `energy` is, J.
+    `size`: of the energies whose differences `energy` is, J. `start_z`, `start_energy`: of
+    each cell's z0, shape (cells,).
     """
 
     time: np.ndarray
@@ -61,28 +54,42 @@ class StopValues(NamedTuple):
     sums: np.ndarray
     beyond: np.ndarray
     extremes: np.ndarray
+    start_z: np.ndarray
+    start_energy: np.ndarray
 
 
 def stop_values_of(
-    scene: TabulatedScene, layout: Layout, values: BracketValues, eps: np.ndarray
+    scene: TabulatedScene,
+    path: Path,
+    ground: CellBounds,
+    layout: Layout,
+    values: BracketValues,
 ) -> StopValues:
-    """What was found at every stop of a layout."""
+    """What was found at every stop of a layout, and where cells start."""
     brackets, a, segments = layout.brackets, values.arrivals, values.segments
-    eps_at_stops = eps[brackets.cell[brackets.owner]]
-    z, energy, size = states_at_stops(
-        scene, eps_at_stops, a.well, a.tip, brackets.stop, segments.guide1
+    count = ground.eps.size
+    columns = (
+        np.append(ground.eps, ground.eps[brackets.cell[brackets.owner]]),
+        np.append(ground.start_well, a.well),
+        np.append(ground.start_tip, a.tip),
+        np.append(np.zeros(count), brackets.stop),
+        np.append(np.full(count, path.states[0]), segments.guide1),
     )
+    parts = scene.potential, scene.support, scene.load
+    z, energy, size = in_chunks(_energies, SETTINGS.stops, parts, columns)
     rise = segments.guide1 - segments.guide0
     moved = segments.end > segments.start
     ways, surpluses = (a.ahead, a.behind, a.outside), (a.surplus, a.deficit)
     return StopValues(
         time=brackets.stop,
-        z=z,
-        energy=energy,
-        size=size,
+        z=z[count:],
+        energy=energy[count:],
+        size=size[count:],
         sums=np.stack([a.work, a.viscous, a.residual]),
         beyond=a.viscous - segments.friction * rise,
         extremes=np.stack([*(np.where(moved, v, 0.0) for v in ways), *surpluses]),
+        start_z=z[:count],
+        start_energy=energy[:count],
     )
 
 

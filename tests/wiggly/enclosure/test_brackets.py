@@ -9,6 +9,7 @@ from reference import solve as solve_plainly
 
 import frictionjax as fx
 from frictionjax.model import tabulated_scene
+from frictionjax.numerics import rows_of
 from frictionjax.wiggly import batch as engine
 from frictionjax.wiggly import plan as planning
 from frictionjax.wiggly.enclosure import close as rounds
@@ -203,7 +204,7 @@ def test_values_just_before_slips_at_small_eps():
     """Where a tip that is 1e-5 of a period off would slip too early."""
     scene, eps, gamma = scene_of(), 1e-7, 2.0
     path = path_of(scene)
-    control = planning._controls(
+    control, _ = planning._controls(
         tabulated_scene(scene, eps), np.full(64, eps), np.full(64, gamma), 1e-3
     )
     wells = np.round(np.linspace(0.1, 0.9, 300) / eps)
@@ -226,12 +227,14 @@ def test_brackets_hold_the_tip():
     """Lanes set off below and above every trajectory that there is."""
     scene, eps, gamma = scene_of(), 2e-3, 1.0
     path = path_of(scene)
-    control = planning._controls(
+    control, start = planning._controls(
         tabulated_scene(scene, eps), np.full(64, eps), np.full(64, gamma), 1e-3
     )
-    folds = jax.tree_util.tree_map(lambda v: np.asarray(v)[:1], control.folds)
+    folds, start = rows_of((control.folds, start), slice(1))
     tables = tabulated_scene(scene, eps)
-    ground = planning.ground_of(tables, path, np.array([eps]), np.array([gamma]), folds)
+    ground = planning.ground_of(
+        tables, path, np.array([eps]), np.array([gamma]), folds, start
+    )
     begin = np.linspace(0.1, 2.9, 200)
     far = np.full(200, 3.0)
     starts = starts_of(scene, path, ground, np.zeros(200, int), begin, far, far)
