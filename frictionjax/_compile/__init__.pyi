@@ -1,6 +1,7 @@
 from .flags import keep_compiled as keep_compiled
 from .flags import use_fast_cpu as use_fast_cpu
 from .interpreted import Interpreted as Interpreted
+from .programs import ARRAYS as ARRAYS
 from .programs import Program as Program
 from .programs import flattened as flattened
 from .programs import in_chunks as in_chunks

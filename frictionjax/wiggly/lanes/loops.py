@@ -4,11 +4,10 @@ import threading
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Shaped
 
-from ..._compile import flattened, in_background
+from ..._compile import ARRAYS, flattened, in_background
 from ..rosenbrock import Tableau
 from .lane import LaneCells, LaneScene, Sums
 from .queue import Lanes, SegmentEnds, Segments, Tables, run_queue
@@ -115,7 +114,7 @@ def _nothing(room: Room) -> Tables:
 def _kind(program: tuple) -> tuple:
     """What a compiled loop depends on, numbers left out."""
     leaves, structure = flattened(program)
-    shapes = (x.shape if eqx.is_array(x) else x for x in leaves)
+    shapes = (x.shape if isinstance(x, ARRAYS) else x for x in leaves)
     return structure, *shapes
 
 
