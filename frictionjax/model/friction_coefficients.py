@@ -7,7 +7,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from .._checks import Real, as_text, is_known
+from .._checks import ByIdentity, Real, as_text, is_concrete, is_known
 from .._compile import Program
 from ..bristles import pulling_text
 from ..numerics import periodic_extrema, slope_of
@@ -112,8 +112,14 @@ def with_errors(found: Coefficients, plus: Real, minus: Real) -> Coefficients:
 
 
 _of_tables = Program(coefficients)
+_FOUND = ByIdentity()  # coefficients of potentials that are known
 
 
 def coefficients_jit(potential: AbstractPotential) -> Coefficients:
-    """The same, compiled once for all potentials of known numbers."""
-    return _of_tables(potential_at_rest(potential))
+    """The same, compiled once for all potentials of known numbers; found once of each."""
+    found = _FOUND.get(potential)
+    if found is None:
+        found = _of_tables(potential_at_rest(potential))
+        if is_concrete(potential):
+            _FOUND.put(potential, found)
+    return found

@@ -11,7 +11,7 @@ class Settings(NamedTuple):
     nearest: float = 1e-4  # of more places on each side of an extreme, at equal ratios
     farthest: float = 0.06
     beside_extreme: int = 96
-    together: int = 2048  # places of one compiled call
+    together: int = 1032  # places of one compiled call: a zoom, or the even ones
     zooms: int = 4  # of the search for an extreme: 1e-11 of a period
     zoom_parts: int = 1024
     moments: int = 512  # of [0, T], beside the turning points of the load

@@ -19,6 +19,7 @@ from ...model import SETTINGS as MODEL_SETTINGS
 from ...model import TabulatedScene
 from ...numerics import find_root
 from ...supports import AbstractSupport
+from .settings import SETTINGS
 
 
 class Probes(NamedTuple):
@@ -114,12 +115,18 @@ def state_on_path(
     load: AbstractPull, support: AbstractSupport, rows: Float[Array, "room 7"], time: Real
 ) -> tuple[Real, Piece]:
     """State in m at a time, and the piece that holds it; traceable."""
-    index = jnp.searchsorted(rows[:, 0], time, side="right", method="scan_unrolled")
-    piece = Piece(*rows[jnp.maximum(index - 1, 0)])
+    piece = _piece_at(rows, time)
     edge = support.state_of(load(time) - piece.rho)
     low = jnp.minimum(piece.state, piece.end_state)
     edge = jnp.clip(edge, low, jnp.maximum(piece.state, piece.end_state))
     return jnp.where(_slides(piece, time), edge, piece.state), piece
+
+
+def _piece_at(rows: Float[Array, "room 7"], time: Real) -> Piece:
+    few = rows.shape[0] <= SETTINGS.few_pieces
+    method = "compare_all" if few else "scan_unrolled"
+    index = jnp.searchsorted(rows[:, 0], time, side="right", method=method)
+    return Piece(*rows[jnp.maximum(index - 1, 0)])
 
 
 def _slides(piece: Piece, time: Real) -> Bool[Array, ""]:
@@ -127,8 +134,7 @@ def _slides(piece: Piece, time: Real) -> Bool[Array, ""]:
 
 
 def _speed(load: AbstractPull, rows: Array, time: Real, stiffness: Real) -> Real:
-    index = jnp.searchsorted(rows[:, 0], time, side="right", method="scan_unrolled")
-    piece = Piece(*rows[jnp.maximum(index - 1, 0)])
+    piece = _piece_at(rows, time)
     return jnp.where(_slides(piece, time), load.slope(time) / stiffness, 0.0)
 
 
@@ -184,9 +190,7 @@ def times_at(
     if states.size == 0:
         return states
     columns = states, path.rho[piece], path.touch[piece], path.edges[piece + 1]
-    (found,) = in_chunks(
-        _times_at, MODEL_SETTINGS.times, (scene.load, scene.support), columns
-    )
+    (found,) = in_chunks(_times_at, SETTINGS.roots, (scene.load, scene.support), columns)
     return np.clip(found, columns[2], columns[3])
 
 
@@ -199,9 +203,7 @@ def arrivals_at(
 ) -> Float[np.ndarray, " n"]:
     """Time in [early, late] at which `l - Phi'` is `pull` (N) at each state."""
     columns = states, pull, early, late
-    return in_chunks(_times_at, MODEL_SETTINGS.times, (scene.load, scene.support), columns)[
-        0
-    ]
+    return in_chunks(_times_at, SETTINGS.roots, (scene.load, scene.support), columns)[0]
 
 
 def state_under(

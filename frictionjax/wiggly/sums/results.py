@@ -74,7 +74,7 @@ def evaluate(
     Suprema are NaN where no extremes were `wanted`.
     """
     eps = ground.eps
-    stops = stop_values_of(scene, path, ground, layout, values)
+    stops, z_start, energy0 = stop_values_of(scene, path, ground, layout, values)
     guides = states_at(scene, path, ts)
     of_path = _dissipation_of_path(path, ts, guides)
     whole = float(path.travel[-1])
@@ -97,7 +97,7 @@ def evaluate(
                 stops=stops,
                 layout=layout,
                 output=output,
-                energy0=stops.start_energy[c],
+                energy0=energy0[c],
                 of_path=of_path,
                 path=path,
                 unit=accuracy * eps[c],
@@ -107,7 +107,7 @@ def evaluate(
         used = np.concatenate([cell.chain, output[output >= 0], *_periods(cell)])
         unbalanced = wanted.energies and not _is_balanced(cell, eps[c] * path.width)
         row: Any = {
-            "z": np.where(output >= 0, stops.z[output], stops.start_z[c]),
+            "z": np.where(output >= 0, stops.z[output], z_start[c]),
             "dissipation": energies.dissipation,
             "running_residual": energies.running_residual,
             "residual": energies.residual,

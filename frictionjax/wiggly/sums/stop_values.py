@@ -43,8 +43,7 @@ def _energies(
 class StopValues(NamedTuple):
     """What the sums need of every stop, shape (S,); `sums` (3, S), `extremes` (5, S).
 
-    `size`: of the energies whose differences `energy` is, J. `start_z`, `start_energy`: of
-    each cell's z0, shape (cells,).
+    `size`: of the energies whose differences `energy` is, J.
     """
 
     time: np.ndarray
@@ -54,8 +53,6 @@ class StopValues(NamedTuple):
     sums: np.ndarray
     beyond: np.ndarray
     extremes: np.ndarray
-    start_z: np.ndarray
-    start_energy: np.ndarray
 
 
 def stop_values_of(
@@ -64,8 +61,8 @@ def stop_values_of(
     ground: CellBounds,
     layout: Layout,
     values: BracketValues,
-) -> StopValues:
-    """What was found at every stop of a layout, and where cells start."""
+) -> tuple[StopValues, np.ndarray, np.ndarray]:
+    """What was found at every stop of a layout; state and energy where cells start."""
     brackets, a, segments = layout.brackets, values.arrivals, values.segments
     count = ground.eps.size
     columns = (
@@ -80,7 +77,7 @@ def stop_values_of(
     rise = segments.guide1 - segments.guide0
     moved = segments.end > segments.start
     ways, surpluses = (a.ahead, a.behind, a.outside), (a.surplus, a.deficit)
-    return StopValues(
+    stops = StopValues(
         time=brackets.stop,
         z=z[count:],
         energy=energy[count:],
@@ -88,9 +85,8 @@ def stop_values_of(
         sums=np.stack([a.work, a.viscous, a.residual]),
         beyond=a.viscous - segments.friction * rise,
         extremes=np.stack([*(np.where(moved, v, 0.0) for v in ways), *surpluses]),
-        start_z=z[:count],
-        start_energy=energy[:count],
     )
+    return stops, z[:count], energy[:count]
 
 
 def sampled_slides_at(
