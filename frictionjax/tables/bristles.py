@@ -1,5 +1,6 @@
 """A bristle as power series over the heights that its tip meets."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import jax
@@ -7,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._checks import Real
+from .._checks import ByIdentity, Real, exchanged
 from .._compile import Interpreted
 from ..bristles import AbstractBristle, Rod
 from .settings import SETTINGS, size_for
@@ -16,6 +17,14 @@ Numbers = Array | np.ndarray
 
 _NODES = np.cos(np.pi * (np.arange(SETTINGS.nodes) + 0.5) / SETTINGS.nodes)
 _TO_SERIES = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, SETTINGS.nodes - 1))
+
+# Rows: Chebyshev polynomials as powers.
+_TO_POWERS = np.stack(
+    [
+        np.pad(np.polynomial.chebyshev.cheb2poly(row[: n + 1]), (0, row.size - n - 1))
+        for n, row in enumerate(np.eye(SETTINGS.nodes))
+    ]
+)
 
 
 class SeriesBristle(AbstractBristle):
@@ -82,6 +91,9 @@ def bristle_at_rest(bristle: AbstractBristle) -> SeriesBristle:
     return SeriesBristle(ahead, climb, np.asarray(1.0))
 
 
+_SERIES = ByIdentity()  # of bristles that are known: the last height, and the series
+
+
 def bristle_series(
     bristle: AbstractBristle, highest: float, with_rods: bool = False
 ) -> AbstractBristle:
@@ -89,10 +101,23 @@ def bristle_series(
 
     `with_rods`: those too, where the bristle is a rod.
     """
-    etas = _NODES * highest
-    values = list(_slopes(bristle, etas))
-    if with_rods:
-        values += _rods(bristle, etas) or []
+    known = _SERIES.get(bristle)
+    if known is None or known[0] != highest:
+        etas = _NODES * highest
+        slopes, rods = _powers(_slopes(bristle, etas)), _rods(bristle, etas)
+        if slopes is None:
+            return bristle
+        known = highest, SeriesBristle(slopes[0], slopes[1], np.asarray(1 / highest)), rods
+        _SERIES.put(bristle, known)
+    _, series, rods = known
+    if not with_rods or rods is None:
+        return series
+    terms = _powers(rods)
+    return bristle if terms is None else exchanged(series, {"rods": terms})
+
+
+def _powers(values: Sequence[np.ndarray]) -> np.ndarray | None:
+    """Power series of functions by their values at the nodes; None without one."""
     rows = np.stack(values)
     series = rows @ _TO_SERIES.T
     sizes = np.maximum(np.max(np.abs(rows), axis=1, keepdims=True), 1e-300)
@@ -100,8 +125,5 @@ def bristle_series(
     needed = int(np.max(np.flatnonzero(np.any(used, axis=0)), initial=0))
     degree = size_for(needed, SETTINGS.degrees)
     if degree is None or not np.all(np.isfinite(rows)):
-        return bristle
-    powers = [np.polynomial.chebyshev.cheb2poly(row[: degree + 1]) for row in series]
-    terms = np.stack([np.pad(p, (0, degree + 1 - p.size)) for p in powers])
-    rods = terms[2:] if len(terms) > 2 else None
-    return SeriesBristle(terms[0], terms[1], np.asarray(1 / highest), rods)
+        return None
+    return series[:, : degree + 1] @ _TO_POWERS[: degree + 1, : degree + 1]
