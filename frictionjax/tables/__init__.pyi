@@ -2,7 +2,9 @@ from .bristles import SeriesBristle as SeriesBristle
 from .bristles import bristle_at_rest as bristle_at_rest
 from .bristles import bristle_series as bristle_series
 from .bristles import with_terms as with_terms
+from .loads import bent_part as bent_part
 from .loads import load_table as load_table
+from .loads import straight_part as straight_part
 from .pieces import PiecewiseProfile as PiecewiseProfile
 from .profiles import ProfileTables as ProfileTables
 from .profiles import profile_tables as profile_tables

@@ -11,15 +11,24 @@ from ..loads import AbstractPull, PiecewiseLinear, Ramp, Sine, Triangle
 from .settings import SETTINGS, size_for
 
 
-class SumOfLoads(AbstractPull):
-    """A ramp, a sine and a triangle, added up: one program for the three."""
+class StraightSum(AbstractPull):
+    """A ramp and a triangle, added up."""
 
     ramp: Ramp
-    sine: Sine
     triangle: Triangle
 
     def __call__(self, t: Real) -> Real:
-        return self.ramp(t) + self.sine(t) + self.triangle(t)
+        return self.ramp(t) + self.triangle(t)
+
+
+class SumOfLoads(AbstractPull):
+    """What is straight between kinks, and a sine: one program for ramp, triangle, sine."""
+
+    straight: StraightSum
+    sine: Sine
+
+    def __call__(self, t: Real) -> Real:
+        return self.straight(t) + self.sine(t)
 
 
 @cache
@@ -27,7 +36,21 @@ def _nothing() -> SumOfLoads:
     """A load of 0 N; built anew for every scene it took 0.7 ms."""
     with jax.ensure_compile_time_eval():
         zero, one = as_real(0.0), as_real(1.0)
-        return SumOfLoads(Ramp(zero), Sine(zero, one), Triangle(zero, one))
+        return SumOfLoads(StraightSum(Ramp(zero), Triangle(zero, one)), Sine(zero, one))
+
+
+def bent_part(load: AbstractPull) -> AbstractPull:
+    """What of a table is not straight between kinks: a sine; functions as they are."""
+    if isinstance(load, SumOfLoads):
+        return load.sine
+    return _nothing().sine if isinstance(load, PiecewiseLinear) else load
+
+
+def straight_part(load: AbstractPull) -> AbstractPull:
+    """The rest of a table, straight between kinks."""
+    if isinstance(load, SumOfLoads):
+        return load.straight
+    return load if isinstance(load, PiecewiseLinear) else _nothing().straight
 
 
 @singledispatch
@@ -35,9 +58,14 @@ def _table_of(load: AbstractPull) -> AbstractPull:
     return load
 
 
+def _straight(**part: AbstractPull) -> SumOfLoads:
+    none = _nothing()
+    return exchanged(none, {"straight": exchanged(none.straight, part)})
+
+
 @_table_of.register
 def _(load: Ramp) -> SumOfLoads:
-    return exchanged(_nothing(), {"ramp": load})
+    return _straight(ramp=load)
 
 
 @_table_of.register
@@ -47,7 +75,7 @@ def _(load: Sine) -> SumOfLoads:
 
 @_table_of.register
 def _(load: Triangle) -> SumOfLoads:
-    return exchanged(_nothing(), {"triangle": load})
+    return _straight(triangle=load)
 
 
 @_table_of.register

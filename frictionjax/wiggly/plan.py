@@ -8,6 +8,7 @@ import numpy as np
 from .._checks import Real, viscosity_of
 from .._compile import Program, in_chunks
 from ..model import TabulatedScene, padded_edges
+from ..tables import bent_part
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import CellBounds, Requirements, wells_of
 from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps, pull_between
@@ -85,7 +86,7 @@ def _relaxation(scene: TabulatedScene, path: Path, eps: np.ndarray, gamma: np.nd
 def lane_scene(scene: TabulatedScene) -> LaneScene:
     """The scene as lanes see it."""
     rho = np.asarray(scene.rho_plus), np.asarray(scene.rho_minus)
-    return LaneScene(scene.lane_potential, scene.support, scene.load, *rho)
+    return LaneScene(scene.lane_potential, scene.support, bent_part(scene.load), *rho)
 
 
 def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.tables import load_table
+from frictionjax.tables import bent_part, load_table, straight_part
 
 L = fx.loads
 T = np.concatenate([np.linspace(0, 3, 301), [0.5, 1.5, 2.5]])
@@ -24,6 +24,25 @@ def test_a_table_is_the_load_bit_for_bit(name):
     load, table = LOADS[name], load_table(LOADS[name])
     np.testing.assert_array_equal(jax.vmap(table)(T), jax.vmap(load)(T))
     np.testing.assert_array_equal(jax.vmap(table.slope)(T), jax.vmap(load.slope)(T))
+
+
+@pytest.mark.parametrize("name", LOADS)
+def test_parts_of_a_table_add_up_to_the_load(name):
+    load = LOADS[name]
+    bent, straight = bent_part(load_table(load)), straight_part(load_table(load))
+    for method in ("__call__", "slope"):
+        found = (jax.vmap(getattr(part, method))(T) for part in (bent, straight))
+        expected = jax.vmap(getattr(load, method))(T)
+        np.testing.assert_allclose(sum(found), expected, rtol=1e-15)
+    assert isinstance(bent, L.Sine)
+    flat = jax.vmap(jax.grad(straight.slope))(T)
+    np.testing.assert_array_equal(flat, 0.0)
+
+
+def test_functions_are_all_bent():
+    load = L.Custom(lambda t: t**2)
+    assert bent_part(load) is load
+    np.testing.assert_array_equal(jax.vmap(straight_part(load))(T), 0.0)
 
 
 def shapes(table):

@@ -209,4 +209,5 @@ def segments_of(
     middle = path.piece_of(0.5 * (start + end))
     friction = np.where(path.direction[middle] != 0, path.rho[middle], 0.0)
     none = np.zeros(start.size)
-    return Segments(start, end, guide0, guide1, slope0, slope1, friction, budget=none)
+    line = np.split(motion.levels, 2)[0], np.split(motion.rates, 2)[0]
+    return Segments(start, end, guide0, guide1, slope0, slope1, friction, none, *line)

@@ -56,6 +56,7 @@ class LaneCells(NamedTuple):
 class LaneScene(eqx.Module):
     """What a lane simulates: the parts of the field, without the times of the scene.
 
+    `load`: what of it is not straight on legs; the rest is in their rows.
     `rho_plus`, `rho_minus`: pulls (N) on the edges of the strip.
     """
 
@@ -74,7 +75,10 @@ class Sums(NamedTuple):
 
 
 class LaneTask(NamedTuple):
-    """What stays the same on a leg; `stop` in s since `origin`, `budget` in steps."""
+    """What stays the same on a leg; `stop` in s since `origin`, `budget` in steps.
+
+    `level`, `rate`: of the straight part of the load, N where the leg starts and N/s.
+    """
 
     job: Int[Array, ""]
     leg: Int[Array, ""]
@@ -84,6 +88,8 @@ class LaneTask(NamedTuple):
     well: Real
     stop: Real
     budget: Real
+    level: Real
+    rate: Real
 
 
 class LaneState(NamedTuple):
@@ -102,8 +108,25 @@ class LaneState(NamedTuple):
     code: Real
 
 
+class _LegLoad(AbstractPull):
+    """A load on one leg: `bent` and a straight line from `start` (s) on."""
+
+    bent: AbstractPull
+    start: Real
+    level: Real
+    rate: Real
+
+    def __call__(self, t: Real) -> Real:
+        return self.bent(t) + (self.level + self.rate * (t - self.start))
+
+    def slope(self, t: Real) -> Real:
+        return self.bent.slope(t) + self.rate
+
+
 def field_of_lane(scene: LaneScene, task: LaneTask) -> TipField:
-    cell, parts = task.cell, (scene.potential, scene.support, scene.load)
+    start = task.origin + task.guide.start
+    load = _LegLoad(scene.load, start, task.level, task.rate)
+    cell, parts = task.cell, (scene.potential, scene.support, load)
     return TipField(*parts, cell.eps, cell.viscosity, well=task.well, origin=task.origin)
 
 

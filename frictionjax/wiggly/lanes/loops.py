@@ -140,7 +140,10 @@ def march(
     NumPy arrays in and out. What a lane finds does not depend on the others. `work`
     (jobs,): about in proportion to the steps of each; None: to its wells.
     """
-    tables = [np.stack([np.asarray(c, float) for c in t], -1) for t in (cells, jobs, legs)]
+    tables = [
+        np.stack(np.broadcast_arrays(*(np.asarray(c, float) for c in t)), -1)
+        for t in (cells, jobs, legs)
+    ]
     needed = Room(*(len(t) for t in tables))
 
     def fill(room: Room) -> Tables:

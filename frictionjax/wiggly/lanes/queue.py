@@ -43,7 +43,8 @@ class Segments(NamedTuple):
 
     `start`, `end`: times in s. The guide goes from the state `guide0` (m) with the slope
     `slope0` (m/s) to `guide1` with `slope1`, and dissipates `friction` (N per m). `budget`:
-    steps after which a lane gives up.
+    steps after which a lane gives up. `level`, `rate`: of the load's straight part, N at
+    the start and N/s.
     """
 
     start: Any
@@ -54,6 +55,8 @@ class Segments(NamedTuple):
     slope1: Any
     friction: Any
     budget: Any
+    level: Any = 0.0
+    rate: Any = 0.0
 
 
 def guide_of(legs: Segments, length: Any = None) -> Guide:
@@ -110,7 +113,7 @@ def _idle(tables: Tables, width: int) -> tuple[LaneTask, LaneState]:
     none = jnp.full(width, tables.jobs.shape[0], dtype=int)
     past = jnp.full(width, tables.legs.shape[0], dtype=int)
     cells, guide = LaneCells(*[one] * len(LaneCells._fields)), Guide(*[one] * 7)
-    task = LaneTask(none, past, cells, zero, guide, zero, zero, budget=zero)
+    task = LaneTask(none, past, cells, zero, guide, zero, zero, zero, level=zero, rate=zero)
     motion = LaneState(
         tip=zero,
         time=zero,
@@ -172,6 +175,8 @@ def _refill(
         guide=keep(change, guide, task.guide),
         well=jnp.where(fresh, well, task.well) + shift,
         budget=jnp.where(change, own.budget, task.budget),
+        level=jnp.where(change, own.level, task.level),
+        rate=jnp.where(change, own.rate, task.rate),
         stop=jnp.where(change, own.end, jnp.where(wants, -1.0, task.stop)),
     )
     zero = jnp.zeros_like(tip)

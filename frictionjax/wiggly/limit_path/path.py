@@ -19,6 +19,7 @@ from ...model import SETTINGS as MODEL_SETTINGS
 from ...model import TabulatedScene
 from ...numerics import find_root
 from ...supports import AbstractSupport
+from ...tables import straight_part
 from .settings import SETTINGS
 
 
@@ -103,12 +104,17 @@ def rows_of_path(path: Path) -> Float[np.ndarray, "room 7"]:
 
 
 class Motion(NamedTuple):
-    """The path at times (n,): states and way so far in m, speeds in m/s, Phi'' in N/m."""
+    """The path at times (n,): states and way so far in m, speeds in m/s, Phi'' in N/m.
+
+    `levels`, `rates`: of the straight part of the load, in N and N/s.
+    """
 
     states: Any
     ways: Any
     speeds: Any
     stiffness: Any
+    levels: Any
+    rates: Any
 
 
 def state_on_path(
@@ -150,7 +156,15 @@ def _motion(
         state, piece = state_on_path(load, support, rows, time)
         stiffness = support.stiffness_at(state)
         way = piece.travel + jnp.abs(state - piece.state)
-        return Motion(state, way, _speed(load, rows, other, stiffness), stiffness)
+        line = straight_part(load)
+        return Motion(
+            states=state,
+            ways=way,
+            speeds=_speed(load, rows, other, stiffness),
+            stiffness=stiffness,
+            levels=line(time),
+            rates=line.slope(other),
+        )
 
     return jax.vmap(at)(times, beside)
 
@@ -223,7 +237,7 @@ def motion_at(
 ) -> Motion:
     """The path at each time; its speed, from the right at kinks, at times `beside` them."""
     if times.size == 0:
-        return Motion(times, times, times, times)
+        return Motion(*[times] * len(Motion._fields))
     columns = times, times if beside is None else beside
     fixed = scene.load, scene.support, path.rows
     return in_chunks(_motion, MODEL_SETTINGS.times, fixed, columns)
