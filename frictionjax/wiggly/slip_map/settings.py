@@ -15,6 +15,12 @@ class Settings(NamedTuple):
     # square.
     rough: float = 1e-4
     panels: tuple[int, ...] = (4, 6, 8, 12, 16, 32, 64)  # in s, how many there may be
+    # Pulls beyond the fold under which transits are looked at, each so many times the last,
+    # and how much rougher they may be under the larger ones (1.4 times at folds with a
+    # curvature; 100 and more at flat ones, until graded for all).
+    pulls: int = 5
+    pull_levels: float = 30.0
+    rougher: float = 4.0
     place_sweeps: int = 4  # of Newton's method for the place at an s
     # Sweeps of Newton's method from a guess that keeps the force constant. (Five before
     # others that follow: a slip map takes a seventh longer, and not one of those fewer.)
