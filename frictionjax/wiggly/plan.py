@@ -59,7 +59,7 @@ def ground_of(
     start: tuple[np.ndarray, np.ndarray],
 ) -> CellBounds:
     """What brackets need to know of each cell; `start`: well and tip of its z0."""
-    lags = lag_forces(scene.potential, eps, folds, path.speed * viscosity_of(eps, gamma))
+    lags, powers = _lags(scene, path, eps, gamma, folds)
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
     return CellBounds(
@@ -67,6 +67,8 @@ def ground_of(
         folds,
         lag_plus=lags[0] / path.stiffness,
         lag_minus=lags[1] / path.stiffness,
+        power_plus=powers[0],
+        power_minus=powers[1],
         shift_plus=shifts[0],
         shift_minus=shifts[1],
         start_well=start[0],
@@ -74,6 +76,21 @@ def ground_of(
         relaxed=_relaxation(scene, path, eps, gamma),
         fast_slides=none_known(eps.size),
     )
+
+
+def _lags(scene: TabulatedScene, path: Path, eps, gamma, folds: WiggleFolds):
+    """Lags of the fastest slide in N, to the right and left, and powers of the speed.
+
+    2 where folds have a curvature and tips nearly rest, p/(p - 1) where W' falls off like
+    the power p, 1 where flanks are straight or lags larger than the well's forces.
+    """
+    drag = path.speed * viscosity_of(eps, gamma)
+    lags, slower = (
+        np.stack(lag_forces(scene.potential, eps, folds, share * drag))
+        for share in (1.0, SETTINGS.slower)
+    )
+    powers = np.log(lags / slower) / -np.log(SETTINGS.slower)
+    return lags, np.where(powers > SETTINGS.square, 2.0, np.maximum(powers, 1.0))
 
 
 def _relaxation(scene: TabulatedScene, path: Path, eps: np.ndarray, gamma: np.ndarray):

@@ -16,7 +16,8 @@ class CellBounds(NamedTuple):
     """What brackets need to know of each cell, shape (cells,) each.
 
     `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
-    most. `shift_plus`, `shift_minus`: by how much in m folds at this eps differ from rho.
+    most. `power_plus`, `power_minus`: of the speed that lags grow with. `shift_plus`,
+    `shift_minus`: by how much in m folds at this eps differ from rho.
     `relaxed`: time in s from which on a start outside the strip is forgotten, by Lemma 7.
     `fast_slides`: tuples of `FastSlide`, in time.
     """
@@ -25,12 +26,24 @@ class CellBounds(NamedTuple):
     folds: WiggleFolds
     lag_plus: np.ndarray
     lag_minus: np.ndarray
+    power_plus: np.ndarray
+    power_minus: np.ndarray
     shift_plus: np.ndarray
     shift_minus: np.ndarray
     start_well: np.ndarray
     start_tip: np.ndarray
     relaxed: np.ndarray
     fast_slides: np.ndarray
+
+    def power(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
+        """Of slides of cells in a direction."""
+        return np.where(direction > 0, self.power_plus[cell], self.power_minus[cell])
+
+    def lag_share(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
+        """Of slides of cells in a direction: their lag over the larger of both."""
+        lags = self.lag_plus[cell], self.lag_minus[cell]
+        own = np.where(direction > 0, *lags)
+        return own / np.maximum(np.maximum(*lags), 1e-300)
 
 
 class Starts(NamedTuple):
@@ -114,7 +127,8 @@ def starts_of(
     time[known] = 0.0
     slide = np.flatnonzero(~known)
     share = np.ones(begin.size)
-    share[slide] = slow_share(scene, path, time[slide], level[slide])
+    power = ground.power(cell[slide], direction[slide])
+    share[slide] = slow_share(scene, path, time[slide], level[slide], power)
     share = np.where(lag > SETTINGS.long_lag * eps, share, 1.0)
     slides, which = last_begun(ground.fast_slides, cell, begin)
     lagging = _still_lagging(path, slides, which, time)
@@ -201,20 +215,24 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
 
 
 def slow_share(
-    scene: TabulatedScene, path: Path, time: np.ndarray, state: np.ndarray
+    scene: TabulatedScene,
+    path: Path,
+    time: np.ndarray,
+    state: np.ndarray,
+    power: np.ndarray,
 ) -> np.ndarray:
     """Share of the lag and memory of the fastest slide that there is at these times.
 
-    Both grow with the square of the speed; slides may have been faster a moment before.
+    Both grow with a `power` of the speed: its square where folds have a curvature, less
+    where they are flat. Slides may have been faster a moment before.
     """
-    before = (
-        time - SETTINGS.aside * path.edges[-1]
-    )  # a slide may end at full speed, in a kink
+    # A slide may end at full speed, in a kink.
+    before = time - SETTINGS.aside * path.edges[-1]
     both = np.append(time, np.maximum(before, 0.0))
     speeds = np.abs(slopes_at(scene, path, both, np.tile(state, 2)))
     # Nothing slides at 0.
     share = np.maximum(*np.split(speeds, 2)) / (path.speed or 1.0)
-    return np.minimum(SETTINGS.faster * share**2, 1.0)
+    return np.minimum(SETTINGS.faster * share**power, 1.0)
 
 
 def _bracket(ground: CellBounds, cell, direction, level, known, share):
