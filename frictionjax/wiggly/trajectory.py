@@ -1,9 +1,10 @@
 """One trajectory of the wiggly system."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import diffrax
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
@@ -19,9 +20,10 @@ from .._checks import (
     require_whole,
     with_nan,
 )
+from .._compile import Program
 from ..model import Scene, known_scene, require_reach, require_times, require_told_apart
 from .batch import integrate_cells
-from .equation import Status, plan_steps, require_accuracy
+from .equation import Status, StepPlan, plan_steps, require_accuracy
 from .sequential import MAX_STEPS, integrate, is_ours, solver_of
 
 
@@ -69,30 +71,53 @@ class Solution(CodedResult, eqx.Module):
         return f"Solution({ended}: {self.ts.size} times, {end}, {int(steps)} steps)"
 
 
-@eqx.filter_jit
-def _solve(
-    scene: Scene,
-    eps: Real,
-    gamma: Real,
-    ts: Array,
-    accuracy: Any,
-    solver: Any,
-    balanced: bool,
-    max_steps: Any,
-    adjoint: Any,
-) -> Any:
-    plan = plan_steps(scene, eps, gamma, accuracy)
+class _Problem(NamedTuple):
+    """What trajectories have derivatives by."""
+
+    scene: Scene
+    eps: Real
+    gamma: Real
+    ts: Array
+    accuracy: Real
+
+
+class _Options(NamedTuple):
+    solver: Any
+    balanced: bool
+    max_steps: int
+    adjoint: Any
+
+
+class _Curve(NamedTuple):
+    """What of a `Solution` has derivatives."""
+
+    z: Array
+    dissipation: Array | None
+    residual: Array | None
+
+
+@Program
+def _planned(problem: _Problem) -> StepPlan:
+    scene, eps, gamma, _, accuracy = problem
+    return plan_steps(scene, eps, gamma, accuracy)
+
+
+def _answered(
+    problem: _Problem, plan: StepPlan, options: _Options, past: Any = None
+) -> tuple:
+    scene, eps, gamma, ts, _ = problem
     found = integrate(
         scene,
         eps,
         gamma,
         ts,
         plan,
-        solver,
+        options.solver,
         until=ts[-1],
-        balanced=balanced,
-        max_steps=max_steps,
-        adjoint=adjoint,
+        balanced=options.balanced,
+        max_steps=options.max_steps,
+        adjoint=options.adjoint,
+        past=past,
     )
     counts = {
         "steps": found.steps,
@@ -100,10 +125,65 @@ def _solve(
         "tolerance": plan.tolerance,
         "dissipation_gap": found.dissipation_gap,
     }
-    how = f"resolved, every slip, by {type(solver).__name__}"
-    return Solution(
-        ts, found.z, found.dissipation, found.residual, found.status, counts, how
+    curve = _Curve(found.z, found.dissipation, found.residual)
+    return curve, (found.status, counts), found.past
+
+
+@Program
+def _forth(problem: _Problem, plan: StepPlan, options: _Options) -> tuple:
+    return _answered(problem, plan, options)
+
+
+@Program
+def _back(
+    problem: _Problem, plan: StepPlan, options: _Options, past: Any, by: _Curve
+) -> _Problem:
+    """Derivatives by the problem of what has those `by` the curve."""
+    moving, still = eqx.partition(problem, eqx.is_inexact_array)
+
+    def curve(moving: _Problem) -> _Curve:
+        return _answered(eqx.combine(moving, still), plan, options, past)[0]
+
+    return jax.vjp(curve, moving)[1](by)[0]
+
+
+@eqx.filter_custom_vjp
+def _differentiable(problem: _Problem, options: _Options) -> tuple:
+    """Forth and back in a program each, kept for later processes as others are.
+
+    Derivatives of one program were traced anew in every process, for 10 s.
+    """
+    return _forth(problem, _planned(problem), options)[:2]
+
+
+@_differentiable.def_fwd
+def _with_past(perturbed: Any, problem: _Problem, options: _Options) -> tuple:
+    plan = _planned(problem)
+    curve, told, past = _forth(problem, plan, options)
+    return (curve, told), (plan, past, curve)
+
+
+@_differentiable.def_bwd
+def _pulled_back(
+    known: tuple, by: tuple, perturbed: Any, problem: _Problem, options: _Options
+) -> _Problem:
+    plan, past, curve = known
+    whole = jax.tree_util.tree_map(
+        lambda value, by_value: jnp.zeros_like(value) if by_value is None else by_value,
+        curve,
+        by[0],
     )
+    return _back(problem, plan, options, past, whole)
+
+
+def _solve(problem: _Problem, options: _Options) -> Solution:
+    if options.adjoint is None:
+        curve, (status, counts) = _differentiable(problem, options)
+    else:
+        curve, (status, counts), _ = _forth(problem, _planned(problem), options)
+    how = f"resolved, every slip, by {type(options.solver).__name__}"
+    z, dissipation, residual = curve
+    return Solution(problem.ts, z, dissipation, residual, status, counts, how)
 
 
 def _through_lanes(scene, eps, gamma, ts, accuracy, method, balanced) -> Solution | None:
@@ -216,14 +296,6 @@ def solve(
         )
         if found is not None:
             return found
-    return _solve(
-        scene,
-        eps,
-        gamma,
-        ts,
-        jnp.asarray(as_real(accuracy)),
-        solver,
-        bool(dissipation),
-        int(max_steps),
-        adjoint,
-    )
+    problem = _Problem(scene, eps, gamma, ts, jnp.asarray(as_real(accuracy)))
+    options = _Options(solver, bool(dissipation), int(max_steps), adjoint)
+    return _solve(problem, options)

@@ -1,8 +1,9 @@
 """Energy-dissipation balance of a numerical solution, one step at a time."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool
 
@@ -92,6 +93,18 @@ def _at_zero(t: Real) -> Real:
     return jnp.zeros_like(t)
 
 
+def _one_by_one(at_node: Callable, total: tuple) -> tuple:
+    for s in _NODES:
+        total = tuple(a + b for a, b in zip(total, at_node(s), strict=True))
+    return total
+
+
+def in_a_loop(at_node: Callable, total: tuple) -> tuple:
+    """`total` and the sum over the nodes: half the program, for derivatives."""
+    values = jax.lax.map(at_node, jnp.array(_NODES))
+    return tuple(a + jnp.sum(b) for a, b in zip(total, values, strict=True))
+
+
 def advance(
     field: TipField,
     balance: Balance,
@@ -102,26 +115,34 @@ def advance(
     start: Point,
     end: Point,
     reference: Callable[[Real], Real] = _at_zero,
+    sum_of: Callable[[Callable, tuple], tuple] = _one_by_one,
 ) -> Balance:
     """The integrals after the step from (t0, y0) to y1, along a cubic between.
 
     `reference`: any curve in m, from which the work is counted. `end`: see `arrival`.
+    `sum_of`: how the nodes are added up.
     """
     viscosity = field.viscosity
     slope0, slope1, rest = slopes_between(start, end, step, y1 - y0)
     (left0, fall0), (left1, fall1) = _settled(start, step), _settled(end, step)
     falls = start.stretch**2 * fall0 - end.stretch**2 * fall1
     along = (left1 - left0) / step  # the branch, at both nodes, instead of the cubic
-    work = defect = jnp.zeros_like(y0)
-    viscous = viscosity * field.eps**2 * falls
-    for s in _NODES:
-        y, velocity = _cubic(s, step, y0, y1, slope0, slope1)
+    ends = y0, y1, slope0, slope1
+
+    def at_node(s: Any) -> tuple[Real, Real, Real]:
+        y, velocity = _cubic(s, step, *ends)
         t = t0 + s * step
         force, stretch = field.driving_force(t, y)
         drawn, speed = (field.eps * stretch * v for v in (velocity, velocity + along))
-        work += 0.5 * step * field.load_slope(t) * (field.state(y) - reference(t))
-        viscous += 0.5 * step * viscosity * speed**2
-        defect += 0.25 * step * (viscosity * drawn - force) ** 2 / viscosity
+        return (
+            0.5 * step * field.load_slope(t) * (field.state(y) - reference(t)),
+            0.5 * step * viscosity * speed**2,
+            0.25 * step * (viscosity * drawn - force) ** 2 / viscosity,
+        )
+
+    none = jnp.zeros_like(y0)
+    total = none, viscosity * field.eps**2 * falls, none
+    work, viscous, defect = sum_of(at_node, total)
     # On a rest the cubic is good to the tolerance but not to the relaxation time: the
     # defect is taken at the step's end, where the solver put the solution.
     drag = viscosity * field.eps * end.stretch
@@ -136,7 +157,7 @@ def advance(
     )
 
 
-def _cubic(s: float, step: Real, y0: Real, y1: Real, slope0: Real, slope1: Real):
+def _cubic(s: Any, step: Real, y0: Real, y1: Real, slope0: Real, slope1: Real):
     """Value and slope of the cubic Hermite interpolant at the share s of the step."""
     ends = y1 - y0, step * slope0, step * slope1
     return y0 + cubic(s, *ends), cubic_slope(s, *ends) / step

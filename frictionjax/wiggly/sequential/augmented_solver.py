@@ -7,10 +7,18 @@ import diffrax
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import PyTree
+from jaxtyping import Array, PyTree
 
 from ..._checks import Real
-from ..equation import TipField, advance, arrival, at_rest, dissipated
+from ..equation import (
+    Point,
+    TipField,
+    advance,
+    arrival,
+    at_rest,
+    dissipated,
+    in_a_loop,
+)
 from .wrapped import AbstractWrappedSolver
 
 
@@ -48,9 +56,19 @@ class Recorder(eqx.Module):
         after: list = []
         spent = jnp.zeros_like(y1)
         if self.balanced:
-            end = arrival(self.field, t0, t1 - t0, self.field.point(t1, y1))
-            ends = self.field.point(t0, y0), end
-            balance = advance(self.field, memory[0], t0, t1 - t0, y0, y1, *ends)
+            step = t1 - t0
+            start, end = self._points(jnp.stack([t0, t1]), jnp.stack([y0, y1]))
+            balance = advance(
+                self.field,
+                memory[0],
+                t0,
+                step,
+                y0,
+                y1,
+                start,
+                arrival(self.field, t0, step, end),
+                sum_of=in_a_loop,
+            )
             after.append(balance)
         if self.watch is not None:
             if self.balanced:
@@ -58,6 +76,11 @@ class Recorder(eqx.Module):
             z = self.field.state(y1)
             after.append(self.watch.look(memory[-1], t1, z, spent))
         return tuple(after)
+
+    def _points(self, ts: Array, ys: Array) -> tuple[Point, Point]:
+        """The field at both ends, by one copy of it."""
+        both = jax.lax.map(lambda at: self.field.point(*at), (ts, ys))
+        return Point(*(leaf[0] for leaf in both)), Point(*(leaf[1] for leaf in both))
 
 
 class AugmentedSolver(AbstractWrappedSolver):

@@ -1,4 +1,4 @@
-"""Fronts of an integration: stretches between stops, each a `diffeqsolve` of its own."""
+"""Fronts of an integration: stretches between stops, each a loop of its own."""
 
 from functools import partial
 from typing import Any, NamedTuple
@@ -12,10 +12,11 @@ from jaxtyping import Array, Float, Int, PyTree
 from ..._checks import Real
 from ..equation import Status, StepPlan, TipField
 from .augmented_solver import augmented_field
-from .replay_steps import ReplaySteps
 from .rounded_steps import RoundedSteps
-from .segment_adjoint import segment_adjoint
+from .segment_adjoint import Past, segment_adjoint
 from .settings import SETTINGS
+from .step_adjoint import Ends, made_again
+from .stepper import Stepper, code_of, step_to
 from .well_guard import WellGuard
 
 
@@ -93,25 +94,28 @@ def checkpoints_at(
     controller: diffrax.AbstractAdaptiveStepSizeController,
     max_steps: int,
     adjoint: diffrax.AbstractAdjoint | None = None,
-) -> Checkpoint:
-    """Fronts at the stops, stacked; `solver` is of (y, ..., step).
+    past: Past | None = None,
+) -> tuple[Checkpoint, Past | None]:
+    """Fronts at the stops, stacked, and the way to them; `solver` is of (y, ..., step).
 
-    One `diffeqsolve` for each piece, not one for all with `SaveAt(ts)`: XLA compiles the
-    loop as a single function only while its state is small, 11 us a step against 2.6. With
-    an `adjoint` of the caller's, all between two stops is one piece.
+    A loop for each piece, not one for all that writes states down: XLA compiles the loop
+    as a single function only while its state is small, 11 us a step against 2.6. With an
+    `adjoint` of the caller's, all between two stops is one piece, made by `diffeqsolve`.
     """
-    parts = field, plan, solver, controller
     if adjoint:
-        piece = partial(_piece, *parts, max_steps, max_steps, adjoint)
-        return jax.lax.scan(lambda f, stop: (piece(f, stop),) * 2, start, stops)[1]
-    steps = max_steps, min(max_steps, SETTINGS.piece)
-    forth = partial(_piece, *parts, *steps, diffrax.RecursiveCheckpointAdjoint(1))
+        piece = partial(_solved, field, plan, solver, controller, max_steps, adjoint)
+        return jax.lax.scan(lambda f, stop: (piece(f, stop),) * 2, start, stops)[1], None
+    stepper = Stepper(field, solver)
     pieces = (
         eqx.filter_closure_convert(piece, start, stops[0])
-        for piece in (forth, partial(_again, field, solver, controller))
+        for piece in (
+            partial(_piece, stepper, plan, controller, max_steps),
+            partial(_again, stepper, controller),
+        )
     )
     goes_on = jax.tree_util.Partial(_goes_on, plan.shortest_step)
-    return segment_adjoint((*pieces, start, stops), goes_on)
+    found = segment_adjoint((*pieces, start, stops), goes_on, past)
+    return found.fronts, found
 
 
 def _goes_on(rounding: Real, front: Checkpoint, stop: Real) -> Array:
@@ -120,75 +124,78 @@ def _goes_on(rounding: Real, front: Checkpoint, stop: Real) -> Array:
 
 
 def _piece(
-    field: TipField,
+    stepper: Stepper,
     plan: StepPlan,
-    solver: diffrax.AbstractSolver,
     controller: diffrax.AbstractAdaptiveStepSizeController,
     max_steps: int,
-    steps: int,
-    adjoint: diffrax.AbstractAdjoint,
     front: Checkpoint,
     stop: Real,
 ) -> Checkpoint:
     """At most so many steps towards the stop; none where the front does not go on."""
     stop = jnp.where(_goes_on(plan.shortest_step, front, stop), stop, front.t)
-    last = diffrax.SaveAt(t1=True)
-    found = _solved(steps, adjoint, last, field, solver, controller, front, stop)
-    ended = jax.tree_util.tree_map(lambda leaf: leaf[0], (found.ts, *found.ys))
-    reached, *y, step = ended
-    taken = front.steps + found.stats["num_steps"]
-    unfinished = found.result == diffrax.RESULTS.max_steps_reached
-    goes_on = unfinished & (taken < max_steps)
-    code = jnp.where(goes_on, int(Status.OK), _code(found.result))
+    most = min(max_steps, SETTINGS.piece)
+    parts = stepper, controller, front.t, (*front.y, front.step), front.step
+    found, _ = step_to(stop, *parts, most=most)
+    taken = front.steps + found.steps
+    unfinished = (found.code == Status.OK) & (found.t < stop)
+    spent = jnp.where(taken < max_steps, int(Status.OK), int(Status.MAX_STEPS))
+    return _further(
+        front,
+        t=jnp.where(unfinished, found.t, stop),
+        y=found.y,
+        code=jnp.where(unfinished, spent, found.code),
+        steps=taken,
+        rejected=found.steps - found.accepted,
+    )
+
+
+def _further(
+    front: Checkpoint, *, t: Real, y: Any, code: Array, steps: Any, rejected: Any
+) -> Checkpoint:
+    *y, step = y
     return Checkpoint(
-        t=jnp.where(unfinished, reached, stop),
+        t=t,
         y=tuple(y),
         step=jax.lax.stop_gradient(step),
         code=jnp.where(front.code == Status.OK, code, front.code),
-        steps=taken,
-        rejected=front.rejected + found.stats["num_rejected_steps"],
+        steps=steps,
+        rejected=front.rejected + rejected,
     )
 
 
 def _again(
-    field: TipField,
-    solver: diffrax.AbstractSolver,
+    stepper: Stepper,
     controller: diffrax.AbstractAdaptiveStepSizeController,
     front: Checkpoint,
     end: Real,
 ) -> Checkpoint:
-    """All the way to where a piece has ended, for derivatives: steps are chosen, then made.
+    """All the way to where a piece has ended, for derivatives.
 
-    Where there is no room for them all, `t` is NaN.
+    Where there is no room for all steps, `t` is NaN.
     """
     room = SETTINGS.piece + SETTINGS.more
-    every = diffrax.RecursiveCheckpointAdjoint(checkpoints=room)
     still = jax.tree_util.tree_map(
         lambda leaf: jax.lax.stop_gradient(leaf) if eqx.is_inexact_array(leaf) else leaf,
-        (field, solver, controller, front, end),
+        (controller, front.step),
     )
-    times_alone = diffrax.SaveAt(steps=True, fn=lambda t, y, args: t)
-    chosen = _solved(room, every, times_alone, *still)
-    assert chosen.ts is not None
-    known = ReplaySteps(controller, chosen.ts)
-    last = diffrax.SaveAt(t1=True)
-    found = _solved(room, every, last, field, solver, known, front, end)
-    *y, _ = jax.tree_util.tree_map(lambda leaf: leaf[0], found.ys)
-    fits = chosen.result == diffrax.RESULTS.successful
+    ends = Ends(stepper, front.t, (*front.y, front.step), end)
+    (*y, _), fits = made_again(ends, *still, room)
     return front._replace(t=jnp.where(fits, end, jnp.nan), y=tuple(y))
 
 
 def _solved(
-    steps: int,
-    adjoint: diffrax.AbstractAdjoint,
-    saveat: diffrax.SaveAt,
     field: TipField,
+    plan: StepPlan,
     solver: diffrax.AbstractSolver,
     controller: diffrax.AbstractAdaptiveStepSizeController,
+    max_steps: int,
+    adjoint: diffrax.AbstractAdjoint,
     front: Checkpoint,
     stop: Real,
-) -> diffrax.Solution:
-    return diffrax.diffeqsolve(
+) -> Checkpoint:
+    """All the way to the stop by diffrax, and differentiated as it does."""
+    stop = jnp.where(_goes_on(plan.shortest_step, front, stop), stop, front.t)
+    found = diffrax.diffeqsolve(
         diffrax.ODETerm(augmented_field(field)),
         solver,
         front.t,
@@ -196,10 +203,20 @@ def _solved(
         front.step,
         (*front.y, front.step),
         stepsize_controller=controller,
-        saveat=saveat,
-        max_steps=steps,
+        saveat=diffrax.SaveAt(t1=True),
+        max_steps=max_steps,
         adjoint=adjoint,
         throw=False,
+    )
+    reached, *y = jax.tree_util.tree_map(lambda leaf: leaf[0], (found.ts, *found.ys))
+    unfinished = found.result == diffrax.RESULTS.max_steps_reached
+    return _further(
+        front,
+        t=jnp.where(unfinished, reached, stop),
+        y=y,
+        code=_code(found.result),
+        steps=front.steps + found.stats["num_steps"],
+        rejected=found.stats["num_rejected_steps"],
     )
 
 
@@ -209,12 +226,8 @@ def _tip_norm(scaled: PyTree) -> Real:
 
 
 def _code(result: diffrax.RESULTS) -> Array:
-    known = [
-        (result == diffrax.RESULTS.successful, Status.OK),
-        (result == diffrax.RESULTS.max_steps_reached, Status.MAX_STEPS),
-        (result == diffrax.RESULTS.dt_min_reached, Status.STEP_TOO_SMALL),
-    ]
-    return first_of(known, jnp.asarray(int(Status.SOLVER_FAILED)))
+    spent = result == diffrax.RESULTS.max_steps_reached
+    return jnp.where(spent, int(Status.MAX_STEPS), code_of(result))
 
 
 def first_of(codes: list[tuple[Any, Status]], otherwise: Any) -> Array:

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int, PyTree
 
 from ..._checks import Real
-from ...model import Scene, coefficients
+from ...model import Scene
 from ..equation import Balance, Status, StepPlan, TipField, dissipated, errors_of_sums
 from .augmented_solver import AbstractObserver, AugmentedSolver, Recorder
 from .checkpoints import (
@@ -18,6 +18,7 @@ from .checkpoints import (
     first_of,
     times_of_stops,
 )
+from .segment_adjoint import Past
 from .settings import SETTINGS
 from .solvers_by_name import with_tolerance
 
@@ -36,6 +37,7 @@ class Trajectory(NamedTuple):
     status: Int[Array, ""]
     steps: Int[Array, ""]
     rejected: Int[Array, ""]
+    past: Past | None
 
 
 def field_of(scene: Scene, eps: Real, gamma: Real) -> TipField:
@@ -56,8 +58,11 @@ def integrate(
     watch: AbstractObserver | None = None,
     max_steps: int = MAX_STEPS,
     adjoint: diffrax.AbstractAdjoint | None = None,
+    past: Past | None = None,
 ) -> Trajectory:
     """Integrate from 0 to `until` >= ts[-1]; traceable, one lane.
+
+    `past`: of the same integration, made before; then only derivatives are to be made.
 
     Steps end at all `ts` (dense output of a rest phase is worse than its steps: off by
     half a period at gamma = 2) and at the turning points and kinks of the load.
@@ -71,13 +76,14 @@ def integrate(
     observed = AugmentedSolver(with_tolerance(solver, plan.tolerance), recorder)
     start = checkpoint_at_start((tip, *recorder.start(scene.z0)), plan)
     parts = stops, start, field, plan, observed, controller_of(plan)
-    fronts = checkpoints_at(*parts, max_steps, adjoint)
+    fronts, past = checkpoints_at(*parts, max_steps, adjoint, past)
     last = jax.tree_util.tree_map(lambda leaf: leaf[-1], fronts)
     fronts = jax.tree_util.tree_map(lambda leaf: leaf[wanted], fronts)
     tips, *memories = fronts.y
     # Where a turning point is the time asked for, it has been stepped to: derivatives by
     # the turning point are those at a time that moves with it.
-    tips = tips + (ts - fronts.t) * jax.vmap(field.velocity)(fronts.t, tips)
+    speeds = jax.lax.stop_gradient(jax.vmap(field.velocity)(fronts.t, tips))
+    tips = tips + (ts - fronts.t) * speeds
     blank = jnp.where(fronts.code == Status.OK, 0.0, jnp.nan)
     z = jax.vmap(field.state)(tips) + blank
     dissipation, residual, final, gap = None, None, None, None
@@ -96,7 +102,8 @@ def integrate(
         residual = memories[0].residual + blank
     status = _status(last.code, z, turns)
     if final is not None:
-        status = _with_balance(status, scene, eps, final)
+        slip = eps * (plan.folds.force_plus - plan.folds.force_minus)
+        status = _with_balance(status, slip, final)
     return Trajectory(
         z=z,
         dissipation=dissipation,
@@ -107,6 +114,7 @@ def integrate(
         status=status,
         steps=last.steps,
         rejected=last.rejected,
+        past=past,
     )
 
 
@@ -126,13 +134,8 @@ def _pulled(scene: Scene, turns: Float[Array, " m"], until: Real) -> Real:
     return jnp.sum(jnp.abs(jnp.diff(jax.vmap(scene.load)(edges))))
 
 
-def _slip_energy(scene: Scene, eps: Real) -> Real:
-    law = coefficients(scene.potential)
-    return eps * (law.rho_plus - law.rho_minus)
-
-
-def _with_balance(status: Array, scene: Scene, eps: Real, final: Balance) -> Array:
-    """A residual of more than a share of the energy of every slip made is a failure."""
-    allowed = SETTINGS.residual * (_slip_energy(scene, eps) + final.viscous)
+def _with_balance(status: Array, slip: Real, final: Balance) -> Array:
+    """A residual of more than a share of the energy (J) of every slip made is a failure."""
+    allowed = SETTINGS.residual * (slip + final.viscous)
     closes = final.residual <= allowed
     return jnp.where((status == Status.OK) & ~closes, int(Status.UNBALANCED), status)

@@ -28,32 +28,30 @@ class Log(NamedTuple):
     pieces: Int[Array, ""]
 
 
+class Past(NamedTuple):
+    """Fronts at the stops, stacked, and the pieces on the way."""
+
+    fronts: PyTree
+    log: Log
+
+
 @eqx.filter_custom_vjp
-def segment_adjoint(parts: tuple, goes_on: Callable[[PyTree, Real], Array]) -> PyTree:
-    """Fronts at the stops, stacked. `parts`: (piece, piece again, front, stops).
+def segment_adjoint(
+    parts: tuple, goes_on: Callable[[PyTree, Real], Array], past: Past | None = None
+) -> Past:
+    """The way from stop to stop. `parts`: (piece, piece again, front, stops).
 
     `piece(front, stop)` goes towards the stop as far as it may, `again(front, end)` all the
     way to where a piece has ended; `goes_on(front, stop)`: whether there is more to go.
-    Derivatives are by what the pieces depend on, by the front and by the stops.
+    `past`: the way, where it has been gone before. Derivatives of fronts are by what the
+    pieces depend on, by the front and by the stops.
     """
-    return _forth(parts, goes_on, None)[0]
-
-
-@segment_adjoint.def_fwd
-def _travel_and_log(perturbed: PyTree, parts: tuple, goes_on: Any) -> tuple:
-    _, _, front, stops = parts
+    if past is not None:
+        return past
+    piece, _, front, stops = parts
     begins = jax.tree_util.tree_map(_room, front)
     where = jnp.zeros(SETTINGS.most_pieces, int)
-    return _forth(parts, goes_on, Log(begins, _room(stops[0]), where, jnp.asarray(0)))
-
-
-def _room(leaf: Array) -> Array:
-    return jnp.zeros((SETTINGS.most_pieces, *leaf.shape), leaf.dtype)
-
-
-def _forth(parts: tuple, goes_on: Any, log: Log | None) -> tuple[PyTree, Log | None]:
-    """Fronts at the stops, and the log where there is one."""
-    piece, _, front, stops = parts
+    log = Log(begins, _room(stops[0]), where, jnp.asarray(0))
 
     def stretch(carry: tuple, given: tuple) -> tuple[tuple, PyTree]:
         index, stop = given
@@ -61,14 +59,24 @@ def _forth(parts: tuple, goes_on: Any, log: Log | None) -> tuple[PyTree, Log | N
         def advance(carry: tuple) -> tuple:
             front, log = carry
             after = piece(front, stop)
-            return after, None if log is None else _noted(log, front, after.t, index)
+            return after, _noted(log, front, after.t, index)
 
         carry = jax.lax.while_loop(lambda c: goes_on(c[0], stop), advance, carry)
         return carry, carry[0]
 
     given = jnp.arange(stops.shape[0]), stops
     (_, log), fronts = jax.lax.scan(stretch, (front, log), given)
-    return fronts, log
+    return Past(fronts, log)
+
+
+@segment_adjoint.def_fwd
+def _with_log(perturbed: PyTree, *given: Any) -> tuple[Past, Log]:
+    found = segment_adjoint.fn(*given)
+    return found, found.log
+
+
+def _room(leaf: Array) -> Array:
+    return jnp.zeros((SETTINGS.most_pieces, *leaf.shape), leaf.dtype)
 
 
 def _noted(log: Log, front: PyTree, end: Real, stop: Int[Array, ""]) -> Log:
@@ -82,7 +90,7 @@ def _noted(log: Log, front: PyTree, end: Real, stop: Int[Array, ""]) -> Log:
 
 
 @segment_adjoint.def_bwd
-def _back(log: Log, by_fronts: PyTree, perturbed: PyTree, parts: tuple, _: Any) -> tuple:
+def _back(log: Log, by: Past, perturbed: PyTree, parts: tuple, *_: Any) -> tuple:
     _, again, front, stops = parts
     wanted, fixed = eqx.partition(again, perturbed[1])
 
@@ -116,7 +124,7 @@ def _back(log: Log, by_fronts: PyTree, perturbed: PyTree, parts: tuple, _: Any) 
     moving = eqx.filter(front, eqx.is_inexact_array)
     none = jax.tree_util.tree_map(jnp.zeros_like, (moving, wanted))
     start = *none, jnp.where(log.pieces > SETTINGS.most_pieces, 0, log.pieces)
-    given = jnp.arange(stops.shape[0]), _whole(by_fronts, moving, stops.shape[0])
+    given = jnp.arange(stops.shape[0]), _whole(by.fronts, moving, stops.shape[0])
     (*found, _), by_stops = jax.lax.scan(over_stop, start, given, reverse=True)
     # Where room ran out, for pieces or for the steps of one, there is no derivative.
     bad = (log.pieces > SETTINGS.most_pieces) | jnp.any(jnp.isnan(by_stops))

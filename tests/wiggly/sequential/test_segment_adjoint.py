@@ -36,7 +36,7 @@ def values(rate, start, stops, again=np.inf):
         for length in (0.1, again)
     )
     goes_on = jax.tree_util.Partial(lambda front, stop: front.t < stop)
-    return travel.segment_adjoint((forth, back, front, stops), goes_on)
+    return travel.segment_adjoint((forth, back, front, stops), goes_on).fronts
 
 
 POINT = jnp.asarray(RATE), jnp.asarray(START), jnp.asarray(STOPS)

@@ -1,0 +1,126 @@
+"""Steps of a solver under a controller, in a loop of our own.
+
+diffrax's has dense output, events and checkpoints to see to, and asks the host to report
+errors: to trace and to compile a derivative through it took 26 s of a core, in every
+process again, as JAX keeps no program that calls the host.
+"""
+
+from typing import Any, NamedTuple
+
+import diffrax
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float, Int, PyTree
+
+from ..._checks import Real
+from ..equation import Status, TipField
+from .augmented_solver import augmented_field
+
+_NEARLY = 100 * float(jnp.finfo(float).eps)  # of a stop: diffrax goes on to it from there
+
+
+class Stepper(eqx.Module):
+    """What makes steps: all that their derivatives are by."""
+
+    field: TipField
+    solver: diffrax.AbstractSolver
+
+    @property
+    def term(self) -> diffrax.ODETerm:
+        """The equation as solvers want it."""
+        return diffrax.ODETerm(augmented_field(self.field))
+
+    def memory(self, t: Real, end: Real, y: tuple) -> PyTree:
+        """What the solver is to remember at a first step."""
+        found = self.solver.init(self.term, t, end, y, None)
+        return jax.tree_util.tree_map(jnp.asarray, found)
+
+    def step(self, t: Real, end: Real, y: tuple, memory: PyTree) -> tuple:
+        """The state after a step, its error, the solver's memory and result."""
+        y, error, _, *rest = self.solver.step(self.term, t, end, y, None, memory, False)
+        return y, error, *rest
+
+
+class Stepping(NamedTuple):
+    """Where the next step begins and ends, and what has come of those before."""
+
+    t: Real
+    end: Real
+    y: tuple
+    memory: PyTree
+    control: PyTree
+    code: Int[Array, ""]
+    steps: Int[Array, ""]
+    accepted: Int[Array, ""]
+
+
+class StepLog(NamedTuple):
+    """Times, states and memories at which accepted steps began; padded."""
+
+    t: Float[Array, " room"]
+    y: tuple
+    memory: PyTree
+
+
+def step_to(
+    stop: Real,
+    stepper: Stepper,
+    controller: diffrax.AbstractAdaptiveStepSizeController,
+    t: Real,
+    y: tuple,
+    first_step: Real,
+    *,
+    most: int,
+    room: int = 0,
+) -> tuple[Stepping, StepLog]:
+    """At most `most` steps from `t` to `stop`, as diffrax makes them.
+
+    `room`: for how many accepted steps there is a place in the log.
+    """
+    order: Any = stepper.solver.error_order(stepper.term)
+    known = stepper.term, t, stop, y, first_step, None, stepper.solver.func, order
+    end, control = controller.init(*known)
+    end, none = jnp.minimum(end, stop), jnp.asarray(0)
+    start = Stepping(t, end, y, stepper.memory(t, end, y), control, none, none, none)
+    blank = jax.tree_util.tree_map(
+        lambda leaf: jnp.zeros((room, *leaf.shape), leaf.dtype), (t, y, start.memory)
+    )
+    nearly = stop - _NEARLY * jnp.abs(stop)
+
+    def advance(carry: tuple[Stepping, StepLog]) -> tuple[Stepping, StepLog]:
+        now, log = carry
+        after, error, memory, result = stepper.step(now.t, now.end, now.y, now.memory)
+        error = jax.tree_util.tree_map(lambda e: jnp.where(jnp.isnan(e), jnp.inf, e), error)
+        keep, t, end, _, control, verdict = controller.adapt_step_size(
+            now.t, now.end, now.y, after, None, error, order, now.control
+        )
+        t = jnp.minimum(t, stop)
+        half = jnp.where(keep, stop, t + 0.5 * (stop - t))
+        y, memory = jax.tree_util.tree_map(
+            lambda new, old: jnp.where(keep, new, old), (after, memory), now[2:4]
+        )
+        code = jnp.where(keep, code_of(result), int(Status.OK))
+        code = jnp.where(code == Status.OK, code_of(verdict), code)
+        end = jnp.where(end > nearly, half, end)
+        counts = now.steps + 1, now.accepted + keep
+        if room:  # a step that is rejected is written over
+            here = StepLog(now.t, now.y, now.memory)
+            log = jax.tree_util.tree_map(lambda a, v: a.at[now.accepted].set(v), log, here)
+        return Stepping(t, end, y, memory, control, code, *counts), log
+
+    def goes_on(carry: tuple[Stepping, StepLog]) -> Array:
+        now, _ = carry
+        return (now.t < stop) & (now.code == Status.OK) & (now.steps < most)
+
+    return jax.lax.while_loop(goes_on, advance, (start, StepLog(*blank)))
+
+
+def code_of(result: diffrax.RESULTS) -> Array:
+    """The `Status` of what diffrax says of a step."""
+    failed = jnp.where(
+        result == diffrax.RESULTS.dt_min_reached,
+        int(Status.STEP_TOO_SMALL),
+        int(Status.SOLVER_FAILED),
+    )
+    return jnp.where(result == diffrax.RESULTS.successful, int(Status.OK), failed)
