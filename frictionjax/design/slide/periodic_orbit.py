@@ -23,12 +23,20 @@ from jaxtyping import Array, Float, Int
 
 from ..._checks import Real
 from ...model import AbstractPotential
-from ...wiggly import RODAS5P, Control, ControlState, combine, dense_output, judge, step_of
+from ...wiggly import (
+    RODAS5P,
+    Control,
+    ControlState,
+    Linearised,
+    dense_output,
+    judge,
+    rolled_step,
+    step_of,
+)
 from .settings import SETTINGS
 
 STEPS = 2048  # of one period; 60 to 700 are needed, plateaus of nearly equal folds: 1200
 _TABLEAU = RODAS5P
-_TIMES = np.array(_TABLEAU.times)
 # Of D in a step, in units of the highest wiggle: errors of D never grow, as c G/D^2 > 0,
 # so log D needs few digits where D is small; in log D throughout: 3 times the steps.
 _TOLERANCE, _LOOSEST = 1e-9, 1e-3
@@ -105,26 +113,19 @@ def survey_ground(slide: SlideScene) -> tuple[Real, Real, Real]:
     return grid[jnp.argmax(force)], jnp.max(climb), jnp.min(stretch)
 
 
-def _step(slide: SlideScene, x: Real, step: Real, level: Real) -> tuple[Real, list]:
-    """One Rosenbrock step and its stages.
+def _step(slide: SlideScene, x: Real, step: Real, level: Real) -> tuple[Real, Array]:
+    """One Rosenbrock step and its stages."""
 
-    The terrain does not see L: it is evaluated at all stages at once, a sixth of the
-    time to compile.
-    """
-    stretch, climb = jax.vmap(slide.terrain)(x + step * _TIMES)
-    _, bends = jax.jvp(slide.terrain, (x,), (jnp.ones_like(x),))
+    def slope(x: Real, level: Real) -> Real:
+        return slide.slope(level, *slide.terrain(x))
+
+    (stretch, climb), bends = jax.jvp(slide.terrain, (x,), (jnp.ones_like(x),))
     drive = jnp.exp(-level)
-    first = slide.pull * stretch[0] * drive
-    by_state = -drive * (2 * first - slide.give * stretch[0] - climb[0])
+    first = slide.pull * stretch * drive
+    by_state = -drive * (2 * first - slide.give * stretch - climb)
     by_way = slide.slope(level, *bends)  # linear in both
-    inverse = 1 / (1 / (step * _TABLEAU.gamma) - by_state)
-    stages: list = []
-    for i, (a, c) in enumerate(zip(_TABLEAU.a, _TABLEAU.c, strict=True)):
-        inside = level + combine(a, stages)
-        push = slide.slope(inside, stretch[i], climb[i]) + combine(c, stages) / step
-        push = push + step * _TABLEAU.time_derivative[i] * by_way
-        stages.append(push * inverse)
-    return inside + stages[-1], stages
+    start = Linearised(drive * (first - slide.give * stretch - climb), by_state, by_way)
+    return rolled_step(_TABLEAU, slope, start, x, step, level)
 
 
 def _once(slide: SlideScene, start: Real, level: Real):

@@ -36,7 +36,7 @@ class Linearised(NamedTuple):
     by_time: Real
 
 
-def combine(weights: tuple[float, ...], values: list) -> Real | float:
+def combine(weights: tuple[float, ...], values: list | Array) -> Real | float:
     """Weighted sum that leaves zero weights out of the program."""
     terms = [w * v for w, v in zip(weights, values, strict=True) if w != 0]
     return sum(terms[1:], terms[0]) if terms else 0.0
@@ -106,7 +106,9 @@ def rolled_step(
     return inside[-1] + stages[-1], stages
 
 
-def dense_output(tableau: Tableau, y0: Real, y1: Real, stages: list, share: Real) -> Real:
+def dense_output(
+    tableau: Tableau, y0: Real, y1: Real, stages: list | Array, share: Real
+) -> Real:
     """The interpolant at a share of the step, of order `order - 1`."""
     bends = [combine(row, stages) for row in tableau.dense]
     bend = bends[-1]
