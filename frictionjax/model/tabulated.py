@@ -6,12 +6,18 @@ import numpy as np
 from jaxtyping import Float
 
 from .._checks import ByIdentity
-from ..loads import AbstractPull
-from ..supports import AbstractSupport
-from ..tables import load_table
+from ..loads import AbstractPull, PiecewiseLinear
+from ..supports import AbstractSupport, Spring
+from ..tables import (
+    PiecewiseProfile,
+    SeriesBristle,
+    SeriesProfile,
+    SumOfLoads,
+    load_table,
+)
 from .friction_coefficients import coefficients_jit
 from .load_edges import known_turning_points
-from .potentials import AbstractPotential
+from .potentials import AbstractPotential, BristlePotential
 from .scene import Scene
 from .tabulated_potential import tabulated_potentials
 
@@ -33,6 +39,28 @@ class TabulatedScene(NamedTuple):
     turning_points: Float[np.ndarray, " n"]
     rho_plus: float
     rho_minus: float
+
+    @property
+    def untabulated(self) -> str:
+        """Parts that no table holds, as "load Custom": programs are compiled for them."""
+        parts: dict[str, Any] = {"support": self.support, "load": self.load}
+        if isinstance(self.lane_potential, BristlePotential):
+            pair = self.lane_potential.profile, self.lane_potential.bristle
+            parts |= dict(zip(("profile", "bristle"), pair, strict=True))
+        else:
+            parts["potential"] = self.lane_potential
+        found = {n: type(p).__name__ for n, p in parts.items() if not isinstance(p, _KNOWN)}
+        return ", ".join(f"{name} {kind}" for name, kind in found.items())
+
+
+_KNOWN = (
+    SeriesProfile,
+    PiecewiseProfile,
+    SeriesBristle,
+    Spring,
+    SumOfLoads,
+    PiecewiseLinear,
+)
 
 
 _TABLES = ByIdentity()  # of scenes: the last eps, and the tables for it

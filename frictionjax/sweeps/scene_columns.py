@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from .._checks import cells_of, viscosity_of
 from ..limit import LimitSolution, solve_limit
-from ..model import Scene, coefficients_jit, strips_at
+from ..model import Scene, coefficients_jit, strips_at, tabulated_scene
 from ..slide_laws import slide_data
 from ..wiggly import Status, integrate_cells
 
@@ -36,11 +36,15 @@ class SweepRequest(NamedTuple):
 
 
 class SceneColumns(NamedTuple):
-    """Columns of one scene with their dims, what the laws need, and who has integrated."""
+    """Columns of one scene with their dims, what the laws need, and who has integrated.
+
+    `compiled_for`: parts of it that lanes needed programs of their own for, in words.
+    """
 
     columns: Columns
     laws: dict[str, np.ndarray]
     method: str
+    compiled_for: str
 
 
 def scene_columns(
@@ -48,9 +52,10 @@ def scene_columns(
 ) -> SceneColumns:
     """Solve all cells of a scene; `report` is told each share that is done."""
     limit = solve_limit(scene, request.ts)
-    values, method = None, request.method
+    values, method, own = None, request.method, ""
     if request.solver is None:
         values = _by_lanes(scene, request, report)
+        own = tabulated_scene(scene, request.eps).untabulated
     if values is None:
         values, method = _by_diffrax(scene, request, report)
     if not request.suprema:
@@ -66,7 +71,8 @@ def scene_columns(
     if request.suprema:
         found = coefficients_jit(scene.potential)
         known = slide_data(scene, found, np.asarray(request.eps))
-    return SceneColumns(columns, {} if known is None else known.attributes(), method)
+    laws = {} if known is None else known.attributes()
+    return SceneColumns(columns, laws, method, own)
 
 
 def _by_lanes(

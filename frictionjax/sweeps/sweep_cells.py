@@ -48,7 +48,8 @@ def sweep(
     `dissipation_limit`, the strip `z_minus`, `z_plus` and the load, `data["load"]`. Units
     and provenance are in the attributes, and with suprema what the laws of the orders need
     (`law_...`: the force of a well, the speeds of the limit); it goes to NetCDF and back
-    without loss.
+    without loss. `compiled_for`, among them: parts that no table holds to rounding, for
+    which programs were compiled.
 
     Several scenes, in a list or under labels (strings or integers) in a mapping, make a
     data set with the dimension `scene` in front, the limit's values and the laws' arrays
@@ -93,7 +94,8 @@ def sweep(
     data = describe(data, family.scenes, request.accuracy, found[0].method)
     if family.labels is None:
         data.attrs |= found[0].laws
-    return data
+    own = dict.fromkeys(one.compiled_for for one in found if one.compiled_for)
+    return data.assign_attrs(compiled_for="; ".join(own)) if own else data
 
 
 def _all_columns(

@@ -21,7 +21,15 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program
-from ..model import Scene, known_scene, require_reach, require_times, require_told_apart
+from ..model import (
+    Scene,
+    TabulatedScene,
+    known_scene,
+    require_reach,
+    require_times,
+    require_told_apart,
+    tabulated_scene,
+)
 from .batch import integrate_cells
 from .equation import Status, StepPlan, plan_steps, require_accuracy
 from .sequential import MAX_STEPS, integrate, is_ours, solver_of
@@ -218,11 +226,16 @@ def _through_lanes(scene, eps, gamma, ts, accuracy, method, balanced) -> Solutio
         residual,
         jnp.asarray(found.status[0]),
         counts,
-        _in_words(found.how[0], float(found.sampled[0])),
+        _in_words(found.how[0], float(found.sampled[0]), tabulated_scene(scene, eps)),
     )
 
 
-def _in_words(how: np.ndarray, sampled: float) -> str:
+def _in_words(how: np.ndarray, sampled: float, scene: TabulatedScene) -> str:
+    own = scene.untabulated
+    return _found_in_words(how, sampled) + (f"; compiled for {own}" if own else "")
+
+
+def _found_in_words(how: np.ndarray, sampled: float) -> str:
     if not how.any():
         return "resolved, every slip since z0, by one lane"
     share = f"{np.mean(how > 0):.0%} of them from brackets that closed"

@@ -95,6 +95,22 @@ def test_scenes_of_all_classes_run_the_same_programs(caplog):
     assert "run_queue" in solved("many waves")
 
 
+def test_what_no_table_holds_is_told():
+    assert tabulated_scene(scene_of("spline", "angular"), 1e-2).untabulated == ""
+    own = scene_of().replace(
+        profile=P.Custom(lambda y: 0.02 * jax.numpy.abs(jax.numpy.sin(np.pi * y)) ** 3),
+        support=fx.supports.Convex(lambda z: z**2 + 0.01 * z**4),
+        load=L.Custom(lambda t: 6 * t),
+    )
+    said = "support Convex, load Custom, profile Custom"
+    assert tabulated_scene(own, 1e-2).untabulated == said
+    data = fx.sweep(own, [0.05], [1.0], [1.0])
+    assert data.attrs["compiled_for"] == said
+    found = fx.solve(own, 0.05, 1.0, [1.0])
+    assert found.stats["values"].endswith(f"compiled for {said}")
+    assert "compiled_for" not in fx.sweep(scene_of(), [0.05], [1.0], [1.0]).attrs
+
+
 def test_tables_are_kept_for_the_last_eps():
     scene = scene_of()
     assert tabulated_scene(scene, 1e-3) is tabulated_scene(scene, [1e-5, 1e-3])
