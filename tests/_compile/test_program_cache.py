@@ -12,10 +12,10 @@ import frictionjax as fx
 from frictionjax._compile import program_cache as kept_programs
 from frictionjax._compile.programs import Program
 from frictionjax.model.potentials import BristlePotential
+from frictionjax.slide_laws import ingredients
 from frictionjax.tables import profiles as table_profiles
-from frictionjax.wiggly import plan as planning
 
-TIPS, HEIGHTS = planning._tips._fn, table_profiles._heights._fn
+FORCES, HEIGHTS = ingredients._forces._fn, table_profiles._heights._fn
 PLACES = np.linspace(0.0, 1.0, 5)
 
 
@@ -35,8 +35,8 @@ def traced(tmp_path, monkeypatch):
     return shapes
 
 
-def tips(bristle=None):
-    """Arguments of `_tips`, which returns a pair of arrays."""
+def wells(bristle=None):
+    """Arguments of `_forces`, which returns three arrays."""
     bristle = bristle or fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
     return (
         BristlePotential(fx.profiles.Sine(0.1), bristle),
@@ -51,16 +51,16 @@ def files(folder):
 
 
 def test_a_later_process_loads_what_an_earlier_one_traced(tmp_path, traced):
-    first = Program(TIPS)(*tips())
+    first = Program(FORCES)(*wells())
     assert len(traced) == len(files(tmp_path)) == 1
-    again = Program(TIPS)(*tips())
-    plain = jax.jit(TIPS)(*tips())
+    again = Program(FORCES)(*wells())
+    plain = jax.jit(FORCES)(*wells())
     assert len(traced) == 1
     assert type(again) is type(first) is type(plain)
     for a, b, c in zip(first, again, plain, strict=True):
         np.testing.assert_array_equal(a, b)
         np.testing.assert_allclose(b, c, rtol=1e-14)
-    other = Program(TIPS)(*tips(fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.2)))
+    other = Program(FORCES)(*wells(fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.2)))
     assert len(traced) == 1  # numbers are no part of a program
     assert not np.array_equal(other[1], first[1])
 
@@ -73,8 +73,8 @@ def test_other_programs_are_told_apart(tmp_path, traced):
     Program(HEIGHTS)(fx.profiles.Fourier([0.1, 0.2], [0.1, 0.2]), few)
     Program(HEIGHTS)(fx.profiles.Fourier([0.1], [0.1]), few)
     assert len(traced) == len(files(tmp_path)) == 5
-    Program(TIPS)(*tips())
-    Program(TIPS)(*tips(fx.bristles.VerticalSpring(1.0, 2.0, 1.0)))
+    Program(FORCES)(*wells())
+    Program(FORCES)(*wells(fx.bristles.VerticalSpring(1.0, 2.0, 1.0)))
     assert len(traced) == len(files(tmp_path)) == 7
 
 
@@ -122,13 +122,13 @@ def test_named_functions_of_users_are_foreign():
 
 
 def test_files_that_do_not_load_are_made_again(tmp_path, traced):
-    first = Program(TIPS)(*tips())
+    first = Program(FORCES)(*wells())
     (path,) = files(tmp_path)
     path.write_bytes(path.read_bytes()[:100])
-    again = Program(TIPS)(*tips())
+    again = Program(FORCES)(*wells())
     np.testing.assert_array_equal(first[1], again[1])
     assert len(traced) == 2
-    Program(TIPS)(*tips())
+    Program(FORCES)(*wells())
     assert len(traced) == 2  # and are whole then
 
 
@@ -136,8 +136,8 @@ def test_a_folder_that_cannot_be_written_costs_time_only(tmp_path, traced):
     (tmp_path / "file").write_text("in the way")
     with pytest.warns(UserWarning, match=r"not kept in .*file.* \(Not a directory\)"):
         kept_programs.keep_in(tmp_path / "file")
-    found = Program(TIPS)(*tips())
-    np.testing.assert_allclose(found[1], jax.jit(TIPS)(*tips())[1], rtol=1e-14)
+    found = Program(FORCES)(*wells())
+    np.testing.assert_allclose(found[1], jax.jit(FORCES)(*wells())[1], rtol=1e-14)
 
 
 def test_derivatives_and_batches_of_programs_that_are_kept(traced):
@@ -195,8 +195,10 @@ def test_files_that_another_process_drops_meanwhile_are_no_failure(tmp_path, mon
 
 def test_functions_and_settings_are_told_apart():
     structure = jax.tree_util.tree_structure((0,))
-    tips, heights = (kept_programs._described(fn, structure, ()) for fn in (TIPS, HEIGHTS))
-    assert tips != heights
+    forces, heights = (
+        kept_programs._described(fn, structure, ()) for fn in (FORCES, HEIGHTS)
+    )
+    assert forces != heights
     with jax.default_matmul_precision("bfloat16"):
-        assert kept_programs._described(TIPS, structure, ()) != tips
-    assert kept_programs._described(TIPS, structure, ()) == tips
+        assert kept_programs._described(FORCES, structure, ()) != forces
+    assert kept_programs._described(FORCES, structure, ()) == forces
