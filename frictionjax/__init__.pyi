@@ -1,4 +1,5 @@
 from . import bristles as bristles
+from . import effects as effects
 from . import loads as loads
 from . import measured as measured
 from . import plot as plot

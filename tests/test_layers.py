@@ -22,7 +22,7 @@ FLOORS = {
     "": [
         {"_checks"},
         {"_compile", "_text", "numerics", "intervals"},
-        {"profiles", "bristles", "supports", "loads"},
+        {"profiles", "bristles", "supports", "loads", "effects"},
         {"tables"},
         {"model"},
         {"measured", "limit", "wiggly", "certificate", "slide_laws"},
@@ -46,6 +46,7 @@ FLOORS = {
         {"plans_ahead", "attempts"},
         {"predicted_work"},
         {"batch"},
+        {"arrays"},
         {"trajectory"},
     ],
     "design": [

@@ -5,6 +5,7 @@ from .bristle import AbstractBristle as AbstractBristle
 from .bristle import Rod as Rod
 from .custom import Custom as Custom
 from .homothetic import Homothetic as Homothetic
+from .linear import Linear as Linear
 from .pulling import normal_force as normal_force
 from .pulling import pulling_note as pulling_note
 from .pulling import pulling_text as pulling_text

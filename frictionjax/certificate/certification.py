@@ -15,7 +15,8 @@ from .._checks import (
     require_real,
     with_nan,
 )
-from ..model import Scene, coefficients_jit, known_scene, require_reach, require_times
+from ..effects import Engine
+from ..model import Scene, coefficients_jit, require_reach, require_times, scene_for
 from .curve import Force, along_curve, force_of
 from .settings import SETTINGS
 from .transits import folds_of, missing_forces, viscosity_ratio
@@ -82,7 +83,7 @@ def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.
     """
-    scene = known_scene(scene)
+    scene = scene_for(Engine.CERTIFICATE, scene)
     require_real("eps", eps, "eps > 0", lambda e: e > 0)
     require_real("gamma", gamma, "gamma > 0", lambda g: g > 0)
     ts, z = _require_curve(scene, ts, z)

@@ -9,13 +9,14 @@ import xarray as xr
 from tqdm import tqdm
 
 from .._checks import grid_of, require, require_flags, require_real, require_whole, with_nan
+from ..effects import Engine
 from ..model import (
     Scene,
     coefficients_jit,
-    known_scene,
     require_reach,
     require_times,
     require_told_apart,
+    scene_for,
 )
 from ..sweeps import explain, origin
 from ..wiggly import ENDED, Status, accuracies_of, is_ours, solver_of
@@ -244,7 +245,7 @@ def work_precision(
     Mazzia and C. Magherini, Test Set for Initial Value Problem Solvers, release 2.4
     (2008).
     """
-    scene = known_scene(scene)
+    scene = scene_for(Engine.COST, scene)
     require_flags(progress=progress)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     names, labels, asked = _required(methods, accuracies, repeats, seconds)

@@ -7,7 +7,8 @@ import numpy as np
 
 from .._checks import grid_of, require, require_flags, require_real, with_nan
 from ..convergence import STATE, Fit, fit_with_law
-from ..model import Scene, known_scene
+from ..effects import Engine
+from ..model import Scene, scene_for
 from ..slide_laws import NO_LAW, Law, SlideData, predict_errors
 from ..sweeps import sweep
 from ..wiggly import Status
@@ -94,7 +95,7 @@ def order_cost(
 
     Raises `ValueError` for arguments out of range, or less than two eps.
     """
-    scene = known_scene(scene)
+    scene = scene_for(Engine.COST, scene)
     known = grid_of("eps", eps)
     require(known.size >= 2, "eps", known, "a largest and a smallest")
     require_real("within", within, "within > 0", lambda w: w > 0)

@@ -14,8 +14,9 @@ from .._checks import (
     require_real,
     with_nan,
 )
+from ..effects import Engine
 from ..limit import require_start_in_strip
-from ..model import Scene, known_scene, require_reach, require_times, require_told_apart
+from ..model import Scene, require_reach, require_times, require_told_apart, scene_for
 from ..wiggly import OURS, Workload, accuracies_of, is_ours, require_accuracy, workload
 from .machine_cost import ELSEWHERE, MachineCost, known_machine, machine_cost
 from .settings import SETTINGS
@@ -116,7 +117,7 @@ def predict_cost(
 
     Raises `ValueError` for arguments out of range, as `sweep` does.
     """
-    scene = known_scene(scene)
+    scene = scene_for(Engine.COST, scene)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
     require_flags(measure=measure)

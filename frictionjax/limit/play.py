@@ -19,6 +19,7 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program, padded_size
+from ..effects import Engine
 from ..loads import AbstractPull
 from ..model import (
     SETTINGS,
@@ -26,10 +27,10 @@ from ..model import (
     Scene,
     coefficients_jit,
     dissipation_potential,
-    known_scene,
     known_turning_points,
     padded_edges,
     require_times,
+    scene_for,
     strip_of,
     strips_at,
 )
@@ -165,7 +166,7 @@ def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     allowed interval). Source: the play operator, see A. Mielke and T. Roubicek,
     Rate-Independent Systems (2015).
     """
-    scene = known_scene(scene)
+    scene = scene_for(Engine.LIMIT, scene)
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
     return _solve(scene, coefficients_jit(scene.potential), ts)

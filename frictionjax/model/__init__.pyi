@@ -1,6 +1,7 @@
 from .admissibility import require_admissible as require_admissible
 from .admissibility import require_reach as require_reach
 from .admissibility import rounding_of_alpha as rounding_of_alpha
+from .composition import scene_for as scene_for
 from .friction_coefficients import Coefficients as Coefficients
 from .friction_coefficients import coefficients as coefficients
 from .friction_coefficients import coefficients_jit as coefficients_jit
@@ -20,6 +21,7 @@ from .scene import require_told_apart as require_told_apart
 from .settings import SETTINGS as SETTINGS
 from .strip import strip_of as strip_of
 from .strip import strips_at as strips_at
+from .summed_potential import SummedPotential as SummedPotential
 from .tabulated import TabulatedScene as TabulatedScene
 from .tabulated import tabulated_scene as tabulated_scene
 from .tabulated_potential import potential_at_rest as potential_at_rest

@@ -19,6 +19,7 @@ from .friction_coefficients import Coefficients, coefficients_jit
 from .given_rest import require_given
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
 from .settings import SETTINGS
+from .summed_potential import SummedPotential
 from .tabulated_potential import potential_in_reach
 
 _EPS64 = float(np.finfo(np.float64).eps)
@@ -135,6 +136,8 @@ def require_reach(potential: AbstractPotential, eps: Float[ArrayLike, "*shape"])
     """
     if not is_concrete(potential, eps):
         return
+    while isinstance(potential, SummedPotential):  # all reach where one does
+        potential = potential.single
     sizes = np.unique(np.asarray(eps, dtype=float))
     fits = _fits(potential, sizes)
     if np.all(fits):

@@ -12,6 +12,7 @@ from .._compile import Program
 from ..bristles import pulling_text
 from ..numerics import periodic_extrema, slope_of
 from .potentials import AbstractPotential, BristlePotential
+from .summed_potential import SummedPotential
 from .tabulated_potential import potential_at_rest
 
 OfBristle = Any
@@ -120,6 +121,8 @@ def coefficients_jit(potential: AbstractPotential) -> Coefficients:
     found = _FOUND.get(potential)
     if found is None:
         found = _of_tables(potential_at_rest(potential))
+        if isinstance(potential, SummedPotential):  # of no bristle
+            found = Coefficients(found.rho_plus, found.rho_minus)
         if is_concrete(potential):
             _FOUND.put(potential, found)
     return found

@@ -13,8 +13,10 @@ from .._checks import Real, checked, require, require_x64, with_nan
 from ..bristles import AbstractBristle
 from ..profiles import AbstractSampled
 from .admissibility import admissible_coefficients
+from .composition import composed
 from .friction_coefficients import Coefficients, with_errors
 from .potentials import AbstractPotential, BristlePotential, potential
+from .scene import Scene
 from .settings import SETTINGS
 
 _SPACING = float(np.finfo(np.float64).eps)
@@ -41,7 +43,9 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
             type(scene_or_profile).__name__,
             "a Scene, or a profile and a bristle",
         )
-        wiggle = checked(scene_or_profile.potential)
+        known = isinstance(scene_or_profile, Scene)
+        scene = composed(scene_or_profile) if known else scene_or_profile
+        wiggle = checked(scene.potential)
     else:
         wiggle = potential(scene_or_profile, bristle)
     require_x64(wiggle)

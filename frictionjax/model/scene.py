@@ -31,6 +31,7 @@ from .._checks import (
 )
 from .._compile import Program
 from ..bristles import AbstractBristle, pulling_text
+from ..effects import AbstractEffect, require_together
 from ..loads import AbstractLoad, AbstractPull
 from ..profiles import AbstractProfile
 from ..supports import AbstractSupport
@@ -92,14 +93,8 @@ class Scene(eqx.Module):
         self.support = _part("support", support, AbstractSupport)
         load = _part("load", load, AbstractLoad)
         require(duration is not None, "scene.duration", "None", "a time > 0 in s")
-        require(
-            isinstance(effects, tuple | list) and len(effects) == 0,
-            "scene.effects",
-            effects if effects is None else repr(effects),
-            "(): this version has no optional effects",
-        )
         self.duration, self.z0 = as_real(duration), as_real(z0)
-        self.effects = tuple(effects)
+        self.effects = _effects_of(effects)
         require_real("scene.duration", self.duration, "duration > 0", lambda t: t > 0)
         require_real("scene.z0", self.z0, "a position in m")
         self.load, self.turns = _with_turns(load, self.duration)
@@ -165,6 +160,16 @@ def _part(name: str, part: Any, kind: type) -> Any:
     needs = f"a part of frictionjax.{name}s"
     require(isinstance(part, kind), f"scene.{name}", type(part).__name__, needs)
     return checked(part)
+
+
+def _effects_of(given: Any) -> tuple[AbstractEffect, ...]:
+    row = isinstance(given, tuple | list)
+    good = row and all(isinstance(effect, AbstractEffect) for effect in given)
+    needs = "effects of frictionjax.effects, as (effects.LeadingOrder(),)"
+    require(good, "scene.effects", given, needs)
+    effects = tuple(checked(effect) for effect in given)
+    require_together(effects)
+    return effects
 
 
 def _with_turns(load: AbstractLoad, duration: Any) -> tuple[AbstractLoad, int]:

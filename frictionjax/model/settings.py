@@ -51,6 +51,11 @@ class Settings(NamedTuple):
     spacings: int = 8  # of l: two each of l, z and Phi', and of what z is solved from
     newton: int = 6  # sweeps: H' is a parabola at worst, where xi is close to rho
 
+    # Sums of potentials (`summed_series.py`).
+    sum_places: int = 1024  # samples a period of one tip's energy
+    sum_negligible: float = 1e-15  # of the largest harmonic: what is left out
+    sum_left: float = 1e-9  # of the sum of all forces: less is rounding, times 1e6
+
     # Potentials and strips (`potentials.py`, `strip.py`).
     zoom: int = 256  # samples between two neighbours of a scan: its minimum to 1e-8
     times: int = 512  # of one compiled call

@@ -5,13 +5,19 @@ from typing import Any
 from .._checks import is_concrete
 from ..tables import bristle_at_rest, bristle_series, profile_tables
 from .potentials import AbstractPotential, BristlePotential
+from .summed_potential import SummedPotential
+from .summed_series import surface_of_sum
 
 _MARGIN = 1.01  # heights beyond those of the samples
 
 
 def potential_at_rest(potential: AbstractPotential) -> AbstractPotential:
     """A known potential as its coefficients see it, eps -> 0; itself where it is given."""
-    if not isinstance(potential, BristlePotential) or not is_concrete(potential):
+    if not is_concrete(potential):
+        return potential
+    if isinstance(potential, SummedPotential):
+        return surface_of_sum(potential, potential_at_rest(potential.single), 0.0)
+    if not isinstance(potential, BristlePotential):
         return potential
     tables = profile_tables(potential.profile)
     return BristlePotential(tables.planning, bristle_at_rest(potential.bristle))
@@ -22,8 +28,12 @@ def tabulated_potentials(
 ) -> tuple[AbstractPotential, AbstractPotential]:
     """A known potential for eps up to `highest` (m): as planning evaluates it, and lanes.
 
-    Itself where it is given.
+    Itself where it is given. A sum of several tips' is that at `highest`, and at no other
+    eps.
     """
+    if isinstance(potential, SummedPotential):
+        single, _ = tabulated_potentials(potential.single, highest)
+        potential = surface_of_sum(potential, single, highest)
     if not isinstance(potential, BristlePotential):
         return potential, potential
     tables = profile_tables(potential.profile)

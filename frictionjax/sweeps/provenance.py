@@ -23,6 +23,7 @@ _MEANING = {
     "gamma": ("1", "exponent of the viscosity eps^gamma"),
     "time": ("s", "time"),
     "z": ("m", "state of the wiggly system, z_eps"),
+    "z_spread": ("m", "standard deviation of the states of an array's bristles"),
     "sup_error": ("m", "sup over [0, T] of |z_eps - z|"),
     "strip_excess": ("m", "sup over [0, T] of the distance of z_eps from the strip"),
     "status": (None, "how the cell ended"),

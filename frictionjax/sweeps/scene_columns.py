@@ -10,7 +10,7 @@ from .._checks import cells_of, viscosity_of
 from ..limit import LimitSolution, solve_limit
 from ..model import Scene, coefficients_jit, strips_at, tabulated_scene
 from ..slide_laws import slide_data
-from ..wiggly import Status, integrate_cells
+from ..wiggly import Status, integrate_scene
 
 DIMS = ("gamma", "eps", "time")
 SUPREMA = ("sup_error", "strip_excess", "survey_error")
@@ -80,7 +80,7 @@ def _by_lanes(
 ) -> dict | None:
     """Values of all cells, by name; None where lanes do not serve."""
     lane_eps, lane_gamma = cells_of(request.eps, request.gamma)
-    found = integrate_cells(
+    found, apart = integrate_scene(
         scene=scene,
         eps=lane_eps,
         gamma=lane_gamma,
@@ -94,6 +94,8 @@ def _by_lanes(
     if found is None:
         return None
     values = found._asdict()
+    if apart is not None:
+        values["z_spread"] = apart
     values["status"] = values["status"].astype(np.int8)
     values["how"] = values["how"].astype(np.int8)
     values["bracket"] = values.pop("gap")

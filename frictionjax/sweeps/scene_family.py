@@ -1,19 +1,20 @@
 """Scenes of one sweep: one alone, or several under their labels."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import as_text, require
+from ..effects import Engine, require_done
 from ..limit import require_start_in_strip
 from ..model import (
     Scene,
-    known_scene,
     require_reach,
     require_times,
     require_told_apart,
+    scene_for,
 )
 from ..slide_laws import LAW_DIMS
 from .provenance import scene_text
@@ -21,10 +22,14 @@ from .scene_columns import Columns, SceneColumns
 
 
 class SceneFamily(NamedTuple):
-    """Scenes and what they are called; `labels` is None for one that was given alone."""
+    """Scenes and what they are called; `labels` is None for one that was given alone.
+
+    `asked`: as they were given, effects of the potential not yet worked in.
+    """
 
     scenes: list[Scene]
     labels: list[str] | list[int] | None
+    asked: list[Scene]
 
     def each(self, work: Callable[[Scene], Any]) -> list[Any]:
         """What `work` makes of each; `ValueError`s name the scene that they are of."""
@@ -39,22 +44,27 @@ class SceneFamily(NamedTuple):
         return made
 
 
-def family_of(given: Any, eps: Float[np.ndarray, " e"]) -> SceneFamily:
+def family_of(
+    given: Any, eps: Float[np.ndarray, " e"], engines: Sequence[Engine]
+) -> SceneFamily:
     """The scenes of an argument, each as it can be solved at these eps (m).
 
     Raises `ValueError` for what is neither a scene nor a list or mapping of them, and as
     `sweep` does for each of them.
     """
     if isinstance(given, Mapping):
-        family = SceneFamily(list(given.values()), _labels(list(given)))
+        asked, labels = list(given.values()), _labels(list(given))
     elif isinstance(given, list | tuple):
-        family = SceneFamily(list(given), list(range(len(given))))
+        asked, labels = list(given), list(range(len(given)))
     else:
-        family = SceneFamily([given], None)
-    require(family.scenes, "scene", as_text(given), "a Scene, or several")
+        asked, labels = [given], None
+    require(asked, "scene", as_text(given), "a Scene, or several")
+    family = SceneFamily(asked, labels, asked)
 
     def solvable(scene: Any) -> Scene:
-        scene = known_scene(scene)
+        for engine in engines:
+            require_done(getattr(scene, "effects", ()), engine)
+        scene = scene_for(Engine.SWEEP, scene)
         require_start_in_strip(scene)
         require_reach(scene.potential, eps)
         require_told_apart(scene, eps)

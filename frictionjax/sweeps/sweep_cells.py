@@ -7,6 +7,7 @@ import numpy as np
 
 from .._checks import as_real, grid_of, require_flags, with_nan
 from .._compile import progress_bar
+from ..effects import Engine, engine_of
 from ..model import Scene
 from ..wiggly import is_ours, require_accuracy, warn_of_failed
 from .provenance import describe
@@ -65,7 +66,7 @@ def sweep(
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
     require_flags(progress=progress, dissipation=dissipation, suprema=suprema)
-    family = family_of(scene, eps)
+    family = family_of(scene, eps, engines=(Engine.SWEEP, engine_of(method)))
     request = SweepRequest(
         eps=eps,
         gamma=gamma,
@@ -82,7 +83,7 @@ def sweep(
     columns = (
         found[0].columns
         if family.labels is None
-        else columns_of_family(found, family.scenes)
+        else columns_of_family(found, family.asked)
     )
     codes = columns["status"][1]
     warn_of_failed(codes, gamma, eps, family.labels or (), frames=1)  # `with_nan`
@@ -91,7 +92,7 @@ def sweep(
         coords["scene"] = np.array(family.labels)
     # All variables at once: one by one they are aligned anew, 1 ms each.
     data = xr.Dataset(columns, coords=coords)
-    data = describe(data, family.scenes, request.accuracy, found[0].method)
+    data = describe(data, family.asked, request.accuracy, found[0].method)
     if family.labels is None:
         data.attrs |= found[0].laws
     own = dict.fromkeys(one.compiled_for for one in found if one.compiled_for)

@@ -1,3 +1,4 @@
+from .arrays import integrate_scene as integrate_scene
 from .batch import integrate_cells as integrate_cells
 from .batch import prepare_cells as prepare_cells
 from .equation import ENDED as ENDED

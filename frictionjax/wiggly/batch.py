@@ -2,12 +2,13 @@
 
 import threading
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from .._checks import quiet_where_extreme, viscosity_of
 from .._compile import WORKERS, crew
-from ..model import Scene, tabulated_scene
+from ..model import Scene, SummedPotential, tabulated_scene
 from ..numerics import rows_of
 from .attempts import AttemptContext, Cellwise, SoFar, merged
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
@@ -16,7 +17,7 @@ from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, Sums, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, path_of
-from .plan import Planned, lane_scene
+from .plan import Planned, in_phases, lane_scene
 from .plans_ahead import plan_of_cells
 from .rosenbrock import Tableau
 from .settings import SETTINGS
@@ -37,6 +38,7 @@ def integrate_cells(
     report: Report = lambda share: None,
     suprema: bool = True,
     tableau: Tableau = SETTINGS.tableau,
+    phase: np.ndarray | None = None,
 ) -> CellResults | None:
     """Every cell (eps, gamma), shape (cells,): values at `ts` and sums over [0, T].
 
@@ -47,27 +49,75 @@ def integrate_cells(
     as that. Where neither energies are `balanced` nor `suprema` wanted, "windowed" and
     "auto" leave out all slips between the times.
     `report` is told the share of each batch of jobs that is done. `tableau`: another scheme
-    than the lanes' own, to compare with. None where the load turns more often than the
-    scene has room for.
+    than the lanes' own, to compare with. `phase` (cells,): where on the surface each
+    cell's bristle stands, in periods; None: all at 0. None where the load turns more often
+    than the scene has room for.
     """
+
+    def cells(chosen: Any) -> CellResults | None:
+        return _integrated(
+            scene=scene,
+            eps=eps[chosen],
+            gamma=gamma[chosen],
+            phase=None if phase is None else phase[chosen],
+            ts=ts,
+            accuracy=accuracy,
+            method=method,
+            wanted=_sums(balanced, suprema),
+            report=report,
+            tableau=tableau,
+        )
+
+    if not isinstance(scene.potential, SummedPotential):
+        return cells(slice(None))
+    # A sum is a surface of its own at every eps.
+    found: dict[str, np.ndarray] = {}
+    for size in np.unique(eps):
+        those = np.flatnonzero(eps == size)
+        part = cells(those)
+        if part is None:
+            return None
+        for name, values in part._asdict().items():
+            found.setdefault(name, np.empty((eps.size, *values.shape[1:]), values.dtype))
+            found[name][those] = values
+    return CellResults(**found)
+
+
+def _integrated(
+    scene: Scene,
+    eps: np.ndarray,
+    gamma: np.ndarray,
+    phase: np.ndarray | None,
+    ts: np.ndarray,
+    accuracy: float,
+    method: str,
+    wanted: Sums,
+    report: Report,
+    tableau: Tableau,
+) -> CellResults | None:
     tables = tabulated_scene(scene, eps)
     path = path_of(tables)
     if path is None:
         return None
     accuracy = min(accuracy, SETTINGS.loosest)
     lanes = lane_scene(tables)
-    wanted = _sums(balanced, suprema)
     _prepare(lanes, eps.size, ts.size, wanted, tableau)
+    # Bristles of a cell have one plan.
+    own = whose = np.arange(eps.size)
+    if phase is not None:
+        _, own, whose = np.unique(eps + 1j * gamma, return_index=True, return_inverse=True)
     plan = plan_of_cells(
         scene=scene,
         tables=tables,
         path=path,
-        eps=eps,
-        gamma=gamma,
+        eps=eps[own],
+        gamma=gamma[own],
         times=ts.size,
         accuracy=accuracy,
         method=method,
     )
+    if phase is not None:
+        plan = in_phases(tables, path, rows_of(plan, whose), phase)
     sweep = AttemptContext(
         scene=tables,
         path=path,

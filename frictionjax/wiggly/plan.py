@@ -7,7 +7,7 @@ import numpy as np
 
 from .._checks import Real, viscosity_of
 from .._compile import Program, in_chunks
-from ..model import TabulatedScene, padded_edges
+from ..model import AbstractPotential, TabulatedScene, padded_edges
 from ..tables import bent_part
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import CellBounds, Requirements, wells_of
@@ -74,6 +74,7 @@ def ground_of(
         start_well=start[0],
         start_tip=start[1],
         relaxed=_relaxation(scene, path, eps, gamma),
+        phase=np.zeros(eps.size),
         fast_slides=none_known(eps.size),
     )
 
@@ -195,6 +196,34 @@ class Planned(NamedTuple):
     ground: CellBounds
     needs: Requirements
     way: np.ndarray
+
+
+@Program
+def _tips(potential: AbstractPotential, states, eps):
+    return jax.vmap(potential.tip)(states, eps)
+
+
+def in_phases(scene: TabulatedScene, path: Path, plan: Planned, phase: np.ndarray):
+    """Plans of bristles that stand elsewhere on the surface, `phase` in periods, (cells,).
+
+    `V_eps(z + eps phase)`: all is as at z + eps phase but for the number of the well.
+    """
+    ground, folds = plan.ground, plan.ground.folds
+    ahead = ground.eps * phase
+    at = scene.z0 + ahead
+    well, tip = in_chunks(_tips, SETTINGS.phases, (scene.potential,), (at, ground.eps))
+    offset = plan.needs.lattice_offset - path.direction * phase[:, None]
+    return plan._replace(
+        ground=ground._replace(
+            folds=folds._replace(
+                state_plus=folds.state_plus - ahead, state_minus=folds.state_minus - ahead
+            ),
+            start_well=well - phase,
+            start_tip=tip,
+            phase=phase,
+        ),
+        needs=plan.needs._replace(lattice_offset=np.mod(offset, 1.0)),
+    )
 
 
 def planned(

@@ -19,6 +19,8 @@ class Settings(NamedTuple):
     # were off by up to 6 times an accuracy of 1e-1, and twice one of 1e-2.
     loosest: float = 1e-3
     cells: int = 2  # in a compiled call, where one cell takes 0.1 ms
+    phases: int = 1024  # bristles in a compiled call that finds their tips
+    bristles: int = 4096  # of an array at once: 31 times take 0.2 GB
     slower: float = 0.1  # of the largest speed: there lags are compared with those at it
     square: float = 1.8  # powers of the speed that count as its square
     after_slip: float = 0.05  # at which lanes may set off

@@ -21,16 +21,17 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program
+from ..effects import engine_of
 from ..model import (
     Scene,
     TabulatedScene,
-    known_scene,
     require_reach,
     require_times,
     require_told_apart,
+    scene_for,
     tabulated_scene,
 )
-from .batch import integrate_cells
+from .arrays import integrate_scene
 from .equation import Status, StepPlan, plan_steps, require_accuracy
 from .sequential import MAX_STEPS, integrate, is_ours, solver_of
 
@@ -47,7 +48,8 @@ class Solution(CodedResult, eqx.Module):
     every slip since z0 is integrated, 1 where a bracket from below and above has closed, 2
     where one has that set off from a slip map, as wide as the map's measured error;
     `bracket` (n,): how closely, in eps; `sampled`: share of the way that is known from some
-    of its slips, NaN where only values at `ts` were wanted.
+    of its slips, NaN where only values at `ts` were wanted. Of a `CompliantArray` values
+    are means over its bristles, and `spread` (n,) is their standard deviation in m.
     """
 
     ts: Float[Array, " n"]
@@ -196,7 +198,7 @@ def _solve(problem: _Problem, options: _Options) -> Solution:
 
 def _through_lanes(scene, eps, gamma, ts, accuracy, method, balanced) -> Solution | None:
     """The solution by lanes; None where the scene has no room for the load's turns."""
-    found = integrate_cells(
+    found, apart = integrate_scene(
         scene=scene,
         eps=np.atleast_1d(float(eps)),
         gamma=np.atleast_1d(float(gamma)),
@@ -219,6 +221,8 @@ def _through_lanes(scene, eps, gamma, ts, accuracy, method, balanced) -> Solutio
         "bracket": found.gap[0],
         "sampled": float(found.sampled[0]),
     }
+    if apart is not None:
+        counts["spread"] = apart[0]
     return Solution(
         ts,
         jnp.asarray(found.z[0]),
@@ -282,7 +286,7 @@ def solve(
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact (`G > 0` fails), with the largest eps allowed.
     """
-    scene = known_scene(scene)
+    scene = scene_for(engine_of(method), scene)
     require_numbers("eps", eps, "one number eps > 0", lambda e: (e > 0) & (e.ndim == 0))
     allowed = "one number gamma > 0"
     require_numbers("gamma", gamma, allowed, lambda g: (g > 0) & (g.ndim == 0))

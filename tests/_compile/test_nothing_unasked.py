@@ -94,7 +94,7 @@ def test_a_scene_without_effects_is_the_same_program():
 
 
 def test_unknown_effects_are_refused():
-    with pytest.raises(ValueError, match=r"scene\.effects = .*needs \(\)"):
+    with pytest.raises(ValueError, match=r"scene\.effects = .*needs effects"):
         fx.Scene(
             SCENE.profile, SCENE.bristle, SCENE.support, SCENE.load, 3.0, effects=("wind",)
         )

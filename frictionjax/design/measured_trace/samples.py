@@ -19,7 +19,8 @@ from ..._checks import (
     write_whole,
 )
 from ..._compile import Program
-from ...model import Scene, known_scene, require_times
+from ...effects import Engine
+from ...model import Scene, require_times, scene_for
 from ...wiggly import solve
 from .file import TRACE_QUANTITIES, trace_columns
 
@@ -148,7 +149,7 @@ def simulate_trace(
     require(quantity in TRACE_QUANTITIES, "quantity", quantity, "one of force, z")
     require_whole("seed", seed, 0)
     require_real("noise", noise, "noise >= 0", lambda v: v >= 0)
-    scene = known_scene(scene)
+    scene = scene_for(Engine.TRACE, scene)
     ts = np.asarray(require_times(scene, ts, 301))
     found = solve(scene, eps, gamma, ts, accuracy, dissipation=False)
     require(found.ok, "scene", found.status.message, "a trajectory that can be trusted")

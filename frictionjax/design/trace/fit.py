@@ -8,7 +8,8 @@ import numpy as np
 
 from ..._checks import require, require_flags, require_real, require_whole, with_nan
 from ..._compile import waiting
-from ...model import Scene, known_scene
+from ...effects import Engine
+from ...model import Scene, scene_for
 from ..measured_trace import Trace
 from .flow import Flow
 from .gauss_newton import Descent, Programs, Step, gauss_newton
@@ -65,7 +66,7 @@ def fit_trace(
     Raises `ValueError` for a scene without profile and bristle, times outside
     [0, duration], forces that the support cannot have, and numbers out of range.
     """
-    scene = known_scene(scene)
+    scene = scene_for(Engine.TRACE, scene)
     known = isinstance(trace, Trace)
     require(known, "trace", type(trace).__name__, "a Trace")
     require_whole("harmonics", harmonics)

@@ -18,6 +18,8 @@ class CellBounds(NamedTuple):
     `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
     most. `power_plus`, `power_minus`: of the speed that lags grow with. `shift_plus`,
     `shift_minus`: by how much in m folds at this eps differ from rho.
+    `phase`: how far ahead on the surface the bristle stands, in periods: its wells have
+    numbers less by that.
     `relaxed`: time in s from which on a start outside the strip is forgotten, by Lemma 7.
     `fast_slides`: tuples of `FastSlide`, in time.
     """
@@ -33,6 +35,7 @@ class CellBounds(NamedTuple):
     start_well: np.ndarray
     start_tip: np.ndarray
     relaxed: np.ndarray
+    phase: np.ndarray
     fast_slides: np.ndarray
 
     def power(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
@@ -252,8 +255,9 @@ def _bracket(ground: CellBounds, cell, direction, level, known, share):
     ahead = np.ceil(at + shift / eps + SETTINGS.gap)
     behind = np.floor(at - (shift + lag) / eps - SETTINGS.gap) - 1
     start_well, start_tip = ground.start_well[cell], ground.start_tip[cell]
+    phase = ground.phase[cell]
     return (
-        np.where(known, start_well, sign * behind),
-        np.where(known, start_well, sign * ahead),
+        np.where(known, start_well, sign * behind - phase),
+        np.where(known, start_well, sign * ahead - phase),
         np.where(known, start_tip, place),
     )

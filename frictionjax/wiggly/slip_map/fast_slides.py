@@ -186,7 +186,8 @@ class FastSlideFinder(NamedTuple):
         states = self.states(some.cell, some.well, some.tip)
         pull = pull_at(self.scene, some.time, states)
         length = one_transit_time(track, pull, self.viscosity[some.cell])
-        well = np.round(some.well + some.tip + some.sign * way - place)
+        wells = np.round(some.tip + some.sign * way - place)  # `some.well` may be no whole
+        well = some.well + wells
         return some.time + length, well
 
     def fast_slides(self, some: Candidates) -> list[FastSlide | None]:

@@ -1,0 +1,12 @@
+"""Effects: what a scene may call for beyond the plain system, one a file."""
+
+from .abstract import AbstractEffect as AbstractEffect
+from .abstract import Stage as Stage
+from .compliant_array import CompliantArray as CompliantArray
+from .engines import Engine as Engine
+from .engines import does as does
+from .engines import engine_of as engine_of
+from .engines import require_done as require_done
+from .engines import require_together as require_together
+from .leading_order import LeadingOrder as LeadingOrder
+from .rigid_array import RigidArray as RigidArray

@@ -1,0 +1,30 @@
+"""Many bristles on one root, each with a support of its own."""
+
+from typing import ClassVar
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from .._checks import as_real
+from .abstract import AbstractEffect, Stage
+from .phases import require_row
+
+
+class CompliantArray(AbstractEffect):
+    """N bristles on one root, each held by its own support and pulled by the same load.
+
+    Bristle i moves in `V_eps(z_i + eps offset_i)`. `offsets`: where they stand, in periods
+    of the surface, shape (N,). What is told of an array is the mean of its bristles: state,
+    dissipation, force. Its friction is N times that of one; how much it ripples falls with
+    N, as `1/sqrt(N)` where bristles stand anywhere. Elastic coupling between bristles is
+    not simulated.
+
+    Raises `ValueError` for offsets that are no row of finite numbers.
+    """
+
+    stage: ClassVar[Stage] = Stage.STATE
+
+    offsets: Float[Array, " n"] = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        require_row("effects.CompliantArray.offsets", self.offsets, "places in periods")

@@ -1,0 +1,79 @@
+"""Which engine does which effect: one table, and what to do instead where it says no."""
+
+import enum
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Any
+
+from .abstract import AbstractEffect, Stage
+
+
+class Engine(enum.Enum):
+    """What a scene is given to, by the name of the call."""
+
+    LIMIT = "solve_limit"
+    RESOLVED = 'solve(method="resolved")'
+    WINDOWED = 'solve(method="windowed")'
+    PATH = "solve by a solver of diffrax, and for derivatives"
+    SWEEP = "sweep"
+    CERTIFICATE = "certify"
+    COST = "work_precision, predict_cost and fit_budget"
+    TRACE = "fit_trace"
+
+
+def engine_of(method: Any) -> Engine:
+    """The engine that a `method` of `solve` and `sweep` asks for."""
+    if not isinstance(method, str):
+        return Engine.PATH
+    ours = {"auto": Engine.RESOLVED, "resolved": Engine.RESOLVED}  # auto: what can be done
+    return (ours | {"windowed": Engine.WINDOWED}).get(method, Engine.PATH)
+
+
+_E = Engine
+_DOES: dict[str, frozenset[Engine]] = {
+    "CompliantArray": frozenset({_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP}),
+}
+"""Of effects that are no part of the potential: the engines that do them."""
+
+_INSTEAD: dict[tuple[str, Engine], str] = {
+    ("CompliantArray", _E.PATH): "methods of its own, for scenes of known numbers",
+    ("CompliantArray", _E.CERTIFICATE): "a bristle at a time: a scene without it",
+}
+"""What to do where an engine does not do an effect, after "needs"."""
+
+_APART: dict[frozenset[str], str] = {}
+"""Pairs that no scene holds together, and why."""
+
+
+def does(engine: Engine, effect: AbstractEffect) -> bool:
+    """Whether an engine does an effect."""
+    if effect.stage == Stage.POTENTIAL:
+        return True
+    return engine in _DOES.get(_name(effect), ())
+
+
+def require_done(effects: Sequence[AbstractEffect], engine: Engine) -> None:
+    """Raise `ValueError` naming the first effect that an engine does not do."""
+    for effect in effects:
+        if does(engine, effect):
+            continue
+        name = _name(effect)
+        others = [each.value for each in Engine if does(each, effect)]
+        instead = _INSTEAD.get((name, engine), f"one of {', '.join(others) or 'none'}")
+        raise ValueError(
+            f"scene.effects: {engine.value} does not do {name}: needs {instead}"
+        )
+
+
+def require_together(effects: Sequence[AbstractEffect]) -> None:
+    """Raise `ValueError` for two of a kind, or two that exclude each other."""
+    for first, second in combinations(effects, 2):
+        pair = frozenset({_name(first), _name(second)})
+        why = "one of each kind" if len(pair) == 1 else _APART.get(pair)
+        if why is not None:
+            names = f"{_name(first)} and {_name(second)}"
+            raise ValueError(f"scene.effects = {names}: needs {why}")
+
+
+def _name(effect: Any) -> str:
+    return type(effect).__name__

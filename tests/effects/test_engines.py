@@ -1,0 +1,106 @@
+"""Which engine does which effect."""
+
+import itertools
+import random
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax.effects import AbstractEffect, Engine, Stage, does
+
+EFFECTS = {
+    "LeadingOrder": fx.effects.LeadingOrder(),
+    "RigidArray": fx.effects.RigidArray([0.0, 0.1]),
+    "CompliantArray": fx.effects.CompliantArray([0.0, 0.1]),
+}
+TS = np.linspace(0, 1, 4001)
+
+
+def scene_of(*effects):
+    profile, bristle = fx.profiles.Sine(0.1), fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
+    parts = fx.supports.Spring(1.0), fx.loads.Ramp(1.0, 0.0)
+    return fx.Scene(profile, bristle, *parts, duration=1.0, effects=effects)
+
+
+CALLS = {
+    Engine.LIMIT: lambda s: fx.solve_limit(s, [0.5, 1.0]),
+    Engine.RESOLVED: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="resolved"),
+    Engine.WINDOWED: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="windowed"),
+    Engine.PATH: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="Kvaerno3"),
+    Engine.SWEEP: lambda s: fx.sweep(s, [0.05], [1.0], ts=[0.5, 1.0]),
+    Engine.CERTIFICATE: lambda s: fx.certify(s, 0.05, 1.0, TS, np.clip(TS - 0.1, 0, 1)),
+    Engine.COST: lambda s: fx.predict_cost(s, [0.05], [1.0]),
+}
+
+
+def test_every_effect_of_the_library_is_walked():
+    kinds = {n for n, k in vars(fx.effects).items() if isinstance(k, type)}
+    abstract = {"AbstractEffect", "Stage", "Engine"}
+    assert kinds - abstract == EFFECTS.keys()
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+@pytest.mark.parametrize("engine", CALLS, ids=lambda e: e.name)
+def test_an_engine_does_an_effect_or_refuses_it_by_name(name, engine):
+    scene = scene_of(EFFECTS[name])
+    if does(engine, EFFECTS[name]):
+        CALLS[engine](scene)
+    else:
+        with pytest.raises(ValueError, match=rf"does not do {name}: needs \S"):
+            CALLS[engine](scene)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_threes(seed):
+    draw = random.Random(seed)
+    names = [draw.choice(list(EFFECTS)) for _ in range(3)]
+    engine = draw.choice(list(CALLS))
+    effects = [EFFECTS[name] for name in names]
+    if len(set(names)) < 3:
+        with pytest.raises(ValueError, match=r"scene\.effects = .* needs one of each kind"):
+            scene_of(*effects)
+    elif all(does(engine, effect) for effect in effects):
+        CALLS[engine](scene_of(*effects))
+    else:
+        with pytest.raises(ValueError, match="does not do"):
+            CALLS[engine](scene_of(*effects))
+
+
+def test_order_does_not_matter():
+    found = [
+        fx.solve(scene_of(*(EFFECTS[n] for n in order)), 0.05, ts=[0.5, 1.0]).z
+        for order in itertools.permutations(EFFECTS)
+    ]
+    for z in found[1:]:
+        np.testing.assert_allclose(z, found[0], rtol=1e-12)
+
+
+class Doubled(AbstractEffect):
+    """Of a user: two bristles in one."""
+
+    def changed(self, potential):
+        from frictionjax.model.summed_potential import SummedPotential
+
+        return SummedPotential(potential, np.zeros(2), np.ones(2))
+
+
+class Wind(AbstractEffect):
+    """Of a user, that no engine knows."""
+
+    stage = Stage.STATE
+
+
+def test_effects_of_a_user_go_through_their_potential_or_are_refused():
+    one, two = fx.friction(scene_of()), fx.friction(scene_of(Doubled()))
+    assert float(two.rho_plus) == pytest.approx(2 * float(one.rho_plus), rel=1e-12)
+    for engine, call in CALLS.items():
+        with pytest.raises(ValueError, match="does not do Wind"):
+            call(scene_of(Wind()))
+        assert not does(engine, Wind())
+
+
+@pytest.mark.parametrize("given", [("inertia",), None, "LeadingOrder", [object()]])
+def test_what_is_no_effect_is_refused(given):
+    with pytest.raises(ValueError, match=r"scene\.effects = .*needs effects of"):
+        scene_of().replace(effects=given)

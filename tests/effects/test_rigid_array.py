@@ -1,0 +1,118 @@
+"""`RigidArray`: potentials add."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import frictionjax as fx
+
+SINE = fx.profiles.Sine(0.1)
+SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
+SUPPORT, LOAD = fx.supports.Spring(1.0), fx.loads.Sine(1.0488, 3.0)
+
+
+def scene_of(*effects, profile=SINE, bristle=SLANTED):
+    return fx.Scene(profile, bristle, SUPPORT, LOAD, 3.0, effects=effects)
+
+
+def rho_of(offsets, weights=None, **parts):
+    found = fx.friction(scene_of(fx.effects.RigidArray(offsets, weights), **parts))
+    return float(found.rho_plus), float(found.rho_minus)
+
+
+def test_equal_phases_add_up():
+    one = fx.friction(SINE, SLANTED)
+    for count in (1, 2, 5):
+        plus, minus = rho_of([0.3] * count)
+        assert plus == pytest.approx(count * float(one.rho_plus), rel=1e-12)
+        assert minus == pytest.approx(count * float(one.rho_minus), rel=1e-12)
+
+
+def test_phases_spread_evenly_over_a_sine_leave_nothing():
+    homothetic = fx.bristles.Homothetic(1.0)
+    with pytest.raises(ValueError, match=r"RigidArray: share left = .*needs phases"):
+        rho_of(np.arange(3) / 3, bristle=homothetic)
+
+
+def test_phases_spread_evenly_leave_the_harmonics_that_they_divide():
+    profile = fx.profiles.Fourier(cos=[0.0, 0.0, 0.0], sin=[0.02, 0.01, 0.003])
+    bristle = fx.bristles.Homothetic(1.0)
+    plus, minus = rho_of(np.arange(3) / 3, profile=profile, bristle=bristle)
+    assert plus == pytest.approx(3 * 0.003 * 6 * np.pi, rel=1e-12)
+    assert minus == pytest.approx(-plus, rel=1e-12)
+
+
+def test_random_phases_add_up_like_a_random_walk():
+    count, turns = 400, np.random.default_rng(7)
+    one = float(fx.friction(SINE, fx.bristles.Homothetic(1.0)).rho_plus)
+    bristle = fx.bristles.Homothetic(1.0)
+    found = [rho_of(turns.uniform(size=count), bristle=bristle)[0] for _ in range(200)]
+    mean = np.mean(found) / (one * np.sqrt(count))
+    # sqrt(pi)/2, and its standard error over 200 arrays is 0.033.
+    assert mean == pytest.approx(0.8862269, abs=3 * 0.4633 / np.sqrt(200))
+
+
+def test_weights_are_how_often_a_tip_stands_there():
+    repeated = rho_of([0.0, 0.1, 0.1, 0.1])
+    assert rho_of([0.0, 0.1], [1.0, 3.0]) == pytest.approx(repeated, rel=1e-12)
+
+
+def test_a_hundred_thousand_tips_are_no_more_work():
+    phases = np.random.default_rng(0).uniform(0, 0.5, 100_000)
+    plus, _ = rho_of(phases)
+    scene = scene_of(fx.effects.RigidArray(phases))
+    wide = scene.replace(load=fx.loads.Sine(3 * plus, 3.0))
+    solution = fx.solve(wide, 1e-2, ts=[1.0, 3.0])
+    assert solution.ok
+
+
+def test_lanes_meet_the_sum_itself():
+    """The exact sum of the tips' potentials, slip by slip, through diffrax."""
+    scene = scene_of(fx.effects.RigidArray([0.0, 0.1, 0.25], [1.0, 2.0, 1.0]))
+    ts, eps = np.linspace(0, 1.2, 7), 0.05
+    exact = fx.solve(scene.replace(duration=1.2), eps, ts=ts, method="Kvaerno5")
+    lanes = fx.solve(scene.replace(duration=1.2), eps, ts=ts)
+    assert exact.ok
+    assert lanes.ok
+    np.testing.assert_allclose(lanes.z, exact.z, atol=2e-4 * eps)
+
+
+def test_every_eps_of_a_sweep_has_its_own_sum():
+    scene = scene_of(fx.effects.RigidArray([0.0, 0.1]))
+    ts = np.linspace(0, 3, 7)
+    data = fx.sweep(scene, [2e-2, 1e-2], [0.75, 1.0], ts)
+    assert "RigidArray" in data.attrs["scene"]
+    for eps in (2e-2, 1e-2):
+        alone = fx.solve(scene, eps, 0.75, ts=ts)
+        found = data.z.sel(eps=eps, gamma=0.75)
+        np.testing.assert_allclose(found, alone.z, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("offsets", "weights", "words"),
+    [
+        ([], None, r"effects\.RigidArray\.offsets = .*shape \(N,\)"),
+        ([[0.1]], None, r"effects\.RigidArray\.offsets = .*shape \(N,\)"),
+        ([0.1, np.nan], None, r"effects\.RigidArray\.offsets = .*finite"),
+        ([0.1, 0.2], [1.0], r"effects\.RigidArray\.weights = .*2 weights"),
+        ([0.1, 0.2], [1.0, -1.0], r"effects\.RigidArray\.weights = .*>= 0"),
+        ([0.1, 0.2], [0.0, 0.0], r"effects\.RigidArray\.weights = .*> 0"),
+    ],
+)
+def test_what_is_no_array_is_refused(offsets, weights, words):
+    with pytest.raises(ValueError, match=words):
+        fx.effects.RigidArray(offsets, weights)
+
+
+def test_leading_orders_of_all_tips():
+    both = fx.effects.RigidArray([0.0, 0.1]), fx.effects.LeadingOrder()
+    bristle = fx.bristles.VerticalSpring(1.0, 1.5, 1.0)
+    scene = scene_of(*both, bristle=bristle)
+    other = scene_of(*both[::-1], bristle=bristle)
+    plain = scene_of(both[0], bristle=fx.bristles.Homothetic(0.5))
+    solutions = [fx.solve(s, 1e-2, ts=[1.0, 2.0]).z for s in (scene, other, plain)]
+    np.testing.assert_allclose(solutions[0], solutions[1], atol=1e-8)
+    np.testing.assert_allclose(solutions[0], solutions[2], atol=1e-6)
+    assert not jnp.array_equal(
+        solutions[0], fx.solve(scene_of(both[0], bristle=bristle), 1e-2, ts=[1.0, 2.0]).z
+    )
