@@ -2,18 +2,25 @@
 
 import equinox as eqx
 
-from .._checks import Real, as_real
+from .._checks import Real, as_real, require_real
 from .bristle import AbstractBristle
 
 
 class Linear(AbstractBristle):
-    """`A = a eta`, `F = alpha eta`: a bristle for eps -> 0, at every eps.
+    """`A = a eta`, `F = alpha eta`: any bristle as it is for eps -> 0, at every eps.
 
-    `a`: A'(0). `alpha`: F'(0) in N.
+    `a`: A'(0), how far the state moves ahead of the tip per height. `alpha`: F'(0) in N,
+    not 0.
+
+    Raises `ValueError` for numbers that are not finite, and alpha that is 0.
     """
 
     a: Real = eqx.field(converter=as_real)
     alpha: Real = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        require_real("bristle.a", self.a, "a number")
+        require_real("bristle.alpha", self.alpha, "alpha != 0", lambda v: v != 0)
 
     def offset(self, eta: Real) -> Real:
         return self.a * eta

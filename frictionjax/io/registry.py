@@ -8,7 +8,7 @@ from typing import Any
 import equinox as eqx
 import numpy as np
 
-from .. import bristles, loads, profiles, supports
+from .. import bristles, effects, loads, profiles, supports
 from .._checks import Part, asked_names
 
 
@@ -25,11 +25,14 @@ PARTS: dict[str, dict[str, type[Part]]] = {
         bristles.VerticalSpring,
         bristles.SlantedSpring,
         bristles.AngularSpring,
+        bristles.Linear,
     ),
     "support": _by_name(supports.Spring),
     "load": _by_name(loads.Ramp, loads.Sine, loads.Triangle, loads.PiecewiseLinear),
 }
 """Of every table of a scene its kinds, by the name that files call them."""
+EFFECTS = _by_name(effects.LeadingOrder, effects.RigidArray, effects.CompliantArray)
+"""Kinds of the tables [[effects]], of which a scene has any number."""
 _WITHOUT_SCENE = PARTS["profile"] | PARTS["bristle"]  # what documents of results hold
 
 

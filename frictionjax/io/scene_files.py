@@ -1,20 +1,22 @@
 """Scene files: a scene and its study as TOML."""
 
+import difflib
 import inspect
 import tomllib
+from collections.abc import Iterable
 from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import numpy as np
 import tomli_w
 
-from .._checks import asked_names, require, write_whole
+from .._checks import Part, asked_names, require, write_whole
+from ..effects import AbstractEffect
 from ..measured import fit_profile, read_heights
 from ..model import BristlePotential, Scene
 from ..profiles import Fourier
-from .registry import PARTS, numbers_of_part
+from .registry import EFFECTS, PARTS, numbers_of_part
 
 _TOP = ("duration", "z0")
 _STUDY = ("eps", "gamma", "accuracy")
@@ -39,7 +41,8 @@ def load_scene(path: Any) -> Scene:
     """Read the scene of a TOML file.
 
     Tables `[profile] [bristle] [support] [load]`, each with `kind` (the class's name) and
-    the constructor's arguments by name; `duration` and `z0` on top. A table `[study]` may
+    the constructor's arguments by name; `duration` and `z0` on top. Effects are tables
+    `[[effects]]`, likewise. A table `[study]` may
     be there and is not used. A `Fourier` profile may give `heights`, the file of a measured
     surface (relative to this one), with the options of `read_heights` and `fit_profile`.
 
@@ -95,31 +98,51 @@ def parse_scene(text: str, name: str, folder: Path | None = None) -> SceneFile:
 
 
 def _scene_of(document: dict[str, Any], folder: Path) -> Scene:
-    known = (*_TOP, *PARTS, "study")
+    known = (*_TOP, *PARTS, "effects", "study")
     _require_keys("", document, known, ("duration", *PARTS))
     parts = {table: _part_of(table, document[table], folder) for table in PARTS}
+    effects = _effects_of(document.get("effects", []))
     top = {key: document.get(key, 0.0) for key in _TOP}
     for key, value in top.items():
         _need(not isinstance(value, list), f"{key} = {value!r}", "a number")
-    return Scene(**parts, **{key: _numbers(key, value) for key, value in top.items()})
+    numbers = {key: _numbers(key, value) for key, value in top.items()}
+    return Scene(**parts, **numbers, effects=effects)
+
+
+def _effects_of(tables: Any) -> tuple[AbstractEffect, ...]:
+    good = isinstance(tables, list) and all(isinstance(table, dict) for table in tables)
+    _need(good, f"effects = {tables!r}", "tables [[effects]]")
+    return tuple(_built("[[effects]]", table, EFFECTS) for table in tables)
 
 
 def _part_of(table: str, entries: Any, folder: Path) -> Any:
     _need(isinstance(entries, dict), f"{table} = {entries!r}", f"a table [{table}]")
-    kinds = PARTS[table]
+    if entries.get("kind") == "Fourier" and table == "profile" and "heights" in entries:
+        given = {key: value for key, value in entries.items() if key != "kind"}
+        return _measured_profile(given, folder)
+    return _built(f"[{table}]", entries, PARTS[table])
+
+
+def _built(where: str, entries: dict[str, Any], kinds: dict[str, type[Part]]) -> Any:
+    """The part of a table; `where`: the table, as the file writes it."""
     kind = entries.get("kind")
     known = isinstance(kind, str) and kind in kinds
     said = "no kind" if kind is None else f"kind = {kind!r}"
-    _need(known, f"[{table}] {said}", f"a kind that is one of {', '.join(kinds)}")
-    build = kinds[kind]
+    needs = f"a kind that is one of {', '.join(kinds)}{_meant(kind, kinds)}"
+    _need(known, f"{where} {said}", needs)
+    build = kinds[str(kind)]
     given = {key: value for key, value in entries.items() if key != "kind"}
-    if kind == "Fourier" and "heights" in given:
-        return _measured_profile(given, folder)
     names = asked_names(build, {})
     signature = inspect.signature(build.__init__).parameters
     needed = [n for n in names if signature[n].default is inspect.Parameter.empty]
-    _require_keys(f"[{table}] ", given, names, needed)
-    return build(**{key: _numbers(f"[{table}] {key}", v) for key, v in given.items()})
+    _require_keys(f"{where} ", given, names, needed)
+    return build(**{key: _numbers(f"{where} {key}", v) for key, v in given.items()})
+
+
+def _meant(word: Any, known: Iterable[str]) -> str:
+    """The nearest known word, as a question."""
+    near = difflib.get_close_matches(str(word), list(known), n=1)
+    return f" ({near[0]}?)" if near else ""
 
 
 def _measured_profile(given: dict[str, Any], folder: Path) -> Fourier:
@@ -149,7 +172,8 @@ def _option(key: str, value: Any) -> Any:
 
 def _require_keys(where: str, entries: dict, known, needed) -> None:
     for key in entries:
-        _need(key in known, f"{where}{key} is unknown", f"one of {', '.join(known)}")
+        needs = f"one of {', '.join(known)}{_meant(key, known)}" if known else "no key"
+        _need(key in known, f"{where}{key} is unknown", needs)
     for key in needed:
         _need(key in entries, f"{where}{key} is missing", f"all of {', '.join(needed)}")
 
@@ -199,17 +223,19 @@ def scene_document(scene: Scene, study: dict[str, Any] | None = None) -> str:
     require(known, "scene.potential", type(scene.potential).__name__, _SAVED)
     document: dict[str, Any] = {key: float(getattr(scene, key)) for key in _TOP}
     for table in PARTS:
-        document[table] = _entries_of(table, getattr(scene, table))
+        document[table] = _entries_of(f"scene.{table}", getattr(scene, table), PARTS[table])
+    if scene.effects:
+        entries = [_entries_of("scene.effects", each, EFFECTS) for each in scene.effects]
+        document["effects"] = entries
     if study:
         document["study"] = {key: _plain(value) for key, value in study.items()}
     return tomli_w.dumps(document)
 
 
-def _entries_of(table: str, part: eqx.Module) -> dict[str, Any]:
+def _entries_of(name: str, part: Part, kinds: dict[str, type[Part]]) -> dict[str, Any]:
     kind = type(part).__name__
-    kinds = PARTS[table]
     saved = kinds.get(kind) is type(part)
-    require(saved, f"scene.{table}", kind, f"one of {', '.join(kinds)}: no functions")
+    require(saved, name, kind, f"one of {', '.join(kinds)}: no functions")
     known = numbers_of_part(part).items()
     return {"kind": kind} | {name: _plain(value) for name, value in known}
 

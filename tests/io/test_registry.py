@@ -17,6 +17,7 @@ BRISTLES = [
     bristles.VerticalSpring(1.0, 2.0, 1.0),
     bristles.SlantedSpring(1.0, 2.4, 1.0, -0.5),
     bristles.AngularSpring(1.0, 2**0.5, 1.0, 0.3),
+    bristles.Linear(-0.5, 2.0),
 ]
 PROFILES = [
     SINE,

@@ -25,6 +25,7 @@ BRISTLES = [
     fx.bristles.VerticalSpring(1 / 3, 2 * ODD, ODD),
     fx.bristles.SlantedSpring(1 / 3, 2.2, 1.0, ODD),
     fx.bristles.AngularSpring(1 / 3, 2**0.5, 1.0, ODD),
+    fx.bristles.Linear(-ODD, 1 / 3),
 ]
 LOADS = [
     fx.loads.Ramp(1 / 3, ODD - 0.3),
@@ -38,7 +39,13 @@ def scene(profile=PROFILES[0], bristle=BRISTLES[1], load=LOADS[1], z0=1e-3 / 3):
     return fx.Scene(profile, bristle, fx.supports.Spring(1 / 7), load, 10 / 3, z0)
 
 
+EFFECTS = [
+    (fx.effects.LeadingOrder(),),
+    (fx.effects.RigidArray([0.0, ODD], [1.0, 1 / 3]), fx.effects.LeadingOrder()),
+    (fx.effects.CompliantArray([0.0, 1 / 3, ODD]), fx.effects.RigidArray([0.0, 0.1])),
+]
 SCENES = [
+    *(scene().replace(effects=some) for some in EFFECTS),
     *(scene(profile=part) for part in PROFILES),
     *(scene(bristle=part) for part in BRISTLES),
     *(scene(load=part) for part in LOADS),
@@ -127,7 +134,7 @@ MISTAKES = [
     ("angle = 1.0", "angle = nan", r"bristle\.angle = nan: needs a finite number"),
     ("angle = 1.0", "angle = 1.55", r"bristle\.angle = 1\.55: .*cot\(angle\)"),
     ("angle = 1.0", f"angle = 1{'0' * 400}", r"\[bristle\] angle: needs 64-bit"),
-    ("[load]", "[lood]", r"lood is unknown: needs one of duration.*load, study"),
+    ("[load]", "[lood]", r"lood is unknown: needs one of duration.*load, effects, study"),
     ("[load]\nkind", "load = 3\n[lood]\nkind", "is unknown"),
     ("duration = 3.0", "", "duration is missing"),
     ("duration = 3.0", "duration = -1", r"scene\.duration = -1: needs duration > 0"),
@@ -234,3 +241,40 @@ def test_a_measured_trace_is_a_profile(tmp_path):
 def test_mistakes_about_a_measured_trace(options, message, tmp_path):
     with pytest.raises(ValueError, match=message):
         fx.load_scene(measured_scene(tmp_path, options))
+
+
+EFFECT_MISTAKES = {
+    '[[effects]]\nkind = "RigidAray"\noffsets = [0.0]': (
+        r"\[\[effects\]\] kind = 'RigidAray': needs a kind that is .*\(RigidArray\?\)"
+    ),
+    "[[effects]]\noffsets = [0.0]": r"\[\[effects\]\] no kind: needs a kind that is one of",
+    '[[effects]]\nkind = "RigidArray"': r"\[\[effects\]\] offsets is missing: needs all of",
+    '[[effects]]\nkind = "RigidArray"\nofsets = [0.0]': (
+        r"\[\[effects\]\] ofsets is unknown: needs one of .*\(offsets\?\)$"
+    ),
+    '[[effects]]\nkind = "LeadingOrder"\nmass = 1.0': (
+        r"\[\[effects\]\] mass is unknown: needs no key$"
+    ),
+    '[[effects]]\nkind = "CompliantArray"\noffsets = "all"': (
+        r"\[\[effects\]\] offsets = 'all': needs a number or a list of numbers$"
+    ),
+    '[[effects]]\nkind = "CompliantArray"\noffsets = [nan]': (
+        r"effects\.CompliantArray\.offsets = .*needs finite places"
+    ),
+    '[effects]\nkind = "LeadingOrder"': r"effects = .*: needs tables \[\[effects\]\]$",
+}
+
+
+@pytest.mark.parametrize(("added", "words"), EFFECT_MISTAKES.items())
+def test_mistakes_in_effects_are_one_line(added, words):
+    text = f"{scene_document(SCENES[-1])}\n{added}\n"
+    with pytest.raises(ValueError, match=words) as caught:
+        parse_scene(text, "rough.toml")
+    assert str(caught.value).startswith("rough.toml: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_misspelt_table_is_guessed():
+    text = scene_document(SCENES[-1]).replace("[bristle]", "[brisle]")
+    with pytest.raises(ValueError, match=r"brisle is unknown: .*\(bristle\?\)"):
+        parse_scene(text, "rough.toml")
