@@ -6,13 +6,6 @@ import shutil
 import tempfile
 from pathlib import Path
 
-# Two thirds of the suite are compilation, which takes half as long without LLVM's passes
-# and XLA's newer emitters: whole files 138 s of CPU for 252, 147 for 195. Has to stand
-# before JAX starts. That values do not depend on it: tests/hard/test_hard_flags.py.
-os.environ.setdefault(
-    "XLA_FLAGS", "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false"
-)
-
 # Workers share what they compile: a tenth of the time.
 if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
     _CACHE = os.environ["JAX_COMPILATION_CACHE_DIR"] = tempfile.mkdtemp()
@@ -21,6 +14,12 @@ if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
 
 import jax
 from jaxtyping import install_import_hook
+
+import frictionjax as fx
+
+# Programs that users run. Has to stand before JAX computes anything. That values do not
+# depend on flags: tests/hard/test_hard_flags.py.
+fx.use_fast_cpu()
 
 # With SHAPES_CHECKED=1 shapes that functions and records of these packages are annotated
 # with are checked at every call. A sixth more of CPU: tests/test_shapes.py does so for a

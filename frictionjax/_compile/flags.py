@@ -9,11 +9,24 @@ from pathlib import Path
 
 # Small loops are compiled as one function, not as a list of kernels, and with vectors of
 # the full width: a step of one of 64 lanes takes 0.05 us for 0.09.
-FAST_CPU_FLAGS = (
-    "--xla_backend_extra_options=xla_cpu_small_while_loop_byte_threshold=1000000000 "
-    "--xla_cpu_prefer_vector_width=512"
-)
+_LOOPS = "--xla_backend_extra_options=xla_cpu_small_while_loop_byte_threshold=1000000000"
+# LLVM's first level and XLA's older emitters compile a first solve in 4.4 s for 7.6 (the
+# level alone 5.4, the emitters alone 6.1, level 0 with both 2.8); steps take as long, at
+# level 0 four times. Later versions may know no older emitters, and end at flags that they
+# do not know.
+_QUICK = "--xla_backend_optimization_level=1"
+_OLDER = "--xla_cpu_use_fusion_emitters=false"
+_OLDER_UNTIL = (0, 13)  # jaxlib
 _WORTH_KEEPING = 0.0  # s of compilation: small programs add up to 2 s of a study
+
+
+def fast_cpu_flags() -> list[str]:
+    """What `use_fast_cpu` adds to `XLA_FLAGS`, for the jaxlib that is installed."""
+    from importlib.metadata import version  # 50 ms, which jax takes anyway
+
+    early = tuple(int(n) for n in version("jaxlib").split(".")[:2]) < _OLDER_UNTIL
+    flags = [_LOOPS, "--xla_cpu_prefer_vector_width=512", _QUICK]
+    return [*flags, _OLDER] if early else flags
 
 
 def use_fast_cpu() -> bool:
@@ -26,11 +39,13 @@ def use_fast_cpu() -> bool:
     """
     given = os.environ.get("XLA_FLAGS", "")
     if _backend_is_running():
-        return FAST_CPU_FLAGS in given
-    if FAST_CPU_FLAGS not in given:
+        return _LOOPS in given
+    if _LOOPS not in given:
         if "xla_backend_extra_options" in given:
             return False
-        os.environ["XLA_FLAGS"] = f"{given} {FAST_CPU_FLAGS}".strip()
+        names = [flag.split("=")[0] for flag in given.split()]
+        more = [f for f in fast_cpu_flags() if f.split("=")[0] not in names]
+        os.environ["XLA_FLAGS"] = " ".join([*given.split(), *more])
     import jax
 
     # A small program takes 20 us where handing it to another thread takes 80.

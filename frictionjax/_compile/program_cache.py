@@ -166,6 +166,7 @@ def _traced(compiled: Callable, numbers: list) -> tuple[bytes, Callable]:
         structures.append(structure)
         return leaves
 
+    flat.__name__ = compiled.__name__  # as profilers and logs of compilations call it
     exported = export.export(jax.jit(flat))(numbers)
     out = structures[0]
     example = jax.tree_util.tree_unflatten(out, range(out.num_leaves))
@@ -179,7 +180,11 @@ def _loaded(data: bytes) -> Callable:
 
 
 def _called(exported: export.Exported, out: Any) -> Callable:
-    call = jax.jit(exported.call)
+    def run(numbers: list) -> Any:
+        return exported.call(numbers)
+
+    run.__name__ = exported.fun_name
+    call = jax.jit(run)
 
     def program(numbers: list) -> Any:
         return jax.tree_util.tree_unflatten(out, call(numbers))

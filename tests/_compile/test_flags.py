@@ -1,5 +1,6 @@
 """Settings of XLA that are made before JAX has computed anything."""
 
+import importlib.metadata
 import os
 import subprocess
 import sys
@@ -7,6 +8,7 @@ import sys
 import pytest
 
 import frictionjax as fx
+from frictionjax._compile import flags
 
 PROGRAM = """
 import jax, sys
@@ -31,6 +33,32 @@ def test_flags_are_set_before_anything_is_computed_or_left_alone(given, when, ex
     command = [sys.executable, "-c", PROGRAM, when]
     done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == expected
+
+
+def flags_after(given, monkeypatch, installed="0.10.2"):
+    """`XLA_FLAGS` of a process that has computed nothing yet."""
+    monkeypatch.setattr(flags, "_backend_is_running", lambda: False)
+    monkeypatch.setattr(importlib.metadata, "version", lambda name: installed)
+    monkeypatch.setenv("XLA_FLAGS", given)
+    assert fx.use_fast_cpu()
+    return os.environ["XLA_FLAGS"].split()
+
+
+def test_flags_of_your_own_are_left_alone(monkeypatch):
+    own = "--xla_backend_optimization_level=3", "--xla_cpu_multi_thread_eigen=false"
+    found = flags_after(" ".join(own), monkeypatch)
+    assert found[:2] == list(own)
+    names = [flag.split("=")[0] for flag in found]
+    assert len(set(names)) == len(names)
+    assert "--xla_cpu_prefer_vector_width" in names
+
+
+@pytest.mark.parametrize(("installed", "known"), [("0.12.0.1", True), ("0.13.0", False)])
+def test_later_versions_are_told_nothing_that_they_may_not_know(
+    installed, known, monkeypatch
+):
+    found = flags_after("", monkeypatch, installed)
+    assert any("fusion_emitters" in flag for flag in found) == known
 
 
 KEEP = """

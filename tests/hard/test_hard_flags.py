@@ -12,8 +12,11 @@ from catalogue import HARD
 from smallest_eps import SMALLEST
 
 import frictionjax as fx
-from frictionjax._compile.flags import FAST_CPU_FLAGS
+from frictionjax._compile.flags import fast_cpu_flags
 
+USERS = " ".join(fast_cpu_flags())
+"""Those of the suite too, see conftest.py."""
+QUICK = "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false"
 _HERE = Path(__file__).parent
 _MODULES = os.pathsep.join([str(_HERE), str(_HERE.parent / "support")])
 
@@ -41,18 +44,16 @@ def values_with(flags, names, path):
     return {name.replace("|", "/"): value for name, value in np.load(path).items()}
 
 
-def test_values_are_those_that_users_get(tmp_path):
-    """Tests compile without optimisation, the command line with all of it."""
+def test_values_do_not_depend_on_optimisation(tmp_path):
     names = ["two folds", "kinks and plateaus"]
-    found = values_with(FAST_CPU_FLAGS, names, tmp_path / "fast.npz")
+    found = values_with(QUICK, names, tmp_path / "quick.npz")
     for name in names:
         assert np.abs(found[name] - values_of(name)).max() < 1e-6, name
 
 
 @pytest.mark.slow
 def test_compiler_flags_do_not_matter_in_any_scene(tmp_path):
-    of_suite = os.environ["XLA_FLAGS"]  # see conftest.py
-    flags = {"plain": "", "fast": FAST_CPU_FLAGS, "quick": of_suite}
+    flags = {"plain": "", "fast": USERS, "quick": QUICK}
     found = {
         name: values_with(value, list(HARD), tmp_path / f"{name}.npz")
         for name, value in flags.items()
@@ -64,7 +65,6 @@ def test_compiler_flags_do_not_matter_in_any_scene(tmp_path):
 
 # "": all that the machine has.
 _ISA = ["SSE4_2", "AVX", "AVX2", ""]
-_TESTS = os.environ.get("XLA_FLAGS", "")  # see conftest.py
 _STATUSES = """
 import sys, jax
 jax.config.update("jax_enable_x64", True)
@@ -92,13 +92,13 @@ def require_ok(flags: str, isa: str, gammas: dict[str, str]) -> None:
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="its instruction sets")
 def test_the_smallest_eps_is_ok_without_the_instructions_of_this_machine():
     """It was UNBALANCED with AVX2: a tip rested where it was unstable."""
-    require_ok(_TESTS, "AVX2", {"turns on a fold": "1 2"})
+    require_ok(QUICK, "AVX2", {"turns on a fold": "1 2"})
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="its instruction sets")
 @pytest.mark.parametrize("isa", _ISA)
-@pytest.mark.parametrize("flags", [_TESTS, FAST_CPU_FLAGS], ids=["tests", "users"])
+@pytest.mark.parametrize("flags", [QUICK, USERS], ids=["quick", "users"])
 def test_smallest_eps_are_ok_with_all_instructions(flags, isa):
     require_ok(flags, isa, dict.fromkeys(SMALLEST, "0.75 1 1.5 2"))
 
@@ -128,7 +128,7 @@ print(next(line.split()[1] for line in open("/proc/self/status") if "VmHWM" in l
 def test_compilation_with_fast_flags_takes_little_memory(harmonics):
     # Sums of 14 and 16 harmonics, written out, took LLVM more than 20 GB, and so did 8
     # beside a load that may be a sine.
-    env = os.environ | {"XLA_FLAGS": FAST_CPU_FLAGS, "PYTHONPATH": _MODULES}
+    env = os.environ | {"XLA_FLAGS": USERS, "PYTHONPATH": _MODULES}
     env.pop("JAX_COMPILATION_CACHE_DIR", None)
     command = [sys.executable, "-c", _COMPILED, str(harmonics)]
     done = subprocess.run(command, check=True, env=env, capture_output=True, text=True)
