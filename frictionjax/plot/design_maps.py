@@ -1,10 +1,9 @@
 """Friction over a plane of designs."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
-import xarray as xr
 from matplotlib.colors import Normalize, TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -12,6 +11,9 @@ from matplotlib.patches import Patch
 
 from .._checks import require
 from .style import GUIDE, new_figure, styled
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _UNITS = {"asymmetry": "1", "steepness": "1", "angle": "rad", "rest_angle": "rad"}
 _UNITS |= {"height": "m", "length": "m", "rest_length": "m"}
@@ -35,7 +37,7 @@ _LEFT = ("////", "not admissible"), ("....", "$\\alpha$ < 0: the bristle pulls")
 
 
 @styled
-def draw_design_map(data: xr.Dataset, quantities: Any = ("ratio", "contrast")) -> Figure:
+def draw_design_map(data: "xr.Dataset", quantities: Any = ("ratio", "contrast")) -> Figure:
     """Draw maps of a `design_map`, one panel a quantity, contours labelled.
 
     Ratios are coloured by their logarithm, so that left and right look alike; colours end
@@ -54,7 +56,7 @@ def draw_design_map(data: xr.Dataset, quantities: Any = ("ratio", "contrast")) -
     return figure
 
 
-def _panel(figure: Any, axes: Any, data: xr.Dataset, name: str) -> None:
+def _panel(figure: Any, axes: Any, data: "xr.Dataset", name: str) -> None:
     up, across = data["admissible"].dims
     x, y = data[across].values, data[up].values
     shown, levels, texts = _shown(name, data[name].values)

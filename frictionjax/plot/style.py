@@ -3,14 +3,16 @@
 import io
 from collections.abc import Callable
 from functools import wraps
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
-import xarray as xr
 from matplotlib.figure import Figure
 
 from .._checks import as_text, require
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Told apart by colour-blind readers, in this order: Okabe and Ito's, then Tol's muted
 # indigo, wine and olive, darker than all of those.
@@ -89,7 +91,7 @@ def label_eps(eps: float) -> str:
     return f"$\\epsilon$ = {float(eps):.3g} m"
 
 
-def choose_gamma(dataset: xr.Dataset, gamma: float | None) -> float:
+def choose_gamma(dataset: "xr.Dataset", gamma: float | None) -> float:
     """The gamma to show: the nearest to the one asked for, 1 where none was.
 
     Raises `ValueError` for a gamma that the data set does not hold.
@@ -101,7 +103,7 @@ def choose_gamma(dataset: xr.Dataset, gamma: float | None) -> float:
     return nearest
 
 
-def choose_eps(dataset: xr.Dataset, gamma: float, eps: Any = None, most: int = 3):
+def choose_eps(dataset: "xr.Dataset", gamma: float, eps: Any = None, most: int = 3):
     """The eps to show, largest first: those asked for, else spread over the good cells.
 
     Raises `ValueError` for an eps that the data set does not hold.

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from .. import plot
 from .._checks import as_text, require, write_whole
@@ -28,6 +27,9 @@ from ..supports import Spring
 from .folder import write_figures
 from .job import Job, joined, with_surface
 from .tables import coefficient_table, table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MAP = 121  # values of an axis
 TARGETS = ("ratio", "difference", "rho_plus", "rho_minus")
@@ -52,7 +54,7 @@ class _Design(NamedTuple):
 
     scene: Scene
     sections: list[tuple[str, str]]
-    pictures: Iterator[tuple[str, Figure]]
+    pictures: "Iterator[tuple[str, Figure]]"
     files: dict[str, str]
 
 
@@ -129,7 +131,7 @@ def angle_table(fit: AngleFit) -> str:
     return table(("", ""), rows, left=2).lstrip("\n")
 
 
-def _bristle_pictures(fit: AngleFit) -> Iterator[tuple[str, Figure]]:
+def _bristle_pictures(fit: AngleFit) -> "Iterator[tuple[str, Figure]]":
     yield "design", plot.draw_angle_fit(fit)
     numbers = np.asarray(fit.admissible)
     numbers = numbers[~np.isnan(numbers[:, 0])]

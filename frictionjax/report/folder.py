@@ -2,19 +2,21 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-
-import xarray as xr
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from .. import plot
 from .._checks import naming, write_whole
 from ..model import Coefficients, Scene
 from ..studies import Study
 
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
 
 def study_figures(
     found: Study, scene: Scene, law: Coefficients
-) -> Iterator[tuple[str, Figure]]:
+) -> "Iterator[tuple[str, Figure]]":
     """The pictures of a study by file name, those that its data allow."""
     data = found.dataset
     if found.spread is not None:
@@ -28,14 +30,14 @@ def study_figures(
             yield "dissipation", plot.draw_dissipation(data)
 
 
-def paper_figures() -> Iterator[tuple[str, Figure]]:
+def paper_figures() -> "Iterator[tuple[str, Figure]]":
     """The paper's figures of coefficients by file name."""
     yield "mu_slanted", plot.draw_mu_slanted()
     yield "mu_angular", plot.draw_mu_angular()
     yield "nap", plot.draw_nap()
 
 
-def write_figures(folder: Path, figures: Iterator[tuple[str, Figure]]) -> list[Path]:
+def write_figures(folder: Path, figures: "Iterator[tuple[str, Figure]]") -> list[Path]:
     """Save pictures as PNG in `folder`."""
     paths = []
     for name, figure in figures:
@@ -46,7 +48,7 @@ def write_figures(folder: Path, figures: Iterator[tuple[str, Figure]]) -> list[P
 
 
 def write_record(
-    folder: Path, data: Mapping[str, xr.Dataset], toml: str, text: str
+    folder: Path, data: "Mapping[str, xr.Dataset]", toml: str, text: str
 ) -> None:
     """Write data sets by name, scene and tables into `folder`."""
     for name, one in data.items():

@@ -2,14 +2,16 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from ..bristles import pulling_text
 from ..measured import RowCoefficients
 from ..model import Coefficients
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _LAW = (
     ("rho_plus", "N", "friction against motion to the right"),
@@ -173,7 +175,7 @@ def _with_meanings(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return table(padded[0], padded[1:], left=1)
 
 
-def sweep_table(dataset: xr.Dataset) -> str:
+def sweep_table(dataset: "xr.Dataset") -> str:
     """One line a cell: errors, residual, steps, status."""
     names = flag_names(dataset.status)
     rows = []
@@ -209,7 +211,7 @@ def sweep_table(dataset: xr.Dataset) -> str:
 _ERRORS = (("", "state"), ("dissipation_", "dissipation"), ("strip_", "from the strip"))
 
 
-def order_table(orders: xr.Dataset) -> str:
+def order_table(orders: "xr.Dataset") -> str:
     """One line for each error and gamma: order, what the law predicts, window, verdict.
 
     `order` and `constant` are for eps -> 0, `seen` is the slope of the errors themselves.
@@ -236,7 +238,7 @@ def order_table(orders: xr.Dataset) -> str:
     return table(header, rows, left=1)
 
 
-def _order_cells(orders: xr.Dataset, line: xr.Dataset, prefix: str) -> tuple[str, ...]:
+def _order_cells(orders: "xr.Dataset", line: "xr.Dataset", prefix: str) -> tuple[str, ...]:
     return (
         _interval(line, prefix),
         _plain(_value(line, f"{prefix}order_predicted")),
@@ -250,7 +252,7 @@ def _order_cells(orders: xr.Dataset, line: xr.Dataset, prefix: str) -> tuple[str
     )
 
 
-def spread_table(spread: xr.Dataset) -> str:
+def spread_table(spread: "xr.Dataset") -> str:
     """One line for each error and gamma: median and 90% of orders and constants."""
     rows = [
         (
@@ -273,14 +275,14 @@ def spread_table(spread: xr.Dataset) -> str:
     )
 
 
-def _ranged(quantiles: xr.DataArray, form: str) -> str:
+def _ranged(quantiles: "xr.DataArray", form: str) -> str:
     low, middle, high = (
         form.format(float(quantiles.sel(quantile=q))) for q in (0.05, 0.5, 0.95)
     )
     return f"{middle} [{low}, {high}]"
 
 
-def lemma_table(orders: xr.Dataset) -> str:
+def lemma_table(orders: "xr.Dataset") -> str:
     """One line a gamma: the lemmas' exponent, and their constants as measured."""
     rows = []
     for gamma in orders.gamma.values:
@@ -309,19 +311,19 @@ def failed_table(failed: Sequence[dict[str, Any]]) -> str:
     return _with_meanings((*scene, "gamma", "eps/m", "status", "why"), rows)
 
 
-def flag_names(variable: xr.DataArray) -> dict[int, str]:
+def flag_names(variable: "xr.DataArray") -> dict[int, str]:
     """Names of the integers of a CF flag variable."""
     values = np.atleast_1d(variable.attrs["flag_values"])
     names = variable.attrs["flag_meanings"].split()
     return {int(value): name for value, name in zip(values, names, strict=True)}
 
 
-def _verdict(orders: xr.Dataset, line: xr.Dataset, prefix: str) -> str:
+def _verdict(orders: "xr.Dataset", line: "xr.Dataset", prefix: str) -> str:
     name = f"{prefix}verdict"
     return flag_names(orders[name])[int(line[name])].replace("_", " ")
 
 
-def _value(cell: xr.Dataset, name: str) -> float:
+def _value(cell: "xr.Dataset", name: str) -> float:
     return float(cell[name]) if name in cell else float("nan")
 
 
@@ -334,7 +336,7 @@ def _signed(value: float) -> str:
     return f"{value:.6g}"
 
 
-def _interval(line: xr.Dataset, prefix: str) -> str:
+def _interval(line: "xr.Dataset", prefix: str) -> str:
     order = _value(line, prefix + "order")
     if not np.isfinite(order):
         return "-"
@@ -342,7 +344,7 @@ def _interval(line: xr.Dataset, prefix: str) -> str:
     return f"{order:.3f} [{low:.3f}, {high:.3f}]"
 
 
-def _constant(line: xr.Dataset, prefix: str) -> str:
+def _constant(line: "xr.Dataset", prefix: str) -> str:
     names = (f"{prefix}constant", f"{prefix}constant_low", f"{prefix}constant_high")
     constant, low, high = (formatted(_value(line, name)) for name in names)
     return constant if low == "-" else f"{constant} [{low}, {high}]"
@@ -352,7 +354,7 @@ def _slope(order: float) -> str:
     return f"{order:.3f}" if np.isfinite(order) else "-"
 
 
-def _window(line: xr.Dataset, prefix: str) -> str:
+def _window(line: "xr.Dataset", prefix: str) -> str:
     low, high = float(line[f"{prefix}eps_min"]), float(line[f"{prefix}eps_max"])
     return f"{low:.3g} to {high:.3g}" if np.isfinite(low) else "-"
 
