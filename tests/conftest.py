@@ -3,6 +3,7 @@
 import atexit
 import os
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 
@@ -75,3 +76,33 @@ def pytest_collection_modifyitems(items):
         return _LONGEST.index(name) if name in _LONGEST else len(_LONGEST)
 
     items.sort(key=turn)  # stable: the order inside files stays
+
+
+def _loops_compiled():
+    """Compiled loops of lanes in this process, as texts."""
+    loops = sys.modules.get("frictionjax.wiggly.lanes.loops")
+    known = loops._LOOPS._done if loops else ()
+    return [f"{room} {kind}" for kind, room in known]
+
+
+_LOOPS_OF_WORKERS: set = set()
+
+
+def pytest_sessionfinish(session):
+    output = getattr(session.config, "workeroutput", None)
+    if output is not None:
+        output["loops"] = _loops_compiled()
+
+
+def pytest_testnodedown(node, error):
+    _LOOPS_OF_WORKERS.update(getattr(node, "workeroutput", {}).get("loops", ()))
+
+
+def pytest_terminal_summary(terminalreporter):
+    """How many loops all scenes of the suite took, and for which parts."""
+    found = sorted(_LOOPS_OF_WORKERS.union(_loops_compiled()))
+    if found:
+        terminalreporter.write_line(f"{len(found)} loops of lanes compiled")
+    if terminalreporter.config.getoption("verbose") > 0:
+        for text in found:
+            terminalreporter.write_line(f"  {' '.join(text.split())}")

@@ -1,5 +1,9 @@
 """Which loop jobs go through: the narrow one where few have a long way, or nothing else."""
 
+import time
+import tomllib
+from pathlib import Path
+
 import jax
 import numpy as np
 import pytest
@@ -114,3 +118,32 @@ def test_lanes_do_not_wait_for_the_longest_job_of_every_batch(longest):
 def test_a_few_jobs_and_none_are_one_batch():
     assert _batches(np.zeros(0), 2) == 1
     assert _batches(np.full(3, 1e6), 2) == 1
+
+
+def test_a_version_that_copies_whole_tables_is_left_out():
+    project = Path(__file__).parents[3] / "pyproject.toml"
+    needed = tomllib.loads(project.read_text())["project"]["dependencies"]
+    assert "jaxlib!=0.11.1" in needed
+
+
+def test_twice_the_stops_take_twice_the_time():
+    """A version of jaxlib copied the table of all stops whenever a lane wrote into it."""
+    scene = fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        fx.supports.Spring(1.0),
+        fx.loads.Sine(1.0488, 3.0),
+        duration=3.0,
+    )
+
+    def spent(count):
+        """CPU seconds for so many stops, the better of two."""
+        tries = []
+        for _ in range(2):
+            before = time.process_time()
+            fx.solve(scene, 1e-3, ts=np.linspace(0, 3, count), method="resolved")
+            tries.append(time.process_time() - before)
+        return min(tries)
+
+    spent(16_000)  # compiled
+    assert spent(16_000) < 3 * spent(8_000)
