@@ -202,6 +202,20 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
     click.echo(json.dumps(friction_document(job), indent=2))
 
 
+@main.command()
+@_scene
+@click.option("--eps", type=float, default=1e-3, show_default=True, help="Period in m.")
+@click.option("--gamma", type=float, default=1.0, show_default=True)
+@click.option("--accuracy", type=float, default=1e-3, show_default=True, help="In eps.")
+def explain(scene: str | None, eps: float, gamma: float, accuracy: float) -> None:
+    """The composed equation of a scene, and which effects its accuracy calls for."""
+    _start()
+    from .explain import explain as explained
+    from .report import read_job
+
+    click.echo(repr(explained(read_job(scene).scene, eps, gamma, accuracy)))
+
+
 def _numbers(**given: str | None) -> dict[str, Any]:
     """Lists of numbers, of the options that are given.
 

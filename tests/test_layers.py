@@ -27,7 +27,7 @@ FLOORS = {
         {"model"},
         {"measured", "limit", "wiggly", "certificate", "slide_laws"},
         {"io", "sweeps", "convergence"},
-        {"cost"},
+        {"cost", "explain"},
         {"plot"},
         {"design"},
         {"studies"},

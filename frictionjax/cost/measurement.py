@@ -18,7 +18,7 @@ from ..model import (
     require_told_apart,
     scene_for,
 )
-from ..sweeps import explain, origin
+from ..sweeps import origin, set_meanings
 from ..wiggly import ENDED, Status, accuracies_of, is_ours, solver_of
 from .error_measures import MEASURES, errors_of
 from .instants import Instants, instants
@@ -288,6 +288,6 @@ def _of_reference(truth: Reference, name: str) -> float | str:
 
 def _described(data: xr.Dataset, scene: Scene) -> xr.Dataset:
     data["status"] = data["status"].astype(np.int8)
-    explain(data, _RUN | _REFERENCE | _COORDINATES)
+    set_meanings(data, _RUN | _REFERENCE | _COORDINATES)
     data.attrs = origin("What accuracy costs in time", scene)
     return data

@@ -70,7 +70,7 @@ def scene_text(scene: Scene) -> str:
     return eqx.tree_pformat(numbers, short_arrays=False, width=88)
 
 
-def explain(data: "xr.Dataset", meanings: dict[str, tuple[str | None, str]]) -> None:
+def set_meanings(data: "xr.Dataset", meanings: dict[str, tuple[str | None, str]]) -> None:
     """Attach units and long names, and CF flags to `status`."""
     for name, variable in data.variables.items():
         units, meaning = meanings[str(name)]
@@ -100,7 +100,7 @@ def describe(
     data: "xr.Dataset", scenes: Sequence[Scene], accuracy: float, solver: str
 ) -> "xr.Dataset":
     """Attach units, long names, CF flags and provenance to the data set of a sweep."""
-    explain(data, _MEANING)
+    set_meanings(data, _MEANING)
     title = "Convergence of a wiggly viscous system to directional dry friction"
     several = f"{len(scenes)} scenes, see the variable parts"
     scene = several if "scene" in data.dims else scenes[0]

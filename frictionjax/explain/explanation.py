@@ -1,0 +1,122 @@
+"""What a scene simulates at one eps, gamma and accuracy, and what that calls for."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from .._checks import as_real, require_numbers, with_nan
+from ..effects import Engine, LeadingOrder, Stage
+from ..model import Scene, coefficients_jit, known_scene, require_reach, scene_for
+from ..slide_laws import slide_data
+from ..wiggly import require_accuracy
+from .equation import composed_equation
+from .estimates import Estimate, Setting, estimate_of, finite_speed, higher_order
+
+_COLUMNS = {
+    "in_z": ("m", "largest change of the state, from above"),
+    "in_force": ("N", "largest change of the friction force, from above"),
+    "called_for": (None, "whether the change is larger than the accuracy asked for"),
+    "cost": ("1", "time with the effect over time without"),
+    "asked": (None, "whether the scene has it"),
+    "source": (None, "where the estimate comes from"),
+}
+
+
+class Explanation(NamedTuple):
+    """`equation`: text. `effects`: data set over `effect`, see `explain`."""
+
+    equation: str
+    effects: xr.Dataset
+
+    def __repr__(self) -> str:
+        names = [str(name) for name in self.effects.effect.values]
+        rows: list[tuple[str, ...]] = [
+            ("effect", "in z, m", "in force, N", "called for", "in scene", "cost", "")
+        ]
+        for name in names:
+            row = self.effects.sel(effect=name)
+            numbers = [_number(row[key]) for key in ("in_z", "in_force")]
+            words = [("no", "yes")[bool(row[key])] for key in ("called_for", "asked")]
+            cost = _number(row.cost)
+            rows.append((name, *numbers, *words, cost, str(row.source.values)))
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        lines = [
+            "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip()
+            for row in rows
+        ]
+        return "\n".join([self.equation, "", *lines])
+
+
+def _number(value: Any) -> str:
+    number = float(value)
+    return "-" if np.isnan(number) else f"{number:.3g}"
+
+
+@with_nan
+def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explanation:
+    """What a scene simulates, and which effects matter at an accuracy (in eps).
+
+    `.equation`: the composed equation as text. `.effects`: data set over `effect`, with
+    `in_z` (m) and `in_force` (N), estimates from above of what it changes in the state at
+    times outside of slips and in the friction force, `called_for` (`in_z` is more than
+    `accuracy` eps, or another scene is meant), `asked` (the scene has it), `cost` (time
+    with it over time without) and `source`. Rows: "higher order", what `LeadingOrder`
+    leaves out; "finite speed", what viscosity adds to dry friction; the scene's effects.
+
+    Raises `ValueError` for arguments out of range, and as `solve` does.
+    """
+    scene = known_scene(scene)
+    one = "one number eps > 0"
+    require_numbers("eps", eps, one, lambda e: (e > 0) & (e.ndim == 0))
+    needs = "one number gamma > 0"
+    require_numbers("gamma", gamma, needs, lambda g: (g > 0) & (g.ndim == 0))
+    require_accuracy(accuracy)
+    size, power = float(as_real(eps)), float(as_real(gamma))
+    plain = scene_for(Engine.SWEEP, scene)
+    require_reach(plain.potential, size)
+    law = coefficients_jit(plain.potential)
+    data = slide_data(plain, law, np.array([size]))
+    if data is None:
+        raise ValueError("scene.load turns too often: needs slides, to be told of them")
+    at = Setting(plain, size, power, law, data)
+    rows = {"higher order": _rest_of(scene, at), "finite speed": finite_speed(at)}
+    called = {name: _matters(row, at, accuracy) for name, row in rows.items()}
+    asked = {"higher order": not _leading(scene), "finite speed": True}
+    for effect in scene.effects:
+        if not isinstance(effect, LeadingOrder):
+            name = type(effect).__name__
+            rows[name], asked[name] = estimate_of(effect, at), True
+            known = not np.isnan(rows[name].in_z)
+            reads = effect.stage == Stage.READING
+            called[name] = _matters(rows[name], at, accuracy) if known else not reads
+    columns = {name: [getattr(row, name) for row in rows.values()] for name in _NUMBERS}
+    columns |= {"called_for": list(called.values()), "asked": list(asked.values())}
+    effects = xr.Dataset(
+        {name: ("effect", values) for name, values in columns.items()},
+        coords={"effect": list(rows)},
+    )
+    for name, (units, meaning) in _COLUMNS.items():
+        effects[name].attrs = {"long_name": meaning} | ({"units": units} if units else {})
+    text = composed_equation(scene, size, power).text()
+    return Explanation(text, effects.assign_attrs(accuracy=float(as_real(accuracy))))
+
+
+_NUMBERS = Estimate._fields
+
+
+def _leading(scene: Scene) -> bool:
+    return any(isinstance(effect, LeadingOrder) for effect in scene.effects)
+
+
+def _rest_of(scene: Scene, at: Setting) -> Estimate:
+    """Of the scene as it would be with Q."""
+    if not _leading(scene):
+        return higher_order(at)
+    rest = tuple(e for e in scene.effects if not isinstance(e, LeadingOrder))
+    whole = scene_for(Engine.SWEEP, scene.replace(effects=rest))
+    return higher_order(at._replace(scene=whole))
+
+
+def _matters(row: Estimate, at: Setting, accuracy: Any) -> bool:
+    return bool(row.in_z > float(as_real(accuracy)) * at.eps)
