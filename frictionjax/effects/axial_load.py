@@ -1,0 +1,24 @@
+"""Compression of a rod, held against the load at which it buckles."""
+
+import equinox as eqx
+
+from .._checks import Real, as_real, require_real
+from .abstract import AbstractEffect
+
+
+class AxialLoad(AbstractEffect):
+    """Asks how near a rod on an angular spring comes to buckling; changes no motion.
+
+    `bending_stiffness` B in N m^2, of the rod. The rod is held by its angular spring at
+    the root and hinged at the tip. Below the critical load of that column it is "not shown
+    to buckle", which is not "stable": bristles that are sheared at the tip can buckle below
+    it (J. R. Soc. Interface 7, 1581, 2010).
+
+    Raises `ValueError` for a bending stiffness that is not positive and finite.
+    """
+
+    bending_stiffness: Real = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        name, allowed = "effects.AxialLoad.bending_stiffness", "bending_stiffness > 0"
+        require_real(name, self.bending_stiffness, allowed, lambda B: B > 0)
