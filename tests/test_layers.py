@@ -22,7 +22,7 @@ FLOORS = {
     "": [
         {"_checks"},
         {"_compile", "_text", "numerics", "intervals"},
-        {"profiles", "bristles", "supports", "loads", "effects"},
+        {"profiles", "bristles", "supports", "loads", "effects", "rods"},
         {"tables"},
         {"model"},
         {"measured", "limit", "wiggly", "certificate", "slide_laws"},
