@@ -26,6 +26,7 @@ FLOORS = {
         {"tables"},
         {"model"},
         {"measured", "limit", "wiggly", "certificate", "slide_laws"},
+        {"contact"},
         {"io", "sweeps", "convergence"},
         {"cost", "explain"},
         {"plot"},

@@ -3,6 +3,7 @@
 from .angular_spring import AngularSpring as AngularSpring
 from .bristle import AbstractBristle as AbstractBristle
 from .bristle import Rod as Rod
+from .bristle import Stance as Stance
 from .custom import Custom as Custom
 from .homothetic import Homothetic as Homothetic
 from .linear import Linear as Linear

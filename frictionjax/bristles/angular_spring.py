@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import Real, as_real, is_known, require, require_real
-from .bristle import AbstractBristle, Rod, SlopeBounds
+from .bristle import AbstractBristle, Rod, SlopeBounds, Stance
 
 
 class AngularSpring(AbstractBristle):
@@ -75,3 +75,7 @@ class AngularSpring(AbstractBristle):
         """It rises by cot(theta) from the tip to its root, at the angle in use."""
         reach = self._reach(eta)
         return Rod((self.height - eta) / reach, reach)
+
+    def geometry(self, eta: Real) -> Stance:
+        """Always as long as it is; as steep as there is room for it."""
+        return Stance(self._angle(eta), self.length + jnp.zeros_like(eta))

@@ -27,6 +27,16 @@ class Rod(NamedTuple):
     reach: Real
 
 
+class Stance(NamedTuple):
+    """How a bristle stands: `angle` theta from the vertical (rad), `length` (m).
+
+    theta > 0 where the tip is behind the root, p < u: `u - p = length sin(theta)`.
+    """
+
+    angle: Real
+    length: Real
+
+
 class AbstractBristle(Part):
     """A bristle: two scalar functions of the height `eta` of the surface under its tip.
 
@@ -58,3 +68,16 @@ class AbstractBristle(Part):
     def rod(self, eta: Real) -> Rod | None:
         """The rod that has to clear the surface ahead of a tip at height `eta` (m)."""
         return None
+
+    def geometry(self, eta: Real) -> Stance | None:
+        """How it stands with its tip at height `eta` (m); None where nothing says it."""
+        return None
+
+    def root_constant(self) -> Real:
+        """`c` in m of the state `z = u + c`, u the place of the root.
+
+        0 of a bristle without a geometry: z is all that is known of its root.
+        """
+        zero = jnp.zeros(())
+        known = self.geometry(zero)
+        return zero if known is None else -known.length * jnp.sin(known.angle)

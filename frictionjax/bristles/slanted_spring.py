@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from .._checks import Real, as_real, require_real
-from .bristle import AbstractBristle, SlopeBounds
+from .bristle import AbstractBristle, SlopeBounds, Stance
 
 
 class SlantedSpring(AbstractBristle):
@@ -46,3 +46,8 @@ class SlantedSpring(AbstractBristle):
         lower = jnp.where(tangent < 0, cotangent, -jnp.inf)
         upper = jnp.where(tangent > 0, cotangent, jnp.inf)
         return SlopeBounds(lower, upper, "cot(angle)", "cot(angle)")
+
+    def geometry(self, eta: Real) -> Stance:
+        """Always at its angle; as long as there is room for it."""
+        length = (self.height - eta) / jnp.cos(self.angle)
+        return Stance(self.angle + jnp.zeros_like(eta), length)

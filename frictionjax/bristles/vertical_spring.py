@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from .._checks import Real, as_real
-from .bristle import AbstractBristle
+from .bristle import AbstractBristle, Stance
 
 
 class VerticalSpring(AbstractBristle):
@@ -31,3 +31,7 @@ class VerticalSpring(AbstractBristle):
 
     def energy(self, eta: Real) -> Real:
         return 0.5 * self.stiffness * (self.rest_length - self.height + eta) ** 2
+
+    def geometry(self, eta: Real) -> Stance:
+        """Upright, its tip under its root."""
+        return Stance(jnp.zeros_like(eta), self.height - eta)

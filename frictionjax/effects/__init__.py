@@ -2,10 +2,12 @@
 
 from .abstract import AbstractEffect as AbstractEffect
 from .abstract import Stage as Stage
+from .axial_load import AxialLoad as AxialLoad
 from .compliant_array import CompliantArray as CompliantArray
 from .engines import Engine as Engine
 from .engines import does as does
 from .engines import engine_of as engine_of
+from .engines import require_bristle as require_bristle
 from .engines import require_done as require_done
 from .engines import require_together as require_together
 from .leading_order import LeadingOrder as LeadingOrder

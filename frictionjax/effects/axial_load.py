@@ -1,9 +1,11 @@
 """Compression of a rod, held against the load at which it buckles."""
 
+from typing import ClassVar
+
 import equinox as eqx
 
 from .._checks import Real, as_real, require_real
-from .abstract import AbstractEffect
+from .abstract import AbstractEffect, Stage
 
 
 class AxialLoad(AbstractEffect):
@@ -12,10 +14,14 @@ class AxialLoad(AbstractEffect):
     `bending_stiffness` B in N m^2, of the rod. The rod is held by its angular spring at
     the root and hinged at the tip. Below the critical load of that column it is "not shown
     to buckle", which is not "stable": bristles that are sheared at the tip can buckle below
-    it (J. R. Soc. Interface 7, 1581, 2010).
+    it (J. R. Soc. Interface 7, 1581, 2010). `mechanics` tells the compression along a
+    solution, `sweep` and `study` the largest of every cell.
 
     Raises `ValueError` for a bending stiffness that is not positive and finite.
     """
+
+    stage: ClassVar[Stage] = Stage.READING
+    of_bristle: ClassVar[str] = "AngularSpring"
 
     bending_stiffness: Real = eqx.field(converter=as_real)
 

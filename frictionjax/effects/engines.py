@@ -17,6 +17,7 @@ class Engine(enum.Enum):
     PATH = "solve by a solver of diffrax, and for derivatives"
     SWEEP = "sweep"
     CERTIFICATE = "certify"
+    MECHANICS = "mechanics"
     COST = "work_precision, predict_cost and fit_budget"
     TRACE = "fit_trace"
 
@@ -38,16 +39,22 @@ _DOES: dict[str, frozenset[Engine]] = {
 _INSTEAD: dict[tuple[str, Engine], str] = {
     ("CompliantArray", _E.PATH): "methods of its own, for scenes of known numbers",
     ("CompliantArray", _E.CERTIFICATE): "a bristle at a time: a scene without it",
+    ("CompliantArray", _E.MECHANICS): "a bristle at a time: a scene without it",
 }
 """What to do where an engine does not do an effect, after "needs"."""
 
-_APART: dict[frozenset[str], str] = {}
+_ONE_ROD = "one rod, whose geometry the other leaves out: scenes apart"
+_APART: dict[frozenset[str], str] = {
+    frozenset({reading, other}): _ONE_ROD
+    for reading in ("AxialLoad",)
+    for other in ("LeadingOrder", "RigidArray", "CompliantArray")
+}
 """Pairs that no scene holds together, and why."""
 
 
 def does(engine: Engine, effect: AbstractEffect) -> bool:
     """Whether an engine does an effect."""
-    if effect.stage == Stage.POTENTIAL:
+    if effect.stage in (Stage.POTENTIAL, Stage.READING):
         return True
     return engine in _DOES.get(_name(effect), ())
 
@@ -73,6 +80,15 @@ def require_together(effects: Sequence[AbstractEffect]) -> None:
         if why is not None:
             names = f"{_name(first)} and {_name(second)}"
             raise ValueError(f"scene.effects = {names}: needs {why}")
+
+
+def require_bristle(effects: Sequence[AbstractEffect], bristle: Any) -> None:
+    """Raise `ValueError` for an effect that is about another class of bristles."""
+    for effect in effects:
+        needed, given = effect.of_bristle, _name(bristle)
+        if needed not in ("", given):
+            needs = f"an {needed}, as scene.effects has {_name(effect)}"
+            raise ValueError(f"scene.bristle = {given}: needs {needs}")
 
 
 def _name(effect: Any) -> str:

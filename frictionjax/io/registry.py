@@ -28,10 +28,17 @@ PARTS: dict[str, dict[str, type[Part]]] = {
         bristles.Linear,
     ),
     "support": _by_name(supports.Spring),
-    "load": _by_name(loads.Ramp, loads.Sine, loads.Triangle, loads.PiecewiseLinear),
+    "load": _by_name(
+        loads.Ramp, loads.Sine, loads.Triangle, loads.PiecewiseLinear, loads.Pulled
+    ),
 }
 """Of every table of a scene its kinds, by the name that files call them."""
-EFFECTS = _by_name(effects.LeadingOrder, effects.RigidArray, effects.CompliantArray)
+EFFECTS = _by_name(
+    effects.LeadingOrder,
+    effects.RigidArray,
+    effects.CompliantArray,
+    effects.AxialLoad,
+)
 """Kinds of the tables [[effects]], of which a scene has any number."""
 _WITHOUT_SCENE = PARTS["profile"] | PARTS["bristle"]  # what documents of results hold
 

@@ -13,6 +13,7 @@ import tomli_w
 
 from .._checks import Part, asked_names, require, write_whole
 from ..effects import AbstractEffect
+from ..loads import Pulled
 from ..measured import fit_profile, read_heights
 from ..model import BristlePotential, Scene
 from ..profiles import Fourier
@@ -41,8 +42,9 @@ def load_scene(path: Any) -> Scene:
     """Read the scene of a TOML file.
 
     Tables `[profile] [bristle] [support] [load]`, each with `kind` (the class's name) and
-    the constructor's arguments by name; `duration` and `z0` on top. Effects are tables
-    `[[effects]]`, likewise. A table `[study]` may
+    the constructor's arguments by name (of a `Pulled` load `position` is a table too,
+    `[load.position]`); `duration` and `z0` on top. Effects are tables `[[effects]]`,
+    likewise. A table `[study]` may
     be there and is not used. A `Fourier` profile may give `heights`, the file of a measured
     surface (relative to this one), with the options of `read_heights` and `fit_profile`.
 
@@ -136,7 +138,19 @@ def _built(where: str, entries: dict[str, Any], kinds: dict[str, type[Part]]) ->
     signature = inspect.signature(build.__init__).parameters
     needed = [n for n in names if signature[n].default is inspect.Parameter.empty]
     _require_keys(f"{where} ", given, names, needed)
-    return build(**{key: _numbers(f"{where} {key}", v) for key, v in given.items()})
+    return build(**{key: _argument(where, key, v) for key, v in given.items()})
+
+
+def _argument(where: str, key: str, value: Any) -> Any:
+    if key != "position":
+        return _numbers(f"{where} {key}", value)
+    # Of the end that a load is pulled by: a part too, but not pulled again.
+    _need(isinstance(value, dict), f"{where} {key} = {value!r}", "a table [load.position]")
+    return _built("[load.position]", value, _without(PARTS["load"], Pulled))
+
+
+def _without(kinds: dict[str, type[Part]], kind: type[Part]) -> dict[str, type[Part]]:
+    return {name: known for name, known in kinds.items() if known is not kind}
 
 
 def _meant(word: Any, known: Iterable[str]) -> str:
@@ -236,8 +250,11 @@ def _entries_of(name: str, part: Part, kinds: dict[str, type[Part]]) -> dict[str
     kind = type(part).__name__
     saved = kinds.get(kind) is type(part)
     require(saved, name, kind, f"one of {', '.join(kinds)}: no functions")
-    known = numbers_of_part(part).items()
-    return {"kind": kind} | {name: _plain(value) for name, value in known}
+    entries: dict[str, Any] = {"kind": kind}
+    for key, value in numbers_of_part(part).items():
+        inner = isinstance(value, Part)
+        entries[key] = _entries_of(name, value, kinds) if inner else _plain(value)
+    return entries
 
 
 def _plain(value: Any) -> Any:

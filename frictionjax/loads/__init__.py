@@ -5,6 +5,7 @@ from .custom import UnprovedLoad as UnprovedLoad
 from .load import AbstractLoad as AbstractLoad
 from .load import AbstractPull as AbstractPull
 from .piecewise_linear import PiecewiseLinear as PiecewiseLinear
+from .pulled import Pulled as Pulled
 from .ramp import Ramp as Ramp
 from .sine import Sine as Sine
 from .steep import steep_times as steep_times

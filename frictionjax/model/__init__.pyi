@@ -7,8 +7,6 @@ from .friction_coefficients import coefficients as coefficients
 from .friction_coefficients import coefficients_jit as coefficients_jit
 from .friction_law import dissipation_potential as dissipation_potential
 from .friction_law import friction as friction
-from .load_edges import known_turning_points as known_turning_points
-from .load_edges import padded_edges as padded_edges
 from .potentials import AbstractPotential as AbstractPotential
 from .potentials import BristlePotential as BristlePotential
 from .potentials import GivenPotential as GivenPotential
@@ -18,6 +16,8 @@ from .scene import Scene as Scene
 from .scene import known_scene as known_scene
 from .scene import require_times as require_times
 from .scene import require_told_apart as require_told_apart
+from .scene_loads import known_turning_points as known_turning_points
+from .scene_loads import padded_edges as padded_edges
 from .settings import SETTINGS as SETTINGS
 from .strip import strip_of as strip_of
 from .strip import strips_at as strips_at

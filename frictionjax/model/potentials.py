@@ -69,11 +69,18 @@ class AbstractPotential(Part):
     def points(self) -> int:
         """How many samples a period resolve `W'`."""
 
-    def tip(self, z: Real, eps: Real) -> tuple[Real, Real]:
-        """Well number and tip coordinate inside that well: y = number + inside."""
-        Y = z / eps
+    def tip(
+        self, z: Float[ArrayLike, "*z"], eps: Float[ArrayLike, "*eps"]
+    ) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+        """Well number and tip coordinate inside that well: `p = eps (number + inside)`.
+
+        z in m and eps in m, any shapes that broadcast.
+        """
+        if jnp.ndim(z) or jnp.ndim(eps):
+            return _elementwise(type(self).tip, self, *_floats(self, z, eps))
+        Y = jnp.asarray(z / eps)
         number = jnp.round(Y)
-        return number, self.well_coordinate(Y - number, eps)
+        return number, self.well_coordinate(Y - number, jnp.asarray(eps))
 
     def tip_force(self, y: Real, eps: Real) -> tuple[Real, Real]:
         """`V_eps'(z)` in N and `G = dz/dp` at the tip coordinate `y`."""

@@ -31,14 +31,14 @@ from .._checks import (
 )
 from .._compile import Program
 from ..bristles import AbstractBristle, pulling_text
-from ..effects import AbstractEffect, require_together
-from ..loads import AbstractLoad, AbstractPull
+from ..effects import AbstractEffect, require_bristle, require_together
+from ..loads import AbstractLoad, AbstractPull, Pulled
 from ..profiles import AbstractProfile
 from ..supports import AbstractSupport
 from ..tables import load_table
 from .admissibility import admissible_coefficients, require_convex
-from .load_edges import known_turning_points, padded_edges
 from .potentials import AbstractPotential, BristlePotential, potential
+from .scene_loads import held_load, known_turning_points, padded_edges
 from .settings import SETTINGS
 
 _ANEW = ByIdentity()  # the scene built of one with other leaves
@@ -94,10 +94,11 @@ class Scene(eqx.Module):
         load = _part("load", load, AbstractLoad)
         require(duration is not None, "scene.duration", "None", "a time > 0 in s")
         self.duration, self.z0 = as_real(duration), as_real(z0)
-        self.effects = _effects_of(effects)
+        self.effects = _effects_of(effects, self.bristle)
         require_real("scene.duration", self.duration, "duration > 0", lambda t: t > 0)
         require_real("scene.z0", self.z0, "a position in m")
-        self.load, self.turns = _with_turns(load, self.duration)
+        load, self.turns = _with_turns(load, self.duration)
+        self.load = held_load(load, self.support, self.potential)
         _require_hypotheses(self)
 
     def __check_init__(self):
@@ -162,13 +163,14 @@ def _part(name: str, part: Any, kind: type) -> Any:
     return checked(part)
 
 
-def _effects_of(given: Any) -> tuple[AbstractEffect, ...]:
+def _effects_of(given: Any, bristle: Any) -> tuple[AbstractEffect, ...]:
     row = isinstance(given, tuple | list)
     good = row and all(isinstance(effect, AbstractEffect) for effect in given)
     needs = "effects of frictionjax.effects, as (effects.LeadingOrder(),)"
     require(good, "scene.effects", given, needs)
     effects = tuple(checked(effect) for effect in given)
     require_together(effects)
+    require_bristle(effects, bristle)
     return effects
 
 
@@ -248,11 +250,14 @@ def _built_anew(scene: Scene) -> Scene:
     if is_known(scene):
         with eagerly(scene):
             return dataclasses.replace(scene)
-    if not is_known(scene.load, scene.duration):
+    load, turns = scene.load, scene.turns
+    if is_known(load, scene.duration):
+        # Derivatives by other numbers of a scene that was made longer.
+        with eagerly(load, scene.duration):
+            load, turns = _with_turns(checked(load), scene.duration)
+    elif not isinstance(load, Pulled):
         return scene
-    # Derivatives by other numbers of a scene that was made longer.
-    with eagerly(scene.load, scene.duration):
-        load, turns = _with_turns(checked(scene.load), scene.duration)
+    load = held_load(load, scene.support, scene.potential)
     return exchanged(scene, {"load": load, "turns": turns})
 
 

@@ -16,9 +16,9 @@ from ..tables import (
     load_table,
 )
 from .friction_coefficients import coefficients_jit
-from .load_edges import known_turning_points
 from .potentials import AbstractPotential, BristlePotential
 from .scene import Scene
+from .scene_loads import known_turning_points
 from .tabulated_potential import tabulated_potentials
 
 

@@ -24,6 +24,8 @@ _MEANING = {
     "time": ("s", "time"),
     "z": ("m", "state of the wiggly system, z_eps"),
     "z_spread": ("m", "standard deviation of the states of an array's bristles"),
+    "compression": ("N", "largest compression along the rod at the times asked for"),
+    "buckling_share": ("1", "it over the critical load: below 1 not shown to buckle"),
     "sup_error": ("m", "sup over [0, T] of |z_eps - z|"),
     "strip_excess": ("m", "sup over [0, T] of the distance of z_eps from the strip"),
     "status": (None, "how the cell ended"),

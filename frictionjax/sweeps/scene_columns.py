@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import cells_of, viscosity_of
+from ..contact import largest_compression
 from ..limit import LimitSolution, solve_limit
 from ..model import Scene, coefficients_jit, strips_at, tabulated_scene
 from ..slide_laws import slide_data
@@ -67,6 +68,10 @@ def scene_columns(
     }
     columns["viscosity"] = (DIMS[:2], viscosity_of(request.eps, request.gamma[:, None]))
     columns |= {name: (DIMS[2:], v) for name, v in _limit_values(scene, limit).items()}
+    reading = largest_compression(scene, request.eps, columns["z"][1])
+    if reading is not None:
+        columns["compression"] = DIMS[:2], reading.compression
+        columns["buckling_share"] = DIMS[:2], reading.share
     known = None
     if request.suprema:
         found = coefficients_jit(scene.potential)

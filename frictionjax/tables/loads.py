@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import Real, as_real, exchanged, is_concrete
-from ..loads import AbstractPull, PiecewiseLinear, Ramp, Sine, Triangle
+from ..loads import AbstractPull, PiecewiseLinear, Pulled, Ramp, Sine, Triangle
 from .settings import SETTINGS, size_for
 
 
@@ -91,6 +91,28 @@ def _(load: PiecewiseLinear) -> PiecewiseLinear:
     return PiecewiseLinear(
         jnp.asarray(times), jnp.asarray(np.pad(values, (0, more), "edge"))
     )
+
+
+@_table_of.register
+def _(load: Pulled) -> AbstractPull:
+    table = _table_of(load.position)
+    k = jnp.asarray(load.stiffness)
+    if isinstance(table, PiecewiseLinear):
+        return exchanged(table, {"values": load.of_place(table.values)})
+    if not isinstance(table, SumOfLoads):
+        return load
+    straight, sine = table.straight, table.sine
+    ramp = exchanged(
+        straight.ramp,
+        {"rate": k * straight.ramp.rate, "start": load.of_place(straight.ramp.start)},
+    )
+    triangle = _times(straight.triangle, k)
+    straight = exchanged(straight, {"ramp": ramp, "triangle": triangle})
+    return exchanged(table, {"straight": straight, "sine": _times(sine, k)})
+
+
+def _times(load: Sine | Triangle, factor: Real) -> AbstractPull:
+    return exchanged(load, {"amplitude": factor * load.amplitude})
 
 
 def load_table(load: AbstractPull) -> AbstractPull:

@@ -37,4 +37,5 @@ from .stepping import Control as Control
 from .stepping import ControlState as ControlState
 from .stepping import judge as judge
 from .stepping import step_of as step_of
+from .trajectory import Solution as Solution
 from .trajectory import solve as solve

@@ -93,3 +93,26 @@ def test_vertical_and_homothetic_do_not_lean():
 def test_wrong_parameters_are_named(make, message):
     with pytest.raises(ValueError, match=message):
         make()
+
+
+@pytest.mark.parametrize(
+    ("part", "constant"),
+    [
+        (fx.bristles.VerticalSpring(1.0, 1.2, 1.0), 0.0),
+        (fx.bristles.SlantedSpring(2.0, 1.5, 1.0, -0.4), np.tan(0.4)),
+        (fx.bristles.AngularSpring(2.0, 1.25, 1.0, 0.1), -0.75),
+    ],
+)
+def test_the_tip_hangs_from_the_root_by_its_geometry(part, constant):
+    """z = u + c, and from u along the bristle to p (eqs. of Sections 3.1 to 3.3)."""
+    assert float(part.root_constant()) == pytest.approx(constant, rel=1e-15)
+    stands = part.geometry(ETA)
+    u = part.offset(ETA) - constant  # of tips at p = 0
+    np.testing.assert_allclose(u, stands.length * np.sin(stands.angle), atol=1e-15)
+    np.testing.assert_allclose(1.0 - ETA, stands.length * np.cos(stands.angle), rtol=1e-15)
+
+
+def test_bristles_of_two_functions_have_no_geometry():
+    for part in (fx.bristles.Homothetic(1.0), fx.bristles.Custom(jnp.sin, jnp.exp)):
+        assert part.geometry(ETA) is None
+        assert float(part.root_constant()) == 0

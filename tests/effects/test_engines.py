@@ -8,17 +8,27 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.effects import AbstractEffect, Engine, Stage, does
+from frictionjax.limit import LimitSolution
 
 EFFECTS = {
     "LeadingOrder": fx.effects.LeadingOrder(),
     "RigidArray": fx.effects.RigidArray([0.0, 0.1]),
     "CompliantArray": fx.effects.CompliantArray([0.0, 0.1]),
+    "AxialLoad": fx.effects.AxialLoad(1.0),
 }
+APART = {
+    frozenset({rod, other})
+    for rod in ("AxialLoad",)
+    for other in ("LeadingOrder", "RigidArray", "CompliantArray")
+}
+AT_REST = LimitSolution(*([np.zeros(2)] * 3))
 TS = np.linspace(0, 1, 4001)
 
 
 def scene_of(*effects):
     profile, bristle = fx.profiles.Sine(0.1), fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
+    if any(effect.of_bristle for effect in effects):
+        bristle = fx.bristles.AngularSpring(1.0, 1.4, 1.0, 0.3)
     parts = fx.supports.Spring(1.0), fx.loads.Ramp(1.0, 0.0)
     return fx.Scene(profile, bristle, *parts, duration=1.0, effects=effects)
 
@@ -31,6 +41,7 @@ CALLS = {
     Engine.SWEEP: lambda s: fx.sweep(s, [0.05], [1.0], ts=[0.5, 1.0]),
     Engine.CERTIFICATE: lambda s: fx.certify(s, 0.05, 1.0, TS, np.clip(TS - 0.1, 0, 1)),
     Engine.COST: lambda s: fx.predict_cost(s, [0.05], [1.0]),
+    Engine.MECHANICS: lambda s: fx.mechanics(s, AT_REST),
 }
 
 
@@ -58,7 +69,10 @@ def test_random_threes(seed):
     engine = draw.choice(list(CALLS))
     effects = [EFFECTS[name] for name in names]
     if len(set(names)) < 3:
-        with pytest.raises(ValueError, match=r"scene\.effects = .* needs one of each kind"):
+        with pytest.raises(ValueError, match=r"scene\.effects = .* needs one"):
+            scene_of(*effects)
+    elif any(pair <= set(names) for pair in APART):
+        with pytest.raises(ValueError, match=r"scene\.effects = .* needs one rod, whose"):
             scene_of(*effects)
     elif all(does(engine, effect) for effect in effects):
         CALLS[engine](scene_of(*effects))
@@ -67,10 +81,27 @@ def test_random_threes(seed):
             CALLS[engine](scene_of(*effects))
 
 
+@pytest.mark.parametrize("pair", [*itertools.combinations(EFFECTS, 2)], ids="-".join)
+def test_a_pair_is_held_together_or_refused_by_its_names(pair):
+    effects = [EFFECTS[name] for name in pair]
+    if frozenset(pair) in APART:
+        with pytest.raises(
+            ValueError, match=f"scene.effects = {' and '.join(pair)}: needs"
+        ):
+            scene_of(*effects)
+        return
+    scene = scene_of(*effects)
+    for engine, call in CALLS.items():
+        if not all(does(engine, effect) for effect in effects):
+            with pytest.raises(ValueError, match="does not do"):
+                call(scene)
+
+
 def test_order_does_not_matter():
+    together = "LeadingOrder", "RigidArray", "CompliantArray"
     found = [
         fx.solve(scene_of(*(EFFECTS[n] for n in order)), 0.05, ts=[0.5, 1.0]).z
-        for order in itertools.permutations(EFFECTS)
+        for order in itertools.permutations(together)
     ]
     for z in found[1:]:
         np.testing.assert_allclose(z, found[0], rtol=1e-12)

@@ -10,7 +10,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax._checks.status_enums import Outcome
-from frictionjax.design.bristle.inverse import Pulled
+from frictionjax.design.bristle.inverse import PulledParts
 from frictionjax.design.bristle.result import AngleFit
 from frictionjax.design.common.design_result import DesignResult
 from frictionjax.design.common.quantities import Slopes
@@ -149,7 +149,7 @@ def test_documents_that_are_none_are_refused(change, said):
 def angle_fit(shape=()):
     one, ends = jnp.ones(shape), jnp.array([[0.5, 1.5], [NAN, NAN]])
     roots = jnp.ones((*shape, 2))
-    codes, pulled = jnp.zeros(shape, dtype=int), Pulled(NAN * one, NAN * one)
+    codes, pulled = jnp.zeros(shape, dtype=int), PulledParts(NAN * one, NAN * one)
     slopes = Slopes(jnp.asarray(0.1), jnp.asarray(-0.1))
     numbers = one, 2 * one, 3 * one, 2 * one, roots, ends, ends / 0.0
     parts = codes, pulled, slopes, fx.profiles.Sine(0.1)

@@ -32,6 +32,7 @@ LOADS = [
     fx.loads.Sine(1.0488, ODD),
     fx.loads.Triangle(1 / 3, 3.0),
     fx.loads.PiecewiseLinear([0.0, ODD, 3.0], [0.0, 1 / 3, -1.0]),
+    fx.loads.Pulled(fx.loads.PiecewiseLinear([0.0, ODD], [1 / 3, -1.0]), 1 / 7),
 ]
 
 
@@ -278,3 +279,18 @@ def test_a_misspelt_table_is_guessed():
     text = scene_document(SCENES[-1]).replace("[bristle]", "[brisle]")
     with pytest.raises(ValueError, match=r"brisle is unknown: .*\(bristle\?\)"):
         parse_scene(text, "rough.toml")
+
+
+def test_a_pulled_load_holds_the_table_of_its_position():
+    document = scene_document(scene(load=LOADS[-1]))
+    assert "[load.position]" in document
+    for old, new, message in (
+        (
+            'kind = "PiecewiseLinear"',
+            'kind = "Pulled"',
+            r"\[load.position\] kind = 'Pulled'",
+        ),
+        ("times", "moments", r"\[load.position\] moments is unknown"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            parse_scene(document.replace(old, new), "scene.toml")

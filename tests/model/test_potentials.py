@@ -207,3 +207,16 @@ def test_shapes_broadcast():
     assert potential.force(0.1, 1e-2).shape == ()
     lanes = [potential.force(GRID, e) for e in (1e-2, 1e-3)]
     np.testing.assert_allclose(potential.force(GRID, eps), np.stack(lanes), rtol=1e-14)
+
+
+def test_tips_of_many_states_and_eps_at_once():
+    potential = fx.potential(*pair("fourier", "angular", 1, 5))
+    z, eps = np.linspace(-0.3, 0.3, 7), np.array([[1e-3], [2e-2]])
+    number, inside = potential.tip(z, eps)
+    one_by_one = [[potential.tip(x, e) for x in z] for e in eps[:, 0]]
+    np.testing.assert_array_equal(number, [[n for n, _ in row] for row in one_by_one])
+    np.testing.assert_allclose(inside, [[y for _, y in row] for row in one_by_one])
+    state = eps * (number + inside) + jax.vmap(jax.vmap(potential.offset, (0, None)))(
+        inside, eps[:, 0]
+    )
+    np.testing.assert_allclose(state, np.broadcast_to(z, (2, 7)), atol=1e-16)

@@ -45,6 +45,16 @@ def test_functions_are_all_bent():
     np.testing.assert_array_equal(jax.vmap(straight_part(load))(T), 0.0)
 
 
+@pytest.mark.parametrize("name", LOADS)
+def test_a_pulled_load_is_its_position_stretched(name):
+    load = L.Pulled(LOADS[name], 0.3).held_by(np.asarray(1.7), np.asarray(-0.4))
+    table = load_table(load)
+    assert shapes(table) == shapes(load_table(LOADS[name]))
+    expected = 1.7 * (jax.vmap(LOADS[name])(T) - 0.7)
+    np.testing.assert_allclose(jax.vmap(table)(T), expected, atol=1e-14)
+    np.testing.assert_allclose(jax.vmap(load)(T), expected, atol=1e-14)
+
+
 def shapes(table):
     return type(table), *(np.shape(leaf) for leaf in jax.tree_util.tree_leaves(table))
 

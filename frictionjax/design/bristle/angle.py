@@ -32,7 +32,7 @@ from ..common import (
     with_arrays,
 )
 from .admissible import Admissible, survey
-from .inverse import Pulled, solve_targets
+from .inverse import PulledParts, solve_targets
 from .result import AngleFit, intervals_text
 from .settings import SETTINGS
 from .status import GOOD, FitStatus
@@ -186,7 +186,7 @@ def fit_angle(
 
 def _with_pulled(
     code: Any, asked: tuple, targets: Any, seen: Admissible
-) -> tuple[Any, Pulled]:
+) -> tuple[Any, PulledParts]:
     """Codes where bristles that pull, and may not, reach a target, and the nearest of them.
 
     The same program as for those that press. Where all are found it is not run.
@@ -194,12 +194,12 @@ def _with_pulled(
     none = jnp.full(targets.shape, jnp.nan)
     failed = (int(FitStatus.UNREACHABLE), int(FitStatus.INADMISSIBLE))
     if is_concrete(code) and not np.isin(np.asarray(code), failed).any():
-        return code, Pulled(none, none)
+        return code, PulledParts(none, none)
     found = _in_sizes(targets, lambda some: _solve(*asked, some, seen))
     reached = jnp.isin(found.code, np.array([int(status) for status in GOOD]))
     pulls = reached & jnp.isin(code, np.array(failed))
     nearest = (jnp.where(pulls, one, none) for one in (found.value, found.alpha))
-    return jnp.where(pulls, int(FitStatus.PULLS), code), Pulled(*nearest)
+    return jnp.where(pulls, int(FitStatus.PULLS), code), PulledParts(*nearest)
 
 
 def _asked(given: tuple) -> tuple[str, Any]:

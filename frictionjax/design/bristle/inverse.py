@@ -32,7 +32,7 @@ class Solutions(NamedTuple):
     code: Int[Array, ""]
 
 
-class Pulled(NamedTuple):
+class PulledParts(NamedTuple):
     """The nearest bristle that pulls and reaches the target; NaN where none was looked for.
 
     `value` of the free number, and `alpha` < 0 in N.

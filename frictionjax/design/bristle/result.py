@@ -21,7 +21,7 @@ from ..common import (
     on_slopes,
     quantity_of,
 )
-from .inverse import Pulled
+from .inverse import PulledParts
 from .sensitivities import Sensitivities, sensitivities_of
 from .status import GOOD, FitStatus
 
@@ -31,7 +31,7 @@ def _unknown(entries: dict[str, Any]) -> Real:
     return jnp.full(np.shape(entries["target"]), jnp.nan)
 
 
-_PULLED = record(Pulled, Pulled._fields, LEAF)
+_PULLED = record(PulledParts, PulledParts._fields, LEAF)
 
 
 class AngleFit(DesignResult, CodedResult, eqx.Module):
@@ -57,7 +57,7 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
     admissible: Real
     reachable: Real
     code: Real
-    pulled: Pulled
+    pulled: PulledParts
     slopes: Slopes
     profile: AbstractProfile
     free: str = eqx.field(static=True)
@@ -76,7 +76,9 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
             "code": CODES,
             "alpha": LEAF.or_else(_unknown),
             "pulling": AS_IS.or_else(lambda entries: True),
-            "pulled": _PULLED.or_else(lambda entries: Pulled(*[_unknown(entries)] * 2)),
+            "pulled": _PULLED.or_else(
+                lambda entries: PulledParts(*[_unknown(entries)] * 2)
+            ),
             "bristle": PART,
             "profile": PART,
             "slopes": record(Slopes, Slopes._fields, LEAF),
@@ -115,7 +117,7 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
             self.admissible,
             self.reachable,
             self.code[index],
-            Pulled._make(part[index] for part in self.pulled),
+            PulledParts._make(part[index] for part in self.pulled),
             self.slopes,
             self.profile,
             self.free,

@@ -1,13 +1,35 @@
-"""Where a load of known numbers turns: times that do not depend on its class."""
+"""The load of a scene: held by its spring, and where it turns whatever its class."""
 
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from .._checks import require
 from .._compile import Interpreted, padded_size
-from ..loads import AbstractLoad
+from ..loads import AbstractLoad, Pulled
+from ..supports import AbstractSupport, Spring
+from .potentials import AbstractPotential, BristlePotential
 from .settings import SETTINGS
+
+
+def held_load(
+    load: AbstractLoad, support: AbstractSupport, potential: AbstractPotential
+) -> AbstractLoad:
+    """A `Pulled` load with the scene's k_h and c; others as they are.
+
+    Without a bristle u is z. Raises `ValueError` for another support than a spring.
+    """
+    if not isinstance(load, Pulled):
+        return load
+    needs = "a Spring, as the load is Pulled: l = k_h (q - L_h + c)"
+    linear = isinstance(support, Spring)
+    require(linear, "scene.support", type(support).__name__, needs)
+    constant = jnp.zeros(())
+    if isinstance(potential, BristlePotential):
+        constant = potential.bristle.root_constant()
+    return load.held_by(support.stiffness, constant)  # type: ignore[attr-defined]
 
 
 @Interpreted
