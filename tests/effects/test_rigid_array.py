@@ -57,6 +57,7 @@ def test_weights_are_how_often_a_tip_stands_there():
     assert rho_of([0.0, 0.1], [1.0, 3.0]) == pytest.approx(repeated, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_tips_are_no_more_work():
     phases = np.random.default_rng(0).uniform(0, 0.5, 100_000)
     plus, _ = rho_of(phases)

@@ -37,7 +37,7 @@ def friction_of_a_slide(scene, eps):
     return float(np.diff(solution.dissipation)[0] / np.diff(solution.z)[0])
 
 
-@pytest.mark.parametrize("rate", [1.0, -1.0])
+@pytest.mark.parametrize("rate", [1.0, pytest.param(-1.0, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("bristle", BRISTLES)
 def test_what_the_higher_order_does_to_friction_is_less_than_told(bristle, rate):
     eps = 1e-2

@@ -26,7 +26,12 @@ def found():
     return slides_of_designs([designs[0], None, *designs[1:]], NUMBERS)
 
 
-@pytest.mark.parametrize(("place", "design"), [*zip((0, 2, 3), DESIGNS, strict=True)])
+# Each alone takes a program of its own to compile.
+ALONE = [(2, DESIGNS[1])]
+ALONE += [pytest.param(n, DESIGNS[i], marks=pytest.mark.slow) for n, i in ((0, 0), (3, 2))]
+
+
+@pytest.mark.parametrize(("place", "design"), ALONE)
 def test_each_is_as_it_is_alone(found, place, design):
     alone = fx.steady_slide(*design, 1e-2, 1.0, 2.0, fx.supports.Spring(0.5))
     assert found.status[place] == fx.Status.OK
@@ -40,6 +45,7 @@ def test_no_design_has_no_slide(found):
     assert all(np.isnan(forces[1]) for forces in found.forces.values())
 
 
+@pytest.mark.slow
 def test_bristles_without_contact_are_not_tried():
     # Longer than high by 5%: at eps = 1 hills reach higher than that.
     lying = fx.bristles.AngularSpring(1.0, 1.05, 1.0, 0.04)
