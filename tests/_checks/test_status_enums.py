@@ -9,7 +9,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax._checks.status_enums import counted
-from frictionjax.design.bristle.inverse import Pulled
+from frictionjax.design.bristle.inverse import PulledParts
 from frictionjax.design.bristle.result import AngleFit
 from frictionjax.design.bristle.status import FitStatus
 from frictionjax.design.slide.check import DesignCheck
@@ -44,7 +44,7 @@ def angle_fit(codes):
     codes, one = jnp.asarray(codes), jnp.ones(jnp.shape(codes))
     codes = jnp.where(codes == 0, 0, int(FitStatus.INADMISSIBLE))
     ends = jnp.ones((1, 2))
-    known = one, one, one, one, one[..., None], ends, ends, codes, Pulled(one, one)
+    known = one, one, one, one, one[..., None], ends, ends, codes, PulledParts(one, one)
     return AngleFit(None, *known, None, None, "angle", "ratio")
 
 
