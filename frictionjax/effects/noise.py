@@ -1,0 +1,35 @@
+"""Thermal noise."""
+
+from typing import Any
+
+import equinox as eqx
+
+from .._checks import Real, as_real, require_real
+from .abstract import AbstractEffect
+
+
+class Noise(AbstractEffect):
+    """Thermal noise of an overdamped tip, of the energy `T_eps = temperature eps^exponent`:
+
+    `eps^gamma dz = (l - Phi'(z) - V_eps'(z)) dt + sqrt(2 eps^gamma T_eps) dB`.
+
+    `temperature` in J per m^exponent, Boltzmann's constant included; `exponent`: a number.
+    Wells are of the order of eps rho deep, so the exponent 1 keeps barrier over temperature
+    as eps falls: noise is then felt at every eps alike. Above 1 it vanishes, below 1 it
+    takes over.
+
+    Raises `ValueError` for a temperature that is not positive and finite (without noise a
+    scene has no such effect), or an exponent that is not finite.
+    """
+
+    temperature: Real = eqx.field(converter=as_real)
+    exponent: Real = eqx.field(converter=as_real, default=1.0)
+
+    def __check_init__(self):
+        allowed = "temperature > 0 in J; leave the effect out for none"
+        require_real("noise.temperature", self.temperature, allowed, lambda T: T > 0)
+        require_real("noise.exponent", self.exponent, "any exponent of eps")
+
+    def temperature_at(self, eps: Any) -> Any:
+        """`T_eps` in J; eps in m, any shape."""
+        return self.temperature * eps**self.exponent

@@ -1,0 +1,16 @@
+from .constant_force import diffusion_ratio as diffusion_ratio
+from .constant_force import mean_speed as mean_speed
+from .smoluchowski import SmoluchowskiFriction as SmoluchowskiFriction
+from .smoluchowski import SmoluchowskiStatus as SmoluchowskiStatus
+from .smoluchowski import smoluchowski_friction as smoluchowski_friction
+from .noisy_paths import MeanInterval as MeanInterval
+from .noisy_paths import NoisyCell as NoisyCell
+from .noisy_paths import NoisyPaths as NoisyPaths
+from .noisy_paths import PathStatus as PathStatus
+from .noisy_paths import StateHistogram as StateHistogram
+from .noisy_paths import mean_interval as mean_interval
+from .noisy_paths import noisy_paths as noisy_paths
+from .noisy_paths import run_paths as run_paths
+from .noisy_paths import state_histogram as state_histogram
+from .random_keys import key_words as key_words
+from .random_keys import path_keys as path_keys

@@ -1,0 +1,50 @@
+"""Keys of paths: two words each, counted."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import UInt32
+
+from .._checks import require, require_whole
+
+_WORDS = 2**32
+
+
+def key_words(key: Any) -> UInt32[np.ndarray, " words"]:
+    """The two words of a seed (a whole number >= 0, below 2^32) or of any JAX key.
+
+    Of a key of another generator than JAX's own (threefry), two words drawn with it.
+    Raises `ValueError` for anything else, and for an array of keys.
+    """
+    allowed = "a seed, a whole number >= 0, or one key of jax.random"
+    if isinstance(key, int | np.integer) and not isinstance(key, bool):
+        require_whole("key", key, 0)
+        require(key < _WORDS, "key", key, "a seed below 2^32")
+        return np.asarray(jax.random.key_data(_of_seed(int(key))))
+    require(isinstance(key, jax.Array), "key", key, allowed)
+    if not jnp.issubdtype(key.dtype, jax.dtypes.prng_key):
+        words = np.asarray(key)
+        raw = words.shape == (2,) and words.dtype == np.uint32
+        require(raw, "key", key, allowed)
+        return words
+    require(key.shape == (), "key", f"an array of keys {key.shape}", allowed)
+    if str(jax.random.key_impl(key)) == "threefry2x32":
+        return np.asarray(jax.random.key_data(key))
+    return np.asarray(jax.random.bits(key, (2,), np.uint32))
+
+
+def path_keys(key: Any, paths: int) -> UInt32[np.ndarray, "paths words"]:
+    """Keys of the first paths of an ensemble, `fold_in(key, i)`: more paths change none.
+
+    Cells of a sweep get theirs in the same way, from the key of the sweep and their number.
+    """
+    require_whole("paths", paths)
+    whole = jax.random.wrap_key_data(key_words(key), impl="threefry2x32")
+    keys = jax.vmap(lambda i: jax.random.fold_in(whole, i))(np.arange(paths))
+    return np.asarray(jax.random.key_data(keys))
+
+
+def _of_seed(seed: int) -> Any:
+    return jax.random.key(seed, impl="threefry2x32")
