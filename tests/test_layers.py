@@ -25,6 +25,7 @@ FLOORS = {
         {"profiles", "bristles", "supports", "loads", "effects", "rods"},
         {"tables"},
         {"model"},
+        {"stochastic"},
         {"measured", "limit", "wiggly", "certificate", "slide_laws"},
         {"contact"},
         {"io", "sweeps", "convergence"},

@@ -33,6 +33,7 @@ def engine_of(method: Any) -> Engine:
 _E = Engine
 _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset({_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP}),
+    "Noise": frozenset(),
 }
 """Of effects that are no part of the potential: the engines that do them."""
 
@@ -48,6 +49,9 @@ _APART: dict[frozenset[str], str] = {
     frozenset({reading, other}): _ONE_ROD
     for reading in ("AxialLoad",)
     for other in ("LeadingOrder", "RigidArray", "CompliantArray")
+}
+_APART |= {
+    frozenset({"CompliantArray", "Noise"}): "one of them: each bristle has its own noise",
 }
 """Pairs that no scene holds together, and why."""
 

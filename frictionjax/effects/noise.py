@@ -1,11 +1,11 @@
 """Thermal noise."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 import equinox as eqx
 
 from .._checks import Real, as_real, require_real
-from .abstract import AbstractEffect
+from .abstract import AbstractEffect, Stage
 
 
 class Noise(AbstractEffect):
@@ -22,13 +22,17 @@ class Noise(AbstractEffect):
     scene has no such effect), or an exponent that is not finite.
     """
 
+    stage: ClassVar[Stage] = Stage.STATE
+
     temperature: Real = eqx.field(converter=as_real)
     exponent: Real = eqx.field(converter=as_real, default=1.0)
 
     def __check_init__(self):
         allowed = "temperature > 0 in J; leave the effect out for none"
-        require_real("noise.temperature", self.temperature, allowed, lambda T: T > 0)
-        require_real("noise.exponent", self.exponent, "any exponent of eps")
+        require_real(
+            "effects.Noise.temperature", self.temperature, allowed, lambda T: T > 0
+        )
+        require_real("effects.Noise.exponent", self.exponent, "any exponent of eps")
 
     def temperature_at(self, eps: Any) -> Any:
         """`T_eps` in J; eps in m, any shape."""

@@ -5,7 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..effects import AbstractEffect, CompliantArray, LeadingOrder, RigidArray, Stage
+from ..effects import (
+    AbstractEffect,
+    CompliantArray,
+    LeadingOrder,
+    Noise,
+    RigidArray,
+    Stage,
+)
 from ..model import AbstractPotential, BristlePotential, Scene
 
 
@@ -68,3 +75,11 @@ def _(effect: CompliantArray, equation: Equation) -> Equation:
     motion = "eps^gamma z_i' = l(t) - Phi'(z_i) - V_eps'(z_i + eps c_i)"
     mean = f"z = mean of z_i, i = 1 .. {count}"
     return Equation(motion, (*equation.where, mean))
+
+
+@with_effect.register
+def _(effect: Noise, equation: Equation) -> Equation:
+    driven = equation.motion.replace("z' = ", "dz = (")
+    motion = f"{driven}) dt + sqrt(2 eps^gamma T_eps) dB"
+    bath = f"T_eps = {float(effect.temperature):.6g} eps^{float(effect.exponent):.6g} J"
+    return Equation(motion, (*equation.where, f"{bath}, B a Wiener process"))

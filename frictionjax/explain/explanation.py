@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 
 from .._checks import as_real, require_numbers, with_nan
-from ..effects import Engine, LeadingOrder, Stage
-from ..model import Scene, coefficients_jit, known_scene, require_reach, scene_for
+from ..effects import LeadingOrder, Stage
+from ..model import Scene, coefficients_jit, composed, known_scene, require_reach
 from ..slide_laws import slide_data
 from ..wiggly import require_accuracy
 from .equation import composed_equation
@@ -73,7 +73,7 @@ def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explana
     require_numbers("gamma", gamma, needs, lambda g: (g > 0) & (g.ndim == 0))
     require_accuracy(accuracy)
     size, power = float(as_real(eps)), float(as_real(gamma))
-    plain = scene_for(Engine.SWEEP, scene)
+    plain = composed(scene)
     require_reach(plain.potential, size)
     law = coefficients_jit(plain.potential)
     data = slide_data(plain, law, np.array([size]))
@@ -114,7 +114,7 @@ def _rest_of(scene: Scene, at: Setting) -> Estimate:
     if not _leading(scene):
         return higher_order(at)
     rest = tuple(e for e in scene.effects if not isinstance(e, LeadingOrder))
-    whole = scene_for(Engine.SWEEP, scene.replace(effects=rest))
+    whole = composed(scene.replace(effects=rest))
     return higher_order(at._replace(scene=whole))
 
 

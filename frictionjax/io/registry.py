@@ -38,6 +38,7 @@ EFFECTS = _by_name(
     effects.RigidArray,
     effects.CompliantArray,
     effects.AxialLoad,
+    effects.Noise,
 )
 """Kinds of the tables [[effects]], of which a scene has any number."""
 _WITHOUT_SCENE = PARTS["profile"] | PARTS["bristle"]  # what documents of results hold

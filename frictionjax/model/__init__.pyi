@@ -1,6 +1,7 @@
 from .admissibility import require_admissible as require_admissible
 from .admissibility import require_reach as require_reach
 from .admissibility import rounding_of_alpha as rounding_of_alpha
+from .composition import composed as composed
 from .composition import scene_for as scene_for
 from .friction_coefficients import Coefficients as Coefficients
 from .friction_coefficients import coefficients as coefficients

@@ -117,6 +117,15 @@ def test_the_equation_holds_every_effect():
     assert "CompliantArray" in printed
 
 
+def test_noise_is_in_the_equation():
+    found = fx.explain(scene_of(effects=(fx.effects.Noise(0.02),)), 1e-2, 1.0)
+    motion, *_, bath, _ = found.equation.splitlines()
+    drift = "eps^gamma dz = (l(t) - Phi'(z) - V_eps'(z)) dt"
+    assert motion == f"{drift} + sqrt(2 eps^gamma T_eps) dB"
+    assert bath == "  T_eps = 0.02 eps^1 J, B a Wiener process"
+    assert bool(found.effects.sel(effect="Noise").asked)
+
+
 def test_a_given_potential_is_explained():
     potential = fx.GivenPotential(
         W=lambda Y: 0.02 * one_wave(Y), Q=lambda eps, Y: 0.01 * one_wave(Y)
