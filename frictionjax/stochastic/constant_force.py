@@ -7,7 +7,7 @@ from numpy.polynomial import legendre
 
 from .._checks import no_less, require, require_numbers, require_real
 from ..model import AbstractPotential
-from .sampled_potential import sampled_potential
+from .potential_samples import sampled_potential
 from .settings import SETTINGS
 
 
@@ -57,7 +57,7 @@ def _log_resistance(push: np.ndarray, rise: float, panels: _Panels) -> float:
     top = push.max(axis=1, keepdims=True)
     scaled = np.exp(push - top)
     inside = top[:, 0] + np.log(scaled @ panels.weights)
-    # The integral up to a period's start repeats, less by exp(-rise), in each period before.
+    # Integrals up to a period's start repeat in periods before, less by exp(-rise) each.
     before = _log_sum(inside) - rise - np.log(-np.expm1(-rise))
     starts = np.logaddexp.accumulate(np.append(before, inside[:-1]))
     here = top + np.log(scaled @ panels.partial.T)

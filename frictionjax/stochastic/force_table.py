@@ -7,9 +7,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..model import AbstractPotential
-from .sampled_potential import sampled_potential
+from .potential_samples import sampled_potential
 from .settings import SETTINGS
-
 
 _HALFWAY = np.array((1.0, 0.5, 0.25, 0.125))  # powers of u
 
@@ -71,7 +70,9 @@ def tabulated_force(potential: AbstractPotential, eps: float) -> TabulatedForce:
         places = np.arange(cells) / cells
     steepest = 2 * cells / eps * float(np.max(np.diff(nodes, append=nodes[:1])))
     lowest, highest = float(nodes.min()), float(nodes.max())
-    return TabulatedForce(ForceTable(cubics), float(error), lowest, highest, steepest)
+    return TabulatedForce(
+        ForceTable(jnp.asarray(cubics)), float(error), lowest, highest, steepest
+    )
 
 
 def _cubics(nodes: Float[np.ndarray, " cells"]) -> Float[np.ndarray, "4 cells"]:

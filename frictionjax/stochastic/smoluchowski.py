@@ -17,16 +17,16 @@ from .._checks import (
     with_nan,
 )
 from ..model import AbstractPotential
-from ..supports import AbstractSupport, Spring
+from ..supports import Spring
 from .driven_period import Drive
-from .periodic_density import (
+from .fixed_point import (
     PeriodicDensity,
     Window,
     on_finer_cells,
     periodic_density,
     with_room,
 )
-from .sampled_potential import sampled_potential
+from .potential_samples import sampled_potential
 from .settings import SETTINGS
 
 
@@ -102,7 +102,7 @@ def _wells(potential: AbstractPotential, eps: float, direction: int) -> _Wells:
 @with_nan
 def smoluchowski_friction(
     potential: AbstractPotential,
-    support: AbstractSupport,
+    support: Spring,
     speeds: Any,
     *,
     eps: float,

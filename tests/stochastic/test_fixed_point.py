@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from noisy_wells import EPS, cosine_energy
 
-from frictionjax.stochastic import periodic_density as module
+from frictionjax.stochastic import fixed_point as module
 from frictionjax.stochastic.driven_period import Drive
-from frictionjax.stochastic.periodic_density import (
+from frictionjax.stochastic.fixed_point import (
     Window,
     on_finer_cells,
     periodic_density,
@@ -25,7 +25,8 @@ def found(speed=0.1, start=START):
 
 def test_the_density_repeats_and_does_not_know_its_guess():
     one, other = found(), found(start=np.roll(START, COUNT))
-    assert one.change < 1e-9 and one.lost < 1e-9
+    assert one.change < 1e-9
+    assert one.lost < 1e-9
     assert one.density == pytest.approx(other.density, abs=1e-8)
     assert one.mean_force == pytest.approx(other.mean_force, abs=1e-9)
 
@@ -52,7 +53,8 @@ def test_a_density_that_does_not_become_periodic_says_so(monkeypatch):
 def test_finer_cells_leave_out_empty_periods():
     coarse = found()
     window, guess = on_finer_cells(coarse, 2)
-    assert -6 < window.first <= -3 and window.periods <= WINDOW.periods
+    assert -6 < window.first <= -3
+    assert window.periods <= WINDOW.periods
     assert guess.size == 2 * COUNT * window.periods
     places = window.first + np.arange(guess.size) / (2 * COUNT)
     before = WINDOW.first + np.arange(coarse.density.size) / COUNT

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+import jax
 import numpy as np
 
 from .driven_period import Drive, PeriodEnd, march_period, moved_on
@@ -59,7 +60,7 @@ def periodic_density(
     Source: D. G. Anderson, J. ACM 12, 547 (1965).
     """
     first, times = np.asarray(float(window.first)), np.arange(steps)
-    numbers = Drive(*(np.asarray(float(number)) for number in drive))
+    numbers = jax.tree_util.tree_map(np.asarray, drive)
     history: list[tuple[np.ndarray, np.ndarray]] = []
     density = start / np.sum(start)
     for _ in range(SETTINGS.most_periods):
