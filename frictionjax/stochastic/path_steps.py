@@ -10,13 +10,13 @@ from .settings import SETTINGS
 
 
 class PathSteps(NamedTuple):
-    """`count` steps of `step` s, the last of which ends with the scene."""
+    """`total` steps of `step` s, the last of which ends with the scene."""
 
     step: float
-    count: int
+    total: int
 
 
-def path_steps(
+def steps_of_paths(
     force: TabulatedForce,
     stiffness: float,
     *,
@@ -40,5 +40,5 @@ def path_steps(
     few = steps <= SETTINGS.most_steps
     allowed = f"at most {SETTINGS.most_steps} steps of a path, here {steps:.3g}"
     require(few, "eps", eps, allowed)
-    count = max(1, int(steps))
-    return PathSteps(duration / count, count)
+    total = max(1, int(steps))
+    return PathSteps(duration / total, total)

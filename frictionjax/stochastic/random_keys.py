@@ -41,7 +41,8 @@ def path_keys(key: Any, paths: int) -> UInt32[np.ndarray, "paths words"]:
     Cells of a sweep get theirs in the same way, from the key of the sweep and their number.
     """
     require_whole("paths", paths)
-    whole = jax.random.wrap_key_data(key_words(key), impl="threefry2x32")
+    words = jnp.asarray(key_words(key))
+    whole = jax.random.wrap_key_data(words, impl="threefry2x32")
     keys = jax.vmap(lambda i: jax.random.fold_in(whole, i))(np.arange(paths))
     return np.asarray(jax.random.key_data(keys))
 

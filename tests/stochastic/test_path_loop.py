@@ -17,7 +17,8 @@ from noisy_wells import (
 from scipy.integrate import solve_ivp
 
 import frictionjax as fx
-from frictionjax.stochastic import NoisyCell, path_keys, run_paths
+from frictionjax.stochastic import NoisyCell, path_keys, path_steps, run_paths
+from frictionjax.stochastic.settings import SETTINGS
 
 SPRING = fx.supports.Spring(1.0)
 GRID = np.linspace(-0.6, 0.6, 24001)
@@ -28,11 +29,18 @@ def cell(potential=COSINE, support=SPRING, load=None, **numbers):
     return NoisyCell(potential, support, load or fx.loads.Ramp(0.0), **bath)
 
 
+@pytest.fixture
+def long_steps(monkeypatch):
+    """Of means at rest: `settings.py`."""
+    long = SETTINGS._replace(step_curvature=0.25)
+    monkeypatch.setattr(path_steps, "SETTINGS", long)
+
+
 def settled(found, start):
     return found.z[:, found.ts > start]
 
 
-def test_a_pinned_tip_has_boltzmanns_moments():
+def test_a_pinned_tip_has_boltzmanns_moments(long_steps):
     """A temperature 2% off changes both by 2%: eight standard errors."""
     energy = cosine_energy(GRID)
     exact = [
@@ -48,7 +56,7 @@ def test_a_pinned_tip_has_boltzmanns_moments():
     assert np.mean(z) == pytest.approx(0.0, abs=5e-5)
 
 
-def test_a_slanted_bristle_has_boltzmanns_density_in_z():
+def test_a_slanted_bristle_has_boltzmanns_density_in_z(long_steps):
     """G is between 1/2 and 3/2: a density in the tip's coordinate would be 40% off.
 
     Exact means are integrals over the tip, `dz = eps G dy`, in closed form.
@@ -69,7 +77,7 @@ def test_a_slanted_bristle_has_boltzmanns_density_in_z():
         in_y = boltzmann_mean(fn(2 * np.pi * z / EPS), energy, temperature)
         seen = np.mean(fn(2 * np.pi * paths / EPS))
         assert seen == pytest.approx(weighed, abs=0.01)
-        assert abs(seen - in_y) > 0.03
+        assert abs(seen - in_y) > 0.02
     assert np.mean(paths**2) == pytest.approx(
         boltzmann_mean(z**2, energy, temperature, stretch), rel=0.02
     )
@@ -90,28 +98,34 @@ def test_free_tips_diffuse_as_lifson_and_jackson_say(ratio):
     )
 
 
-def test_work_obeys_jarzynskis_equality():
-    """Dragged by a period, irreversibly: the equality holds, the mean work is above."""
-    temperature, speed = 5e-4, 0.05
-    energy = cosine_energy(GRID)
-    start = boltzmann_samples(energy, GRID, temperature, 6400)
-    given = cell(load=fx.loads.Ramp(speed), temperature=temperature, duration=EPS / speed)
-    ts = np.array([0.0, given.duration])
-    found = run_paths(given, ts, path_keys(10, 6400), start)
-    gained = found.work[:, -1] + 0.5 * EPS**2  # free energy of the load at its ends
-    weights = np.exp(-gained / temperature)
-    error = np.std(weights) / np.sqrt(weights.size)
-    assert error < 0.05
-    assert np.mean(weights) == pytest.approx(1.0, abs=3.5 * error)
-    assert np.mean(gained) > 2 * temperature
-    assert np.all(found.work[:, 0] == 0)
+def test_work_obeys_jarzynskis_equality(monkeypatch):
+    """Dragged by a period, irreversibly: the mean work is above. So does a bath that is
+    2% too warm, which is seen."""
+    temperature, speed, count = 3e-3, 0.02, 160_000
+    longer = SETTINGS._replace(step_curvature=0.1)
+    monkeypatch.setattr(path_steps, "SETTINGS", longer)
+    start = boltzmann_samples(cosine_energy(GRID), GRID, temperature, count)
+    ts = np.array([0.0, EPS / speed])
+    means = []
+    for bath in (temperature, 1.02 * temperature):
+        given = cell(load=fx.loads.Ramp(speed), temperature=bath, duration=EPS / speed)
+        found = run_paths(given, ts, path_keys(10, count), start)
+        gained = found.work[:, -1] + 0.5 * EPS**2  # free energy of the load at its ends
+        weights = np.exp(-gained / temperature)
+        means.append(np.mean(weights))
+        error = np.std(weights) / np.sqrt(count)
+        assert np.mean(gained) > 0.5 * temperature
+        assert np.all(found.work[:, 0] == 0)
+    assert error < 0.0065
+    assert means[0] == pytest.approx(1.0, abs=2 * error)
+    assert means[1] > 1 + 2 * error
 
 
 def test_mean_force_of_paths_is_that_of_the_density():
     """Smoluchowski's equation at 1e-4 J and 0.01 m/s: 0.06148 N less drag."""
     given = cell(load=fx.loads.Ramp(0.01), temperature=1e-4, duration=40.0)
     ts = np.arange(20.0, 40.0, 0.1)  # two periods
-    found = run_paths(given, ts, path_keys(11, 320), np.full(320, 0.0))
+    found = run_paths(given, ts, path_keys(11, 480), np.zeros(480))
     means = np.mean(0.01 * ts - found.z, axis=1) - 0.01
     error = np.std(means) / np.sqrt(means.size)
     assert error < 3e-4
@@ -139,6 +153,6 @@ def test_paths_of_one_key_keep_their_order_and_meet():
     keys = path_keys(2, 64)
     lower = run_paths(given, ts, keys, np.full(64, -1.25))
     upper = run_paths(given, ts, keys, np.full(64, 1.25))
-    assert np.all(lower.z <= upper.z)
+    assert np.all(lower.z <= upper.z + 1e-16)  # rounding, where they have met
     assert np.array_equal(lower.z[:, -1], upper.z[:, -1])
     assert np.std(lower.z[:, -1]) > 0.01

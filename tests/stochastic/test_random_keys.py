@@ -11,7 +11,8 @@ def test_a_seed_is_the_key_that_jax_makes_of_it():
     assert words.tolist() == key_words(jax.random.key(5)).tolist()
     assert words.tolist() == key_words(jax.random.PRNGKey(5)).tolist()
     other = key_words(jax.random.key(5, impl="rbg"))
-    assert other.shape == (2,) and other.dtype == np.uint32
+    assert other.shape == (2,)
+    assert other.dtype == np.uint32
 
 
 def test_more_paths_change_no_path():

@@ -35,7 +35,7 @@ from ..supports import AbstractSupport
 from ..tables import load_table
 from .force_table import TabulatedForce, tabulated_force
 from .path_loop import Bath, run_lanes
-from .path_steps import PathSteps, path_steps
+from .path_steps import PathSteps, steps_of_paths
 from .settings import SETTINGS
 
 
@@ -93,21 +93,6 @@ def mean_interval(values: Float[np.ndarray, "paths times"]) -> MeanInterval:
     return MeanInterval(mean, mean - half, mean + half)
 
 
-class StateHistogram(NamedTuple):
-    """Densities in 1/m of z at each time, (times, bins), between `edges` (bins + 1,) in m."""
-
-    edges: Float[np.ndarray, " edges"]
-    density: Float[np.ndarray, "times bins"]
-
-
-def state_histogram(z: Float[np.ndarray, "paths times"], bins: Any = 64) -> StateHistogram:
-    """How paths are spread at each time; `bins`: how many, or their edges in m."""
-    edges = np.histogram_bin_edges(z, bins)
-    counts = [np.histogram(column, edges)[0] for column in z.T]
-    widths = np.diff(edges)
-    return StateHistogram(edges, np.stack(counts) / (z.shape[0] * widths))
-
-
 class NoisyCell(NamedTuple):
     """One cell: what moves, in which bath. Known numbers.
 
@@ -137,8 +122,13 @@ def run_paths(
     """
     force = tabulated_force(cell.potential, cell.eps)
     plan = _planned(cell, force)
-    bath = cell.eps, cell.viscosity, cell.temperature, plan.step
-    nearest = np.minimum(np.rint(ts / plan.step).astype(int), plan.count)
+    bath = Bath(
+        eps=jnp.asarray(cell.eps),
+        viscosity=jnp.asarray(cell.viscosity),
+        temperature=jnp.asarray(cell.temperature),
+        step=jnp.asarray(plan.step),
+    )
+    nearest = np.minimum(np.rint(ts / plan.step).astype(int), plan.total)
     # Rooms for times: another number of them compiles nothing.
     wanted = np.full(padded_size(ts.size, SETTINGS.times), nearest[-1])
     wanted[: ts.size] = nearest
@@ -146,19 +136,19 @@ def run_paths(
         force.table,
         cell.support,
         load_table(cell.load),
-        Bath(*(np.asarray(number) for number in bath)),
+        bath,
         wanted,
     )
     found = in_chunks(run_lanes, SETTINGS.lanes, fixed, (keys, z0))
     z, work = (values[:, : ts.size] for values in found)
-    return NoisyPaths(ts, z, work, plan.step, plan.count)
+    return NoisyPaths(ts, z, work, plan.step, plan.total)
 
 
 def _planned(cell: NoisyCell, force: TabulatedForce) -> PathSteps:
     strongest = 2 * max(force.highest, -force.lowest)
     times = np.linspace(0.0, cell.duration, SETTINGS.moments)
     parts = cell.support, load_table(cell.load), np.asarray(strongest), times
-    return path_steps(
+    return steps_of_paths(
         force,
         float(_stiffest(*parts)),
         eps=cell.eps,

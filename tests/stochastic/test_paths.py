@@ -11,7 +11,6 @@ from frictionjax.stochastic import (
     mean_interval,
     noisy_paths,
     path_keys,
-    state_histogram,
 )
 
 SCENE = fx.Scene(
@@ -42,9 +41,11 @@ def test_values_at_the_start_and_where_times_repeat():
     found = noisy_paths(
         SCENE, NOISE, keys=path_keys(3, 2), ts=[0.0, 0.0, 1.0, 1.0, 4.0], z0=0.3, **CELL
     )
-    assert np.all(found.z[:, :2] == 0.3) and np.all(found.work[:, :2] == 0)
+    assert np.all(found.z[:, :2] == 0.3)
+    assert np.all(found.work[:, :2] == 0)
     assert np.array_equal(found.z[:, 2], found.z[:, 3])
-    assert found.ok.all() and found.step * found.steps == pytest.approx(4.0)
+    assert found.ok.all()
+    assert found.step * found.steps == pytest.approx(4.0)
     assert "2 of 2 OK: 2 paths, 5 times" in repr(found)
 
 
@@ -71,21 +72,13 @@ def test_the_interval_is_students_and_holds_the_mean():
     values = np.random.default_rng(0).normal(2.0, 1.0, (12, 500))
     found = mean_interval(values)
     low, high = stats.t.interval(0.95, 11, values.mean(axis=0), stats.sem(values, axis=0))
-    assert found.low == pytest.approx(low) and found.high == pytest.approx(high)
+    assert found.low == pytest.approx(low)
+    assert found.high == pytest.approx(high)
     held = np.mean((found.low < 2.0) & (found.high > 2.0))
     assert 0.92 < held < 0.98
     alone = mean_interval(values[:1])
-    assert np.all(np.isinf(alone.low)) and np.array_equal(alone.mean, values[0])
-
-
-def test_histograms_are_densities():
-    z = np.random.default_rng(0).normal(0.0, 0.1, (4000, 3))
-    found = state_histogram(z, 40)
-    assert np.sum(found.density * np.diff(found.edges), axis=1) == pytest.approx(1.0)
-    middle = 0.5 * (found.edges[1:] + found.edges[:-1])
-    exact = stats.norm.pdf(middle, scale=0.1)
-    assert np.max(np.abs(found.density - exact)) < 0.1 * exact.max()
-    assert state_histogram(z, np.linspace(-1, 1, 6)).density.shape == (3, 5)
+    assert np.all(np.isinf(alone.low))
+    assert np.array_equal(alone.mean, values[0])
 
 
 def test_a_support_that_hardens_beyond_what_was_seen_has_a_status():
