@@ -33,6 +33,8 @@ from .model import GivenPotential as GivenPotential
 from .model import Scene as Scene
 from .model import friction as friction
 from .model import potential as potential
+from .rate_dependence import friction_curve as friction_curve
+from .stochastic import ensemble as ensemble
 from .studies import study as study
 from .sweeps import sweep as sweep
 from .wiggly import Status as Status

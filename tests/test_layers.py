@@ -32,7 +32,7 @@ FLOORS = {
         {"cost", "explain"},
         {"plot"},
         {"design"},
-        {"studies"},
+        {"studies", "rate_dependence"},
         {"report"},
         {"cli"},
         {"__main__"},

@@ -24,6 +24,14 @@ class Outcome(enum.IntEnum):
         """The member with this integer."""
         return {int(member): member for member in cls}[int(code)]
 
+    @classmethod
+    def flags(cls) -> dict[str, Any]:
+        """CF conventions for a data set that holds the integers."""
+        return {
+            "flag_values": np.array([int(member) for member in cls], dtype=np.int8),
+            "flag_meanings": " ".join(member.name.lower() for member in cls),
+        }
+
 
 def outcomes(kind: type[Outcome], codes: Any) -> Any:
     """The member with this integer, or an array of members; integers where traced."""

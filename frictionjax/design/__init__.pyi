@@ -11,6 +11,7 @@ from .measured_trace import simulate_trace as simulate_trace
 from .slide import check_design as check_design
 from .slide import fit_slide as fit_slide
 from .slide import fit_slide_profile as fit_slide_profile
+from .slide import slides_at_speeds as slides_at_speeds
 from .slide import steady_slide as steady_slide
 from .surface import fit_profile as fit_profile
 from .trace import fit_trace as fit_trace

@@ -12,4 +12,5 @@ from .engines import require_done as require_done
 from .engines import require_together as require_together
 from .leading_order import LeadingOrder as LeadingOrder
 from .noise import Noise as Noise
+from .noise import noise_among as noise_among
 from .rigid_array import RigidArray as RigidArray

@@ -20,6 +20,8 @@ class Engine(enum.Enum):
     MECHANICS = "mechanics"
     COST = "work_precision, predict_cost and fit_budget"
     TRACE = "fit_trace"
+    ENSEMBLE = "ensemble"
+    FRICTION_CURVE = "friction_curve"
 
 
 def engine_of(method: Any) -> Engine:
@@ -33,14 +35,24 @@ def engine_of(method: Any) -> Engine:
 _E = Engine
 _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset({_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP}),
-    "Noise": frozenset(),
+    "Noise": frozenset({_E.RESOLVED, _E.ENSEMBLE, _E.FRICTION_CURVE}),
 }
-"""Of effects that are no part of the potential: the engines that do them."""
+"""Of effects that change what moves: the engines that do them."""
+_READS_NOT: dict[str, frozenset[Engine]] = {"AxialLoad": frozenset({_E.ENSEMBLE})}
+"""Of effects that only read: the engines of scenes that do not hold them."""
 
+_ALONE = "a bristle at a time: a scene without it"
 _INSTEAD: dict[tuple[str, Engine], str] = {
     ("CompliantArray", _E.PATH): "methods of its own, for scenes of known numbers",
-    ("CompliantArray", _E.CERTIFICATE): "a bristle at a time: a scene without it",
-    ("CompliantArray", _E.MECHANICS): "a bristle at a time: a scene without it",
+    ("CompliantArray", _E.CERTIFICATE): _ALONE,
+    ("CompliantArray", _E.MECHANICS): _ALONE,
+    ("CompliantArray", _E.ENSEMBLE): _ALONE,
+    ("CompliantArray", _E.FRICTION_CURVE): _ALONE,
+    ("AxialLoad", _E.ENSEMBLE): "mechanics or sweep, of a scene without noise",
+    ("Noise", _E.WINDOWED): 'method="auto", and key',
+    ("Noise", _E.PATH): 'method="auto", and key',
+    ("Noise", _E.SWEEP): "ensemble and friction_curve, at one eps after the other",
+    ("Noise", _E.MECHANICS): "a scene without it: power along its paths is infinite",
 }
 """What to do where an engine does not do an effect, after "needs"."""
 
@@ -52,6 +64,7 @@ _APART: dict[frozenset[str], str] = {
 }
 _APART |= {
     frozenset({"CompliantArray", "Noise"}): "one of them: each bristle has its own noise",
+    frozenset({"AxialLoad", "Noise"}): "one of them: no call reads loads of noisy paths",
 }
 """Pairs that no scene holds together, and why."""
 
@@ -59,7 +72,7 @@ _APART |= {
 def does(engine: Engine, effect: AbstractEffect) -> bool:
     """Whether an engine does an effect."""
     if effect.stage in (Stage.POTENTIAL, Stage.READING):
-        return True
+        return engine not in _READS_NOT.get(_name(effect), ())
     return engine in _DOES.get(_name(effect), ())
 
 

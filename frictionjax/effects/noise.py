@@ -1,5 +1,6 @@
 """Thermal noise."""
 
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import equinox as eqx
@@ -37,3 +38,8 @@ class Noise(AbstractEffect):
     def temperature_at(self, eps: Any) -> Any:
         """`T_eps` in J; eps in m, any shape."""
         return self.temperature * eps**self.exponent
+
+
+def noise_among(effects: Sequence[AbstractEffect]) -> Noise | None:
+    """The noise among effects of a scene, which has one at most."""
+    return next((effect for effect in effects if isinstance(effect, Noise)), None)

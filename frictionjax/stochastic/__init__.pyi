@@ -1,5 +1,6 @@
 from .constant_force import diffusion_ratio as diffusion_ratio
 from .constant_force import mean_speed as mean_speed
+from .ensembles import ensemble as ensemble
 from .paths import MeanInterval as MeanInterval
 from .paths import NoisyCell as NoisyCell
 from .paths import NoisyPaths as NoisyPaths

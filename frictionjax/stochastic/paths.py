@@ -14,6 +14,7 @@ from .._checks import (
     Outcome,
     Real,
     checked,
+    is_concrete,
     require,
     require_numbers,
     require_real,
@@ -26,6 +27,7 @@ from ..loads import AbstractPull
 from ..model import (
     AbstractPotential,
     Scene,
+    composed,
     known_scene,
     require_reach,
     require_times,
@@ -191,7 +193,9 @@ def noisy_paths(
     Raises `ValueError` for bad numbers, an eps that the bristle does not allow or whose
     wells floats do not tell apart, and where a path takes more than 2^31 steps.
     """
-    scene, noise = known_scene(scene), checked(noise)
+    scene, noise = composed(known_scene(scene)), checked(noise)
+    known = is_concrete(scene, noise, eps, gamma, ts)
+    require(known, "noise", "traced numbers", "known ones: paths have no derivatives")
     require_real("eps", eps, "eps > 0 in m", lambda v: v > 0)
     require_real("gamma", gamma, "a number > 0", lambda v: v > 0)
     require_reach(scene.potential, eps)

@@ -21,7 +21,7 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program
-from ..effects import engine_of
+from ..effects import Noise, engine_of, noise_among
 from ..model import (
     Scene,
     TabulatedScene,
@@ -34,6 +34,8 @@ from ..model import (
 from .arrays import integrate_scene
 from .equation import Status, StepPlan, plan_steps, require_accuracy
 from .sequential import MAX_STEPS, integrate, is_ours, solver_of
+
+_ACCURACY = 1e-3
 
 
 class Solution(CodedResult, eqx.Module):
@@ -50,6 +52,7 @@ class Solution(CodedResult, eqx.Module):
     `bracket` (n,): how closely, in eps; `sampled`: share of the way that is known from some
     of its slips, NaN where only values at `ts` were wanted. Of a `CompliantArray` values
     are means over its bristles, and `spread` (n,) is their standard deviation in m.
+    Of a path with noise `step` is the length of its steps in s.
     """
 
     ts: Float[Array, " n"]
@@ -252,18 +255,47 @@ def _found_in_words(how: np.ndarray, sampled: float) -> str:
     return f"resolved, every slip, in tiles; {share}"
 
 
+def _require_unasked(accuracy: Any, max_steps: int, adjoint: Any) -> None:
+    """What steps of a path with noise do not read has to be as it is by default."""
+    told = "its default: steps of a path with noise are fixed"
+    require(as_real(accuracy) == _ACCURACY, "accuracy", accuracy, told)
+    require(max_steps == MAX_STEPS, "max_steps", max_steps, told)
+    require(adjoint is None, "adjoint", adjoint, told)
+
+
+def _one_path(
+    scene: Scene, noise: Noise, eps: Any, gamma: Any, ts: Array, key: Any
+) -> Solution:
+    from ..stochastic import key_words, noisy_paths  # nothing else needs it
+
+    keys = key_words(key)[None]
+    found = noisy_paths(scene, noise, eps=eps, gamma=gamma, keys=keys, ts=ts)
+    status = Status.OK if found.ok[0] else Status.NOT_FINITE
+    counts = {
+        "steps": found.steps,
+        "rejected": 0,
+        "tolerance": None,
+        "dissipation_gap": None,
+        "step": found.step,
+    }
+    how = "a path with noise, by fixed steps (Leimkuhler and Matthews)"
+    z = jnp.asarray(found.z[0])
+    return Solution(ts, z, None, None, jnp.asarray(int(status)), counts, how)
+
+
 @with_nan
 def solve(
     scene: Scene,
     eps: Any,
     gamma: Any = 1.0,
     ts: Any = None,
-    accuracy: Any = 1e-3,
+    accuracy: Any = _ACCURACY,
     method: Any = "auto",
     *,
     dissipation: bool = True,
     max_steps: int = MAX_STEPS,
     adjoint: diffrax.AbstractAdjoint | None = None,
+    key: Any = None,
 ) -> Solution:
     """Solve `eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.7) from z0.
 
@@ -281,6 +313,9 @@ def solve(
     differentiates (`diffrax.ForwardMode()` for `jax.jvp`; by default derivatives in reverse
     mode are those of the steps taken, and NaN through more than 15 million of them).
     `max_steps`: of such a solve.
+    `key`: of a scene with `effects.Noise`, a seed or a key of `jax.random`, whose path it
+    is. Steps are fixed then, and accuracy, max_steps and adjoint are refused; dissipation
+    and residual are None, as `int eps^gamma z'^2` of a path with noise is infinite.
     Failure is a `status`, not an exception.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
@@ -297,6 +332,11 @@ def solve(
     require(known, "adjoint", type(adjoint).__name__, "None or an adjoint of diffrax")
     ts = require_times(scene, ts)
     solver = solver_of(method)
+    noise = noise_among(scene.effects)
+    if noise is not None:
+        _require_unasked(accuracy, max_steps, adjoint)
+        return _one_path(scene, noise, eps, gamma, ts, key)
+    require(key is None, "key", key, "None, or a scene with effects.Noise")
     eps, gamma = jnp.asarray(as_real(eps)), jnp.asarray(as_real(gamma))
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)

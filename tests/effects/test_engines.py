@@ -21,7 +21,7 @@ APART = {
     frozenset({rod, other})
     for rod in ("AxialLoad",)
     for other in ("LeadingOrder", "RigidArray", "CompliantArray")
-}
+} | {frozenset({"Noise", other}) for other in ("AxialLoad", "CompliantArray")}
 AT_REST = LimitSolution(*([np.zeros(2)] * 3))
 TS = np.linspace(0, 1, 4001)
 
@@ -34,15 +34,31 @@ def scene_of(*effects):
     return fx.Scene(profile, bristle, *parts, duration=1.0, effects=effects)
 
 
+def key_for(scene):
+    return 0 if any(isinstance(e, fx.effects.Noise) for e in scene.effects) else None
+
+
+def noisy(scene):
+    """With noise, where the scene has none and may have it."""
+    kinds = {type(effect).__name__ for effect in scene.effects}
+    if "Noise" in kinds or any({"Noise", kind} in APART for kind in kinds):
+        return scene
+    return scene.replace(effects=(*scene.effects, fx.effects.Noise(1e-4)))
+
+
 CALLS = {
     Engine.LIMIT: lambda s: fx.solve_limit(s, [0.5, 1.0]),
-    Engine.RESOLVED: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="resolved"),
+    Engine.RESOLVED: lambda s: fx.solve(
+        s, 0.05, ts=[0.5, 1.0], method="resolved", key=key_for(s)
+    ),
     Engine.WINDOWED: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="windowed"),
     Engine.PATH: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="Kvaerno3"),
     Engine.SWEEP: lambda s: fx.sweep(s, [0.05], [1.0], ts=[0.5, 1.0]),
     Engine.CERTIFICATE: lambda s: fx.certify(s, 0.05, 1.0, TS, np.clip(TS - 0.1, 0, 1)),
     Engine.COST: lambda s: fx.predict_cost(s, [0.05], [1.0]),
     Engine.MECHANICS: lambda s: fx.mechanics(s, AT_REST),
+    Engine.ENSEMBLE: lambda s: fx.ensemble(noisy(s), 0.05, 1.0, [0.5, 1.0], 2, 0),
+    Engine.FRICTION_CURVE: lambda s: fx.friction_curve(s, [0.1], 0.05),
 }
 
 

@@ -5,4 +5,5 @@ from .design_slides import SlideNumbers as SlideNumbers
 from .design_slides import slide_numbers as slide_numbers
 from .design_slides import slides_of_designs as slides_of_designs
 from .slide_friction import steady_slide as steady_slide
+from .slides_by_speed import slides_at_speeds as slides_at_speeds
 from .surface_fit import fit_slide_profile as fit_slide_profile

@@ -82,10 +82,16 @@ SLIDE = record(
 """A slide in a document."""
 
 
-class _Sides(NamedTuple):
+class Sides(NamedTuple):
+    """Mean and peak force in N, and a `Status` as an integer, of one or more slides.
+
+    `kept`: share of a disturbance that is left after a period.
+    """
+
     mean: Real
     peak: Real
     code: Real
+    kept: Real
 
 
 class SlideForces(NamedTuple):
@@ -95,12 +101,20 @@ class SlideForces(NamedTuple):
     rho_minus: Real
 
 
-def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> _Sides:
-    def one(sign: Real):
-        slide = SlideScene(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
-        resolved, added = least_pull(slide)
-        mean, peak, period = slide_forces(resolved)
-        return _Sides(sign * mean, sign * peak, _code(period, mean, added))
+def one_side(
+    potential, eps: Real, gamma: Real, rate: Real, stiffness: Real, sign: Real
+) -> Sides:
+    """The slide to the right or to the left, as `sign` is 1 or -1; traceable."""
+    slide = SlideScene(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
+    resolved, added = least_pull(slide)
+    mean, peak, period = slide_forces(resolved)
+    code = _code(period, mean, added)
+    return Sides(sign * mean, sign * peak, code, period.kept)
+
+
+def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> Sides:
+    def one(sign: Real) -> Sides:
+        return one_side(potential, eps, gamma, rate, stiffness, sign)
 
     return jax.vmap(one)(jnp.array([1.0, -1.0]))
 
@@ -110,7 +124,7 @@ def slide_at(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> 
     return _joined(eps, _both_sides(potential, eps, gamma, rate, stiffness))
 
 
-def _joined(eps: Real, both: _Sides) -> SteadySlide:
+def _joined(eps: Real, both: Sides) -> SteadySlide:
     return SteadySlide(
         eps,
         both.mean[..., 0],

@@ -1,0 +1,5 @@
+"""Friction against speed: steady slides at a finite rate, with noise and without."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,1 @@
+from .curves import friction_curve as friction_curve

@@ -1,0 +1,157 @@
+"""Mean and peak friction of steady slides against speed."""
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from .._checks import (
+    Outcome,
+    is_concrete,
+    require,
+    require_numbers,
+    require_real,
+    viscosity_of,
+    with_nan,
+)
+from ..design import slides_at_speeds
+from ..effects import Engine, Noise, noise_among
+from ..model import Scene, require_reach, require_told_apart, scene_for
+from ..stochastic import SmoluchowskiStatus, smoluchowski_friction
+from ..supports import Spring
+from ..wiggly import Status
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MEANING = {
+    "speed": ("m/s", "speed of the support, to the right where positive"),
+    "mean_force": ("N", "mean over a period of the force in the spring"),
+    "drag": ("N", "viscosity times speed"),
+    "friction_force": ("N", "mean force less drag"),
+    "peak_force": ("N", "largest force in the spring"),
+    "error": ("N", "estimated error of the mean force"),
+}
+
+
+class _Slides(NamedTuple):
+    """Forces in N, each of shape (speeds,), and how they ended; `error` where estimated."""
+
+    mean_force: Float[np.ndarray, " speeds"]
+    peak_force: Float[np.ndarray, " speeds"]
+    codes: Int[np.ndarray, " speeds"]
+    outcomes: type[Outcome]
+    error: Float[np.ndarray, " speeds"] | None
+
+
+@with_nan
+def friction_curve(scene: Scene, speeds: Any, eps: Any, gamma: Any = 1.0) -> "xr.Dataset":
+    """Friction of steady slides whose support moves at constant speed.
+
+    `speeds`: in m/s, one or an array of shape (n,), negative to the left, not 0; `eps` in
+    m, `gamma` > 0. Of the scene its surface, bristle and effects are used, and the spring
+    that the tip is held by: the load is that of the moving support, `l = k v t`, in place
+    of the scene's, and no transient enters.
+
+    Returns a data set over `speed`: `mean_force` (of `l - Phi'(z)`, over a period), `drag`
+    (eps^gamma speed), `friction_force` (their difference), `peak_force`, all in N and
+    negative to the left; `status` (flags in its attributes). With `effects.Noise` means are
+    over noise too, by Smoluchowski's equation, with their estimated `error`; a largest
+    force there is none then, and `peak_force` is NaN; a speed may be 0, and forces are.
+
+    Raises `ValueError` for arguments out of range, and supports that are no `Spring`. A
+    slide that is not found has its status; so has one whose force may be off by more than
+    3e-4, as its spring is too soft for errors to be forgotten (`Status.OPEN_BRACKET`).
+    """
+    scene = scene_for(Engine.FRICTION_CURVE, scene)
+    spring = _spring_of(scene)
+    known = is_concrete(scene, speeds, eps, gamma)
+    require(known, "scene", "traced numbers", "known ones; steady_slide has derivatives")
+    require_real("eps", eps, "eps > 0 in m", lambda v: v > 0)
+    require_real("gamma", gamma, "gamma > 0", lambda v: v > 0)
+    noise = noise_among(scene.effects)
+    needs = "speeds in m/s, not 0" if noise is None else "speeds in m/s"
+    require_numbers("speeds", speeds, needs, lambda v: (v != 0) | (noise is not None))
+    asked = np.atleast_1d(np.asarray(speeds, dtype=float))
+    require(asked.ndim == 1, "speeds", f"shape {asked.shape}", "one, or shape (n,)")
+    require_reach(scene.potential, eps)
+    require_told_apart(scene, eps)
+    size, power = float(eps), float(gamma)
+    if noise is None:
+        slides = _plain(scene, spring, asked, size, power)
+    else:
+        slides = _with_noise(scene, spring, noise, asked, size, power)
+    drag = viscosity_of(size, power) * asked
+    return _data_set(slides, asked, drag, {"eps": size, "gamma": power})
+
+
+def _spring_of(scene: Scene) -> Spring:
+    support = scene.support
+    if isinstance(support, Spring):
+        return support
+    springs = "needs a Spring: with others there is no steady slide"
+    raise ValueError(f"scene.support = {type(support).__name__!r}: {springs}")
+
+
+def _plain(
+    scene: Scene,
+    spring: Spring,
+    speeds: Float[np.ndarray, " speeds"],
+    eps: float,
+    gamma: float,
+) -> _Slides:
+    stiffness = float(spring.stiffness)
+    found = slides_at_speeds(
+        scene.potential, speeds, eps=eps, gamma=gamma, stiffness=stiffness
+    )
+    mean, peak, codes = (np.asarray(v) for v in (found.mean, found.peak, found.code))
+    return _Slides(mean, peak, codes, Status, None)
+
+
+def _with_noise(
+    scene: Scene,
+    spring: Spring,
+    noise: Noise,
+    speeds: Float[np.ndarray, " speeds"],
+    eps: float,
+    gamma: float,
+) -> _Slides:
+    found = smoluchowski_friction(
+        scene.potential,
+        spring,
+        speeds,
+        eps=eps,
+        viscosity=float(viscosity_of(eps, gamma)),
+        temperature=float(noise.temperature_at(eps)),
+    )
+    none = np.full(speeds.shape, np.nan)
+    kind = SmoluchowskiStatus
+    return _Slides(found.mean_force, none, found.codes, kind, found.error)
+
+
+def _data_set(
+    slides: _Slides,
+    speeds: Float[np.ndarray, " speeds"],
+    drag: Float[np.ndarray, " speeds"],
+    numbers: dict[str, float],
+) -> "xr.Dataset":
+    import xarray as xr
+
+    columns = {
+        "mean_force": slides.mean_force,
+        "drag": drag,
+        "friction_force": slides.mean_force - drag,
+        "peak_force": slides.peak_force,
+    }
+    if slides.error is not None:
+        columns["error"] = slides.error
+    data = xr.Dataset(
+        {name: ("speed", values) for name, values in columns.items()},
+        coords={"speed": speeds},
+    )
+    for name in data.variables:
+        units, meaning = _MEANING[str(name)]
+        data[name].attrs = {"units": units, "long_name": meaning}
+    told = {"long_name": "how a slide ended", **slides.outcomes.flags()}
+    data["status"] = "speed", slides.codes.astype(np.int8), told
+    return data.assign_attrs(title="Friction of steady slides against speed", **numbers)

@@ -1,0 +1,78 @@
+"""Many paths of a scene with noise as a data set."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._checks import with_nan
+from ..effects import Engine, noise_among
+from ..model import Scene, scene_for
+from .paths import PathStatus, mean_interval, noisy_paths
+from .random_keys import path_keys
+from .settings import SETTINGS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_SHARE = f"{SETTINGS.confidence:.0%}"
+_MEANING = {
+    "z": ("m", "state of a path"),
+    "z_mean": ("m", "mean state over all paths"),
+    "z_low": ("m", f"lower end of the {_SHARE} interval of the mean, by Student's t"),
+    "z_high": ("m", f"upper end of the {_SHARE} interval of the mean, by Student's t"),
+    "work": ("J", "work done on the tip by the load until then, -int l' z"),
+    "path": (None, "number of the path"),
+    "time": ("s", "time"),
+    "status": (None, "how a path ended"),
+}
+
+
+@with_nan
+def ensemble(
+    scene: Scene, eps: Any, gamma: Any, ts: Any, paths: int, key: Any
+) -> "xr.Dataset":
+    """Independent paths of a scene with `effects.Noise`, at one eps (m) and gamma.
+
+    `ts`: times in s, not decreasing, in [0, duration]; 201 even ones where None. `paths`:
+    how many; `key`: a seed or a key of `jax.random`. Path i is that of
+    `jax.random.fold_in(key, i)`, so more paths change none, and
+    `fx.solve(scene, eps, gamma, ts, key=jax.random.fold_in(key, i))` has its bits.
+
+    Returns a data set over `path` and `time`: `z`, `work` (`-int l' z`); over `time`
+    `z_mean` and the 95% interval `z_low`, `z_high` of the mean, infinite for one path; over
+    `path` `status`. The interval holds what numbers of paths leave open; steps are as long
+    as `stochastic/settings.py` says.
+
+    Raises `ValueError` for arguments out of range, and a scene without noise.
+    """
+    scene = scene_for(Engine.ENSEMBLE, scene)
+    noise = noise_among(scene.effects)
+    if noise is None:
+        names = [type(effect).__name__ for effect in scene.effects]
+        raise ValueError(f"scene.effects = {names}: needs effects.Noise among them")
+    keys = path_keys(key, paths)
+    found = noisy_paths(scene, noise, eps=eps, gamma=gamma, keys=keys, ts=ts)
+    return _data_set(found, {"eps": float(eps), "gamma": float(gamma)})
+
+
+def _data_set(found: Any, numbers: dict[str, float]) -> "xr.Dataset":
+    import xarray as xr
+
+    known = mean_interval(found.z)
+    data = xr.Dataset(
+        {
+            "z": (("path", "time"), found.z),
+            "work": (("path", "time"), found.work),
+            "z_mean": ("time", known.mean),
+            "z_low": ("time", known.low),
+            "z_high": ("time", known.high),
+            "status": ("path", np.asarray(found._codes, dtype=np.int8)),
+        },
+        coords={"path": np.arange(found.z.shape[0]), "time": found.ts},
+    )
+    for name, (units, meaning) in _MEANING.items():
+        data[name].attrs = {"long_name": meaning} | ({"units": units} if units else {})
+    flags = PathStatus.flags()
+    data["status"].attrs |= flags
+    steps = {"step": found.step, "steps": found.steps}
+    return data.assign_attrs(title="Paths with thermal noise", **numbers, **steps)
