@@ -21,6 +21,7 @@ def test_a_path_follows_from_its_key():
     assert found.stats["step"] * found.stats["steps"] == pytest.approx(4.0)
 
 
+@pytest.mark.slow
 def test_a_cold_path_is_near_the_trajectory():
     cold = NOISY.replace(effects=(fx.effects.Noise(1e-9),))
     found, exact = fx.solve(cold, 0.05, 1.0, TS, key=0), fx.solve(PLAIN, 0.05, 1.0, TS)
