@@ -30,6 +30,7 @@ def test_curvature_is_the_steepest_rise_of_the_force():
     assert leaning.curvature == pytest.approx(slopes.max(), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_surface_with_bends_gets_more_cells_and_its_error_is_told():
     rough = fx.profiles.Spline(np.array([0.0, 0.03, 0.01, 0.06, 0.02, -0.01]))
     potential = fx.potential(rough, fx.bristles.VerticalSpring(1.0, 2.0, 1.0))

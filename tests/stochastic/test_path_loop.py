@@ -83,7 +83,7 @@ def test_a_slanted_bristle_has_boltzmanns_density_in_z(long_steps):
     )
 
 
-@pytest.mark.parametrize("ratio", [1.0, 2.0])
+@pytest.mark.parametrize("ratio", [1.0, pytest.param(2.0, marks=pytest.mark.slow)])
 def test_free_tips_diffuse_as_lifson_and_jackson_say(ratio):
     temperature = EPS * RHO / (2 * np.pi) / ratio
     free = EPS**2 / temperature  # s to diffuse over a period

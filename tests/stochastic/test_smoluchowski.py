@@ -69,6 +69,7 @@ def test_negative_speeds_are_the_mirror_image():
     assert leaning[0] > -1.5 * leaning[1] > 0
 
 
+@pytest.mark.slow
 def test_soft_springs_move_as_a_constant_force_does():
     """Ambegaokar and Halperin's speed at the mean force; corrections go like k."""
     speed = float(mean_speed(COSINE, 0.05, eps=EPS, viscosity=1.0, temperature=1e-3))
@@ -85,6 +86,7 @@ def test_hot_tips_feel_a_viscosity_that_diffusion_tells():
     assert found.mean_force / 1e-6 == pytest.approx(1 / ratio, rel=5e-4)
 
 
+@pytest.mark.slow
 def test_cold_slides_have_the_friction_of_the_limit():
     """Small eps, little noise, a soft spring: rho, less half of what it loses in a slip."""
     spring = fx.supports.Spring(0.25)
