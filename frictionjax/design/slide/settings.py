@@ -21,7 +21,7 @@ class Settings(NamedTuple):
     open: float = 1e-7  # of log D over a period: mean forces right to that
     # Of the force: more than that by a viscosity that floats resolve is told.
     added: float = 1e-5
-    # Against speed (`slides_by_speed.py`): relative errors of a period's steps, and the
+    # Soft springs (`slide_friction.py`): relative errors of a period's steps, and the
     # most of the force that they may add up to while they are not forgotten. On a sine at
     # eps 1e-4, gamma 0.3 and 1 m/s, against the closed form, springs of 1, 0.1, 0.01 and
     # 0.001 N/m err by 4e-6, 1e-5, 4e-4 and 2e-3, and are told 7e-6, 7e-5, 7e-4 and 7e-3;

@@ -161,6 +161,11 @@ def _code(period: PeriodicOrbit, mean: Real, added: Real) -> Real:
     )
     code = jnp.where(closed, known, int(Status.SOLVER_FAILED))
     code = jnp.where(~closed & (period.used >= STEPS), int(Status.MAX_STEPS), code)
+    # Errors of a period's steps add up until they are forgotten.
+    remembered = SETTINGS.step_errors > SETTINGS.amplified * (1 - period.kept)
+    code = jnp.where(
+        (code == int(Status.OK)) & remembered, int(Status.OPEN_BRACKET), code
+    )
     return jnp.where(jnp.isfinite(mean), code, int(Status.NOT_FINITE))
 
 
@@ -193,7 +198,8 @@ def steady_slide(
     in eps, gamma, rate) are those of the fixed point. Where rate eps^(gamma+1) is below
     2e-15 of the steepest wiggle, squared, that takes its place. Where that adds more than
     1e-5 of a force, as on bristles with ratios in the hundreds, the status is
-    `STEP_TOO_SMALL`.
+    `STEP_TOO_SMALL`. Where the spring is so soft that errors are hardly forgotten in a
+    period, and may add up to 3e-4 of the force, it is `OPEN_BRACKET`.
 
     Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, and for
     numbers that are not positive. A slide that is not found has its `status`.

@@ -8,7 +8,6 @@ from jaxtyping import Array, Float
 from ..._checks import Real
 from ..._compile import Program, in_chunks
 from ...model import AbstractPotential, tabulated_potentials
-from ...wiggly import Status
 from .settings import SETTINGS
 from .slide_friction import Sides, one_side
 
@@ -43,8 +42,4 @@ def slides_at_speeds(
     """
     _, table = tabulated_potentials(potential, eps)
     fixed = table, np.asarray(eps), np.asarray(gamma), np.asarray(stiffness)
-    found = in_chunks(_at_speeds, SETTINGS.lanes, fixed, (speeds,))
-    # Errors of a period's steps add up until they are forgotten.
-    amplified = SETTINGS.step_errors > SETTINGS.amplified * (1 - found.kept)
-    remembered = (found.code == int(Status.OK)) & amplified
-    return found._replace(code=np.where(remembered, int(Status.OPEN_BRACKET), found.code))
+    return in_chunks(_at_speeds, SETTINGS.lanes, fixed, (speeds,))

@@ -15,6 +15,7 @@ WAVES = fx.profiles.Fourier(COS, SIN)
 SINE = fx.profiles.Sine(0.1)
 K, REST, HEIGHT, ANGLE = 1.0, 2.4, 1.0, 1.0
 SLANTED = fx.bristles.SlantedSpring(K, REST, HEIGHT, ANGLE)
+VERTICAL = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
 ANGULAR = fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, 0.3)
 
 
@@ -118,6 +119,14 @@ def test_slow_forgetting_at_small_gamma():
     # A slip keeps 0.99 of a disturbance: waiting would take thousands of them.
     one = fx.steady_slide(WAVES, SLANTED, 1e-4, gamma=0.3)
     assert one.ok
+    # A thousand times softer, errors of the steps add up: told, not shown as a force.
+    law = np.hypot(0.1, 1e-4**0.3)
+    for stiffness, known in ((1.0, True), (1e-3, False)):
+        spring = fx.supports.Spring(stiffness)
+        slide = fx.steady_slide(SINE, VERTICAL, 1e-4, 0.3, rate=stiffness, support=spring)
+        assert bool(slide.code_plus == int(Status.OK)) is known
+        assert bool(abs(slide.mean_plus / law - 1) < 3e-4) is known
+        assert known or slide.code_plus == int(Status.OPEN_BRACKET)
     # Far above the fold the tip does not see the wells: D is nearly steady.
     fast = fx.steady_slide(WAVES, SLANTED, 1e-3, gamma=0.3, rate=100.0)
     assert fast.ok
