@@ -163,9 +163,7 @@ def _code(period: PeriodicOrbit, mean: Real, added: Real) -> Real:
     code = jnp.where(~closed & (period.used >= STEPS), int(Status.MAX_STEPS), code)
     # Errors of a period's steps add up until they are forgotten.
     remembered = SETTINGS.step_errors > SETTINGS.amplified * (1 - period.kept)
-    code = jnp.where(
-        (code == int(Status.OK)) & remembered, int(Status.OPEN_BRACKET), code
-    )
+    code = jnp.where((code == int(Status.OK)) & remembered, int(Status.OPEN_BRACKET), code)
     return jnp.where(jnp.isfinite(mean), code, int(Status.NOT_FINITE))
 
 
