@@ -9,6 +9,7 @@ from ._compile import keep_compiled as keep_compiled
 from ._compile import use_fast_cpu as use_fast_cpu
 from .certificate import certify as certify
 from .contact import mechanics as mechanics
+from .contact import nap as nap
 from .cost import fit_budget as fit_budget
 from .cost import order_cost as order_cost
 from .cost import predict_cost as predict_cost

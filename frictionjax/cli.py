@@ -204,6 +204,37 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
 
 @main.command()
 @_scene
+@_surface
+@click.option(
+    "--bending-stiffness", type=_POSITIVE, help="Of a rod on an angular spring, in N m^2."
+)
+@click.option("--json", "as_json", is_flag=True, help="Numbers as JSON.")
+@click.option("--out", metavar="DIR", help="Also nap.png there, over angles of the rod.")
+def nap(
+    scene: str | None,
+    bending_stiffness: float | None,
+    as_json: bool,
+    out: str | None,
+    **surface: Any,
+) -> None:
+    """Friction with and against the nap, and whether the bristle turns over."""
+    _start()
+    from .report import nap_document, nap_figure, nap_text, read_job, require_folder
+
+    folder = None if out is None else require_folder(out)
+    job = read_job(scene, **surface)
+    if folder is not None:
+        _write(folder, lambda place: nap_figure(job, bending_stiffness, place))
+    if not as_json:
+        click.echo(nap_text(job, bending_stiffness))
+        return
+    for line in job.notes[1:]:
+        click.echo(line, err=True)
+    click.echo(json.dumps(nap_document(job, bending_stiffness), indent=2))
+
+
+@main.command()
+@_scene
 @click.option("--eps", type=float, default=1e-3, show_default=True, help="Period in m.")
 @click.option("--gamma", type=float, default=1.0, show_default=True)
 @click.option("--accuracy", type=float, default=1e-3, show_default=True, help="In eps.")

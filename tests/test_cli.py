@@ -102,6 +102,22 @@ def test_friction():
     assert numbers["ratio"] == pytest.approx(float(-law.rho_plus / law.rho_minus))
 
 
+def test_nap(tmp_path):
+    assert "against/with = 0.73" in run("nap").stdout
+    options = ("--bristle", "angular", "--bending-stiffness", "0.03")
+    result = run("nap", *options, "--json")
+    numbers = json.loads(result.stdout)
+    rod = fx.bristles.AngularSpring(1.0, 1.414, 1.0, 0.3)
+    found = fx.nap(fx.profiles.Sine(0.1), rod, 0.03)
+    assert numbers["rho_against"] == pytest.approx(found.rho_against, rel=1e-3)
+    assert numbers["window"] is None
+    assert "nap.png" in run("nap", *options, "--out", tmp_path).stdout
+    assert (tmp_path / "nap.png").stat().st_size > 10_000
+    refused = run("nap", "--out", tmp_path / "none")
+    assert "bristle = 'SlantedSpring': needs an AngularSpring" in refused.stderr
+    assert refused.exit_code == 2
+
+
 def test_friction_of_a_scene_file(tmp_path):
     parts = fx.supports.Spring(1.0), fx.loads.Ramp(1.0), 1.0
     scene = fx.Scene(fx.profiles.Sine(0.2), fx.bristles.Homothetic(3.0), *parts)

@@ -198,6 +198,30 @@ def test_nap_of_the_paper():
         assert rho == pytest.approx((angle - rest) / np.tan(angle) * mu)
 
 
+def test_nap_of_a_rod_of_ones_own():
+    """Every curve is what `nap` says of the rod at that angle; the dots that of the rod."""
+    surface, rod = fx.profiles.Fourier([0.004, 0.0], [0.05, 0.01]), [2.0, 0.5]
+    own = fx.bristles.AngularSpring(rod[0], rod[1] / np.cos(0.8), rod[1], 0.2)
+    left, right = drawn(fx.plot.draw_own_nap(surface, own, 0.1))
+    angle = data(labelled(left, "with the nap"))[0][137]
+    stands = fx.bristles.AngularSpring(rod[0], rod[1] / np.cos(angle), rod[1], 0.2)
+    found = fx.nap(surface, stands, 0.1)
+    for name, rho, axial in (
+        ("with the nap", found.rho_with, found.axial_with),
+        ("against it", found.rho_against, found.axial_against),
+        ("turned over, against it", found.rho_flipped, found.axial_flipped),
+    ):
+        assert data(labelled(left, name))[1][137] == pytest.approx(rho, rel=1e-9)
+        assert data(labelled(right, name))[1][137] == pytest.approx(-axial, rel=1e-9)
+    critical = data(labelled(right, "critical load $\\pi^2 B/L^2$"))[1][137]
+    assert critical == pytest.approx(found.critical_load, rel=1e-12)
+    dots = [line.get_data() for line in left.lines if line.get_marker() == "o"]
+    assert [float(x[0]) for x, _ in dots] == pytest.approx([0.8] * 3)
+    assert float(dots[0][1][0]) == pytest.approx(fx.nap(surface, own).rho_with)
+    with pytest.raises(ValueError, match="needs an AngularSpring"):
+        fx.plot.draw_own_nap(surface, fx.bristles.VerticalSpring(1.0, 2.0, 1.0))
+
+
 def test_global_settings_and_pyplot_stay_untouched():
     """Whatever the user has set neither leaks in nor is lost."""
     with mpl.rc_context({"font.size": 23.0, "axes.grid": False}):
