@@ -25,7 +25,7 @@ FLOORS = {
         {"profiles", "bristles", "supports", "loads", "effects", "rods"},
         {"tables"},
         {"model"},
-        {"stochastic"},
+        {"stochastic", "turning"},
         {"measured", "limit", "wiggly", "certificate", "slide_laws"},
         {"contact"},
         {"io", "sweeps", "convergence"},
@@ -40,7 +40,7 @@ FLOORS = {
     "wiggly": [
         {"stepping"},
         {"equation", "rosenbrock"},
-        {"sequential", "lanes", "limit_path", "settings"},
+        {"sequential", "lanes", "limit_path", "settings", "turning"},
         {"slip_map"},
         {"enclosure"},
         {"sums", "ways"},

@@ -4,9 +4,6 @@ from .axial import largest_compression as largest_compression
 from .forces import TipForces as TipForces
 from .forces import limit_forces as limit_forces
 from .forces import tip_forces as tip_forces
-from .nap_effect import Flipped as Flipped
 from .nap_effect import Nap as Nap
-from .nap_effect import TurningWindow as TurningWindow
-from .nap_effect import axial_force as axial_force
 from .nap_effect import nap as nap
 from .readings import mechanics as mechanics

@@ -11,6 +11,8 @@ from .engines import require_bristle as require_bristle
 from .engines import require_done as require_done
 from .engines import require_together as require_together
 from .leading_order import LeadingOrder as LeadingOrder
+from .nap_flip import NapFlip as NapFlip
+from .nap_flip import nap_flip_among as nap_flip_among
 from .noise import Noise as Noise
 from .noise import noise_among as noise_among
 from .rigid_array import RigidArray as RigidArray

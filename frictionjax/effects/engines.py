@@ -36,6 +36,7 @@ _E = Engine
 _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset({_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP}),
     "Noise": frozenset({_E.RESOLVED, _E.ENSEMBLE, _E.FRICTION_CURVE}),
+    "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED}),
 }
 """Of effects that change what moves: the engines that do them."""
 _READS_NOT: dict[str, frozenset[Engine]] = {"AxialLoad": frozenset({_E.ENSEMBLE})}
@@ -56,11 +57,20 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
 }
 """What to do where an engine does not do an effect, after "needs"."""
 
+_TURNS = "solve and solve_limit, of the scene; nap, of its bristle"
+_INSTEAD |= {
+    ("NapFlip", engine): _TURNS for engine in Engine if engine not in _DOES["NapFlip"]
+}
+
 _ONE_ROD = "one rod, whose geometry the other leaves out: scenes apart"
 _APART: dict[frozenset[str], str] = {
     frozenset({reading, other}): _ONE_ROD
     for reading in ("AxialLoad",)
     for other in ("LeadingOrder", "RigidArray", "CompliantArray")
+}
+_APART |= {
+    frozenset({"NapFlip", other}): "one of them: its rod is bent and turns over"
+    for other in ("LeadingOrder", "RigidArray", "CompliantArray", "AxialLoad", "Noise")
 }
 _APART |= {
     frozenset({"CompliantArray", "Noise"}): "one of them: each bristle has its own noise",

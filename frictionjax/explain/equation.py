@@ -9,6 +9,7 @@ from ..effects import (
     AbstractEffect,
     CompliantArray,
     LeadingOrder,
+    NapFlip,
     Noise,
     RigidArray,
     Stage,
@@ -83,3 +84,14 @@ def _(effect: Noise, equation: Equation) -> Equation:
     motion = f"{driven}) dt + sqrt(2 eps^gamma T_eps) dB"
     bath = f"T_eps = {float(effect.temperature):.6g} eps^{float(effect.exponent):.6g} J"
     return Equation(motion, (*equation.where, f"{bath}, B a Wiener process"))
+
+
+@with_effect.register
+def _(effect: NapFlip, equation: Equation) -> Equation:
+    stiffness = f"{float(effect.bending_stiffness):.6g}"
+    turns = (
+        f"until compression is pi^2 B/L^2, B = {stiffness} N m^2, and the root goes back: "
+        "then U(z - z_tip), an elastica over the pinned tip, in place of V_eps",
+        "past it the same in a mirror, rest angle of the other sign",
+    )
+    return equation._replace(where=(*equation.where, *turns))

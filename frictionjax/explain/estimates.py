@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 
 from .._checks import Real
 from .._compile import Program, in_chunks
-from ..effects import AbstractEffect, CompliantArray, RigidArray
+from ..effects import AbstractEffect, CompliantArray, NapFlip, RigidArray
 from ..model import AbstractPotential, Coefficients, Scene
 from ..slide_laws import SlideData, predict_errors
 
@@ -109,6 +109,11 @@ def _(effect: CompliantArray, at: Setting) -> Estimate:
     return _array(float(np.size(effect.offsets)))
 
 
+@estimate_of.register
+def _(effect: NapFlip, at: Setting) -> Estimate:
+    return _array(np.nan)
+
+
 def _array(cost: float) -> Estimate:
-    """Arrays are another scene, not another accuracy."""
+    """Arrays, and rods that turn over, are another scene, not another accuracy."""
     return Estimate(np.nan, np.nan, cost, "none: another scene")

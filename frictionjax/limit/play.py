@@ -6,7 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from .._checks import (
     CodedResult,
@@ -19,7 +19,7 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program, padded_size
-from ..effects import Engine
+from ..effects import Engine, NapFlip, nap_flip_among
 from ..loads import AbstractPull
 from ..model import (
     SETTINGS,
@@ -49,12 +49,16 @@ class LimitSolution(CodedResult, eqx.Module):
     """Limit trajectory: times `ts` (s), states `z` (m), `dissipation` (J), shapes (n,).
 
     `dissipation` is cumulative, `int_0^ts R(z')`. `ok`, `status`: not finite only where
-    the scene was traced, so that nothing could be checked.
+    the scene was traced, so that nothing could be checked. Of a scene with
+    `effects.NapFlip` also `root` u in m and `mode`: 1 as the rod stands at first, -1 turned
+    over, 0 in between; None of others.
     """
 
     ts: Float[Array, " n"]
     z: Float[Array, " n"]
     dissipation: Float[Array, " n"]
+    root: Float[Array, " n"] | None = None
+    mode: Int[Array, " n"] | None = None
     _outcomes = LimitStatus
 
     @property
@@ -154,6 +158,16 @@ def require_start_in_strip(scene: Scene) -> None:
     require(lower - slack <= z0 <= upper + slack, "scene.z0", z0, needs)
 
 
+def _with_turning(scene: Scene, effect: NapFlip, ts: Float[Array, " n"]) -> LimitSolution:
+    from ..turning import hybrid_play  # nothing else needs it
+
+    known = is_concrete(scene, ts)
+    require(known, "scene", "traced numbers", "known ones, as it has effects.NapFlip")
+    found = hybrid_play(scene, effect, np.asarray(ts))
+    columns = found.z, found.dissipation, found.root, found.mode
+    return LimitSolution(ts, *map(jnp.asarray, columns))
+
+
 @with_nan
 def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     """Solve `0 in dR(z') + Phi'(z) - l(t)` (eq. 2.3), exactly up to rounding.
@@ -165,8 +179,14 @@ def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     Raises `ValueError` for bad times, 32 bits, or z0 outside the strip at t = 0 (with the
     allowed interval). Source: the play operator, see A. Mielke and T. Roubicek,
     Rate-Independent Systems (2015).
+
+    With `effects.NapFlip` it is a play operator with modes: between its slides the root
+    follows the load over the pinned tip, or jumps, which loses energy too.
     """
     scene = scene_for(Engine.LIMIT, scene)
     ts = require_times(scene, ts)
+    turning = nap_flip_among(scene.effects)
+    if turning is not None:
+        return _with_turning(scene, turning, ts)
     require_start_in_strip(scene)
     return _solve(scene, coefficients_jit(scene.potential), ts)

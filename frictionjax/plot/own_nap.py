@@ -7,10 +7,11 @@ from matplotlib.figure import Figure
 
 from .._checks import require
 from ..bristles import AngularSpring
-from ..contact import Nap, axial_force, nap
+from ..contact import Nap, nap
 from ..model import friction
 from ..profiles import AbstractProfile
 from ..rods import hinged_load
+from ..turning import axial_force
 from .style import GUIDE, STRIP, colour, new_figure, styled
 
 _NAMES = ("with the nap", "against it", "turned over, against it")

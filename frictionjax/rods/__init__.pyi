@@ -4,3 +4,4 @@ from .elastica import Elastica as Elastica
 from .elastica import bent_between_hinges as bent_between_hinges
 from .elliptic import EllipticIntegrals as EllipticIntegrals
 from .elliptic import complete_elliptic as complete_elliptic
+from .turning_energy import TurningRod as TurningRod

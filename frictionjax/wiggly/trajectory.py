@@ -21,7 +21,7 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program
-from ..effects import Noise, engine_of, noise_among
+from ..effects import NapFlip, Noise, engine_of, nap_flip_among, noise_among
 from ..model import (
     Scene,
     TabulatedScene,
@@ -53,6 +53,9 @@ class Solution(CodedResult, eqx.Module):
     of its slips, NaN where only values at `ts` were wanted. Of a `CompliantArray` values
     are means over its bristles, and `spread` (n,) is their standard deviation in m.
     Of a path with noise `step` is the length of its steps in s.
+
+    With `effects.NapFlip` also `root` u in m and `mode` (n,): 1 as the rod stands at first,
+    -1 turned over, 0 in between; else they are None.
     """
 
     ts: Float[Array, " n"]
@@ -62,6 +65,8 @@ class Solution(CodedResult, eqx.Module):
     status_code: Int[Array, ""]
     counts: dict[str, Any]
     how: str = eqx.field(static=True)
+    root: Float[Array, " n"] | None = None
+    mode: Int[Array, " n"] | None = None
     _outcomes = Status
 
     @property
@@ -283,6 +288,47 @@ def _one_path(
     return Solution(ts, z, None, None, jnp.asarray(int(status)), counts, how)
 
 
+def _with_turning(
+    scene: Scene,
+    effect: NapFlip,
+    *,
+    eps: Any,
+    gamma: Any,
+    ts: Array,
+    accuracy: float,
+    balanced: bool,
+    max_steps: int,
+) -> Solution:
+    from .turning import integrate_turning  # nothing else needs it
+
+    found = integrate_turning(
+        scene,
+        float(eps),
+        float(gamma),
+        effect=effect,
+        ts=np.asarray(ts),
+        accuracy=accuracy,
+        budget=max_steps,
+    )
+    counts = {
+        "steps": found.steps,
+        "rejected": found.rejected,
+        "tolerance": found.tolerance,
+        "dissipation_gap": found.gap if balanced else None,
+    }
+    return Solution(
+        ts=ts,
+        z=jnp.asarray(found.z),
+        dissipation=jnp.asarray(found.dissipation) if balanced else None,
+        residual=jnp.asarray(found.residual) if balanced else None,
+        status_code=jnp.asarray(found.status),
+        counts=counts,
+        how="resolved, every slip, with a rod that turns over",
+        root=jnp.asarray(found.root),
+        mode=jnp.asarray(found.mode),
+    )
+
+
 @with_nan
 def solve(
     scene: Scene,
@@ -316,6 +362,7 @@ def solve(
     `key`: of a scene with `effects.Noise`, a seed or a key of `jax.random`, whose path it
     is. Steps are fixed then, and accuracy, max_steps and adjoint are refused; dissipation
     and residual are None, as `int eps^gamma z'^2` of a path with noise is infinite.
+    With `effects.NapFlip` every slip is integrated, and there are no derivatives.
     Failure is a `status`, not an exception.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
@@ -340,6 +387,21 @@ def solve(
     eps, gamma = jnp.asarray(as_real(eps)), jnp.asarray(as_real(gamma))
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)
+    turning = nap_flip_among(scene.effects)
+    if turning is not None:
+        given = is_concrete(scene, eps, gamma, ts, accuracy) and adjoint is None
+        needs = "known numbers and no adjoint: rods that turn over have no derivatives"
+        require(given, "scene", "traced, or with an adjoint", needs)
+        return _with_turning(
+            scene,
+            turning,
+            eps=eps,
+            gamma=gamma,
+            ts=ts,
+            accuracy=float(as_real(accuracy)),
+            balanced=bool(dissipation),
+            max_steps=int(max_steps),
+        )
     plain = adjoint is None and max_steps == MAX_STEPS
     if plain and is_ours(method) and is_concrete(scene, eps, gamma, ts, accuracy):
         found = _through_lanes(

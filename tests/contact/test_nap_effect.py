@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.contact import axial_force
+from frictionjax.turning import axial_force
 
 ROD = fx.bristles.AngularSpring(2.0, 0.07, 0.05, 0.3)
 SURFACE = fx.profiles.Fourier([0.004, 0.0], [0.015, 0.003])
@@ -35,7 +35,7 @@ def test_the_rod_turned_over_is_the_one_in_a_mirror():
     found, other = fx.nap(SURFACE, ROD), fx.nap(*mirror(SURFACE, ROD))
     assert found.rho_flipped == pytest.approx(other.rho_with, rel=1e-12)
     assert found.axial_flipped == pytest.approx(other.axial_with, rel=1e-12)
-    assert found.flipped.axial_back == pytest.approx(other.axial_against, rel=1e-12)
+    assert found.flipped.axial_against == pytest.approx(other.axial_against, rel=1e-12)
     assert other.rho_flipped == pytest.approx(found.rho_with, rel=1e-12)
 
 
@@ -97,7 +97,7 @@ def test_a_rod_that_leans_back_at_rest_turns_over_and_never_back():
     found = fx.nap(fx.profiles.Sine(0.1), rod)
     assert found.window is None
     assert found.rho_flipped < found.rho_against
-    between = 0.5 * (-found.axial_against - found.flipped.axial_back)
+    between = 0.5 * (-found.axial_against - found.flipped.axial_against)
     told = fx.nap(fx.profiles.Sine(0.1), rod, between * 2 / np.pi**2)
     assert "never back" in told.message
 

@@ -5,9 +5,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from frictionjax.effects import AbstractEffect, AxialLoad
+from frictionjax.effects import AbstractEffect, AxialLoad, NapFlip
 
-KINDS = (AxialLoad,)
+KINDS = (AxialLoad, NapFlip)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -16,12 +16,14 @@ EFFECTS = {
     "CompliantArray": fx.effects.CompliantArray([0.0, 0.1]),
     "AxialLoad": fx.effects.AxialLoad(1.0),
     "Noise": fx.effects.Noise(1e-4),
+    "NapFlip": fx.effects.NapFlip(0.1),
 }
 APART = {
     frozenset({rod, other})
     for rod in ("AxialLoad",)
     for other in ("LeadingOrder", "RigidArray", "CompliantArray")
 } | {frozenset({"Noise", other}) for other in ("AxialLoad", "CompliantArray")}
+APART |= {frozenset({"NapFlip", other}) for other in EFFECTS if other != "NapFlip"}
 AT_REST = LimitSolution(*([np.zeros(2)] * 3))
 TS = np.linspace(0, 1, 4001)
 
@@ -29,7 +31,9 @@ TS = np.linspace(0, 1, 4001)
 def scene_of(*effects):
     profile, bristle = fx.profiles.Sine(0.1), fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
     if any(effect.of_bristle for effect in effects):
-        bristle = fx.bristles.AngularSpring(1.0, 1.4, 1.0, 0.3)
+        bristle = fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, 0.3)
+    if any(isinstance(effect, fx.effects.NapFlip) for effect in effects):
+        profile = fx.profiles.Sine(0.5)  # rough enough to turn over
     parts = fx.supports.Spring(1.0), fx.loads.Ramp(1.0, 0.0)
     return fx.Scene(profile, bristle, *parts, duration=1.0, effects=effects)
 

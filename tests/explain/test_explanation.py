@@ -126,6 +126,13 @@ def test_noise_is_in_the_equation():
     assert bool(found.effects.sel(effect="Noise").asked)
 
 
+def test_a_rod_that_turns_over_is_another_scene():
+    one = scene_of("angular", effects=(fx.effects.NapFlip(0.1),))
+    found = fx.explain(one, 1e-2, 1.0)
+    assert "until compression is pi^2 B/L^2, B = 0.1 N m^2" in found.equation
+    assert "another scene" in str(found.effects.sel(effect="NapFlip").source.values)
+
+
 def test_a_given_potential_is_explained():
     potential = fx.GivenPotential(
         W=lambda Y: 0.02 * one_wave(Y), Q=lambda eps, Y: 0.01 * one_wave(Y)

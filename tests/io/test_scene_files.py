@@ -48,6 +48,7 @@ EFFECTS = [
 ]
 SCENES = [
     *(scene().replace(effects=some) for some in EFFECTS),
+    scene(bristle=BRISTLES[3]).replace(effects=(fx.effects.NapFlip(ODD),)),
     *(scene(profile=part) for part in PROFILES),
     *(scene(bristle=part) for part in BRISTLES),
     *(scene(load=part) for part in LOADS),

@@ -1,0 +1,5 @@
+"""Rods that turn over against their nap: when, with what energy, and in the limit."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

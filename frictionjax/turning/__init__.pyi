@@ -1,0 +1,15 @@
+from .critical_forces import FlippingRod as FlippingRod
+from .critical_forces import flipping_rod as flipping_rod
+from .play_with_modes import HybridPlay as HybridPlay
+from .play_with_modes import hybrid_play as hybrid_play
+from .polynomials import BentForce as BentForce
+from .polynomials import bent_force as bent_force
+from .polynomials import turning_force as turning_force
+from .turned_rod import NO_TURNING as NO_TURNING
+from .turned_rod import NapSlides as NapSlides
+from .turned_rod import TurningWindow as TurningWindow
+from .turned_rod import axial_force as axial_force
+from .turned_rod import nap_slides as nap_slides
+from .turned_rod import stiffnesses as stiffnesses
+from .turned_rod import turned_over as turned_over
+from .turned_rod import turning_window as turning_window

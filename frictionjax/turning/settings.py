@@ -1,0 +1,15 @@
+"""How forces of rods in between are interpolated."""
+
+from typing import NamedTuple
+
+
+class Settings(NamedTuple):
+    """Degrees of Chebyshev polynomials over the whole turning."""
+
+    degree: int = 32
+    most: int = 128  # where h = L/20 chords come near 0 and 1e-7 is left
+    left: float = 1e-14  # last coefficients, over the largest
+    nodes: int = 16  # of the support's force: exact for a linear spring
+
+
+SETTINGS = Settings()

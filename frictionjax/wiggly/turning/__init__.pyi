@@ -1,0 +1,2 @@
+from .hybrid_motion import HybridMotion as HybridMotion
+from .hybrid_motion import integrate_turning as integrate_turning

@@ -1,0 +1,35 @@
+"""Energy of a rod that turns over its pinned tip."""
+
+import jax
+import numpy as np
+import pytest
+
+from frictionjax.rods import TurningRod, hinged_load
+
+ROD = TurningRod(2.0, 0.3, 1.4, 0.15, 0.9)
+REACH = (1.4**2 - 0.9**2) ** 0.5
+LIMIT = np.arccos(0.9 / 1.4)
+
+
+def test_at_both_ends_it_is_the_straight_rod():
+    assert float(ROD.reach) == pytest.approx(REACH, rel=1e-15)
+    for side in (1, -1):
+        straight = 0.5 * 2.0 * (side * LIMIT - 0.3) ** 2
+        assert float(ROD.energy(side * ROD.reach)) == pytest.approx(straight, rel=1e-12)
+
+
+def test_force_is_the_derivative_of_energy():
+    for ahead in np.linspace(-0.97, 0.97, 9) * REACH:
+        slope = float(jax.grad(ROD.energy)(ahead))
+        assert float(ROD.force(ahead)) == pytest.approx(slope, rel=1e-9, abs=1e-12)
+
+
+def test_it_begins_with_the_force_of_a_straight_rod_at_the_critical_load():
+    """Pinned and straight: `N (cos, sin)` with what the spring adds across the rod."""
+    critical = float(hinged_load(0.15, 1.4))
+    across = 2.0 * (LIMIT - 0.3) / 1.4
+    force = across * np.cos(LIMIT) - critical * np.sin(LIMIT)
+    assert float(ROD.force(ROD.reach)) == pytest.approx(force, rel=1e-9)
+    across = 2.0 * (-LIMIT - 0.3) / 1.4
+    force = across * np.cos(LIMIT) + critical * np.sin(LIMIT)
+    assert float(ROD.force(-ROD.reach)) == pytest.approx(force, rel=1e-9)
