@@ -39,6 +39,7 @@ EFFECTS = _by_name(
     effects.CompliantArray,
     effects.AxialLoad,
     effects.Noise,
+    effects.Inertia,
 )
 """Kinds of the tables [[effects]], of which a scene has any number."""
 _WITHOUT_SCENE = PARTS["profile"] | PARTS["bristle"]  # what documents of results hold

@@ -16,12 +16,14 @@ EFFECTS = {
     "CompliantArray": fx.effects.CompliantArray([0.0, 0.1]),
     "AxialLoad": fx.effects.AxialLoad(1.0),
     "Noise": fx.effects.Noise(1e-4),
+    "Inertia": fx.effects.Inertia(1e-4),
 }
 APART = {
     frozenset({rod, other})
     for rod in ("AxialLoad",)
     for other in ("LeadingOrder", "RigidArray", "CompliantArray")
 } | {frozenset({"Noise", other}) for other in ("AxialLoad", "CompliantArray")}
+APART |= {frozenset({"Inertia", other}) for other in ("Noise", "CompliantArray")}
 AT_REST = LimitSolution(*([np.zeros(2)] * 3))
 TS = np.linspace(0, 1, 4001)
 
