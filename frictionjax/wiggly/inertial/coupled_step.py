@@ -1,0 +1,62 @@
+"""Steps of Rosenbrock methods for a tip with mass."""
+
+from typing import NamedTuple
+
+from ..._checks import Real
+from ..rosenbrock import Tableau, combine
+from .massive_tip import Coupling, MassiveTip, Motion
+
+
+class Step(NamedTuple):
+    """Where a step ends, its stages, of each part a list; the last is the error."""
+
+    end: Motion
+    stages: Motion
+
+
+def step_with_mass(
+    tableau: Tableau, tip: MassiveTip, t: Real, size: Real, start: Motion
+) -> Step:
+    """One step of `size` s from `start` at time t.
+
+    As `rosenbrock_step`, with a pair of unknowns a stage instead of one: `lost` and `work`
+    act on nothing, and follow.
+    """
+    coupling = tip.coupling(t, start)
+    stages = Motion([], [], [], [])
+    rows = zip(tableau.a, tableau.c, tableau.times, tableau.time_derivative, strict=True)
+    for a, c, time, by_time in rows:
+        inside = _inside(start, a, stages)
+        rates = tip.rates(t + time * size, inside)
+        pushes = Motion(
+            *(r + combine(c, k) / size for r, k in zip(rates, stages, strict=True))
+        )
+        if by_time:
+            pushes = pushes._replace(
+                speed=pushes.speed + size * by_time * coupling.speed_by_time,
+                work=pushes.work + size * by_time * coupling.work_by_time,
+            )
+        found = _solved(coupling, 1 / (size * tableau.gamma), pushes)
+        for column, value in zip(stages, found, strict=True):
+            column.append(value)
+    end = Motion(*(i + k[-1] for i, k in zip(inside, stages, strict=True)))
+    return Step(end, stages)
+
+
+def _inside(start: Motion, a: tuple[float, ...], stages: Motion) -> Motion:
+    return Motion(*(s + combine(a, k) for s, k in zip(start, stages, strict=True)))
+
+
+def _solved(coupling: Coupling, rate: Real, pushes: Motion) -> Motion:
+    """`(rate - J) k = pushes` by Cramer's rule."""
+    first, second = rate - coupling.tip_by_tip, rate - coupling.speed_by_speed
+    across = coupling.tip_by_speed * coupling.speed_by_tip
+    whole = first * second - across
+    tip = (second * pushes.tip + coupling.tip_by_speed * pushes.speed) / whole
+    speed = (first * pushes.speed + coupling.speed_by_tip * pushes.tip) / whole
+    return Motion(
+        tip=tip,
+        speed=speed,
+        lost=(pushes.lost + coupling.lost_by_speed * speed) / rate,
+        work=(pushes.work + coupling.work_by_speed * speed) / rate,
+    )
