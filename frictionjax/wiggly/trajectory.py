@@ -21,7 +21,7 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program
-from ..effects import Noise, engine_of, noise_among
+from ..effects import Inertia, Noise, engine_of, inertia_among, noise_among
 from ..model import (
     Scene,
     TabulatedScene,
@@ -53,6 +53,11 @@ class Solution(CodedResult, eqx.Module):
     of its slips, NaN where only values at `ts` were wanted. Of a `CompliantArray` values
     are means over its bristles, and `spread` (n,) is their standard deviation in m.
     Of a path with noise `step` is the length of its steps in s.
+
+    With `effects.Inertia` also `velocity` (n,), z' in m/s; else it is None. `residual` is
+    then what is left of the balance of energies, kinetic energy among them, `spread` (n,)
+    how far in m two runs at different tolerances are apart (where they end in different
+    wells the status is SENSITIVE), and `beta` the number that decides whether mass matters.
     """
 
     ts: Float[Array, " n"]
@@ -62,6 +67,7 @@ class Solution(CodedResult, eqx.Module):
     status_code: Int[Array, ""]
     counts: dict[str, Any]
     how: str = eqx.field(static=True)
+    velocity: Float[Array, " n"] | None = None
     _outcomes = Status
 
     @property
@@ -283,6 +289,48 @@ def _one_path(
     return Solution(ts, z, None, None, jnp.asarray(int(status)), counts, how)
 
 
+def _with_mass(
+    scene: Scene,
+    inertia: Inertia,
+    eps: Any,
+    gamma: Any,
+    ts: Array,
+    accuracy: float,
+    balanced: bool,
+    max_steps: int,
+) -> Solution:
+    from .inertial import integrate_with_mass  # nothing else needs it
+
+    found = integrate_with_mass(
+        scene,
+        np.atleast_1d(float(eps)),
+        np.atleast_1d(float(gamma)),
+        inertia=inertia,
+        ts=np.asarray(ts),
+        accuracy=accuracy,
+        suprema=False,
+        budget=max_steps,
+    )
+    counts = {
+        "steps": int(found.steps[0]),
+        "rejected": int(found.rejected[0]),
+        "tolerance": float(found.tolerance[0]),
+        "dissipation_gap": float(found.running_residual[0, -1]) if balanced else None,
+        "spread": found.spread[0],
+        "beta": float(found.beta[0]),
+    }
+    return Solution(
+        ts,
+        jnp.asarray(found.z[0]),
+        jnp.asarray(found.dissipation[0]) if balanced else None,
+        jnp.asarray(found.running_residual[0]) if balanced else None,
+        jnp.asarray(found.status[0]),
+        counts,
+        "resolved, every slip since z0, with mass, at two tolerances",
+        jnp.asarray(found.velocity[0]),
+    )
+
+
 @with_nan
 def solve(
     scene: Scene,
@@ -316,6 +364,8 @@ def solve(
     `key`: of a scene with `effects.Noise`, a seed or a key of `jax.random`, whose path it
     is. Steps are fixed then, and accuracy, max_steps and adjoint are refused; dissipation
     and residual are None, as `int eps^gamma z'^2` of a path with noise is infinite.
+    With `effects.Inertia` the equation has `m_eps z''`, z0 is at rest, every slip is
+    integrated at two tolerances, and there are no derivatives.
     Failure is a `status`, not an exception.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
@@ -340,6 +390,23 @@ def solve(
     eps, gamma = jnp.asarray(as_real(eps)), jnp.asarray(as_real(gamma))
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)
+    inertia = inertia_among(scene.effects)
+    if inertia is not None:
+        given = is_concrete(scene, eps, gamma, ts, accuracy) and adjoint is None
+        needs = (
+            "known numbers and no adjoint: with effects.Inertia there are no derivatives"
+        )
+        require(given, "scene", "traced, or with an adjoint", needs)
+        return _with_mass(
+            scene=scene,
+            inertia=inertia,
+            eps=eps,
+            gamma=gamma,
+            ts=ts,
+            accuracy=float(as_real(accuracy)),
+            balanced=bool(dissipation),
+            max_steps=int(max_steps),
+        )
     plain = adjoint is None and max_steps == MAX_STEPS
     if plain and is_ours(method) and is_concrete(scene, eps, gamma, ts, accuracy):
         found = _through_lanes(

@@ -64,6 +64,7 @@ class _Course(NamedTuple):
     segments: Segments
     asked: np.ndarray
     with_suprema: bool
+    accuracy: float
 
 
 @quiet_where_extreme
@@ -98,14 +99,16 @@ def integrate_with_mass(
             parts.append(_without_turns(cells[0].size, ts.size))
             continue
         lanes = _lanes(tables, inertia, *cells, accuracy, budget)
-        course = _course(tables, ts, suprema)
+        course = _course(tables, ts, suprema, accuracy)
         share = group.size / eps.size
         parts.append(_trusted(course, lanes, lambda done, s=share: report(s * done)))
     whole = rows_of(concatenated(parts), np.argsort(np.concatenate(groups)))
     return whole._replace(beta=beta)
 
 
-def _course(scene: TabulatedScene, ts: np.ndarray, suprema: bool) -> _Course:
+def _course(
+    scene: TabulatedScene, ts: np.ndarray, suprema: bool, accuracy: float
+) -> _Course:
     last = scene.duration if suprema else float(ts[-1])
     turns = scene.turning_points
     stops = np.unique(np.concatenate([[0.0, last], ts, turns[turns < last]]))
@@ -122,7 +125,7 @@ def _course(scene: TabulatedScene, ts: np.ndarray, suprema: bool) -> _Course:
         rho_minus=np.asarray(scene.rho_minus),
     )
     asked = np.searchsorted(stops, ts) - 1  # -1: at 0
-    return _Course(parts, Segments(start, length), asked, suprema)
+    return _Course(parts, Segments(start, length), asked, suprema, accuracy)
 
 
 class _Lengths(NamedTuple):
@@ -281,6 +284,8 @@ def _compared(
     wells = np.max(apart, axis=1, initial=0.0) / lanes.eps
     code = np.where(fine.code != 0, fine.code, rough.code).astype(int)
     sensitive = (code == 0) & ~(wells <= SETTINGS.well)
+    unbalanced = (code == 0) & ~_is_balanced(course, lanes, fine)
+    code = np.where(unbalanced, int(Status.UNBALANCED), code)
     seen = (code == 0) & course.with_suprema
     far, outside, lost = (np.where(seen, column, np.nan) for column in fine.suprema)
     return CellsWithMass(
@@ -298,6 +303,13 @@ def _compared(
         rejected=(rough.rejected + fine.rejected).astype(int),
         tolerance=np.asarray(lanes.control.tolerance),
     )
+
+
+def _is_balanced(course: _Course, lanes: MassiveLane, found: MarchedRow) -> np.ndarray:
+    """Whether energies add up to the accuracy of the dissipation, or of one slip."""
+    slip = lanes.eps * float(course.scene.rho_plus - course.scene.rho_minus)
+    left = np.max(np.abs(found.stops.left), axis=1, initial=0.0)
+    return left <= course.accuracy * (slip + found.stops.lost[:, -1])
 
 
 def _without_turns(cells: int, times: int) -> CellsWithMass:

@@ -7,11 +7,20 @@ from ..rosenbrock import Tableau, combine
 from .massive_tip import Coupling, MassiveTip, Motion
 
 
+class Stages(NamedTuple):
+    """Of each part of a motion, one after the other; the last is the error."""
+
+    tip: tuple[Real, ...] = ()
+    speed: tuple[Real, ...] = ()
+    lost: tuple[Real, ...] = ()
+    work: tuple[Real, ...] = ()
+
+
 class Step(NamedTuple):
-    """Where a step ends, its stages, of each part a list; the last is the error."""
+    """Where a step ends, and its stages."""
 
     end: Motion
-    stages: Motion
+    stages: Stages
 
 
 def step_with_mass(
@@ -23,7 +32,7 @@ def step_with_mass(
     act on nothing, and follow.
     """
     coupling = tip.coupling(t, start)
-    stages = Motion([], [], [], [])
+    stages = Stages()
     rows = zip(tableau.a, tableau.c, tableau.times, tableau.time_derivative, strict=True)
     for a, c, time, by_time in rows:
         inside = _inside(start, a, stages)
@@ -37,13 +46,12 @@ def step_with_mass(
                 work=pushes.work + size * by_time * coupling.work_by_time,
             )
         found = _solved(coupling, 1 / (size * tableau.gamma), pushes)
-        for column, value in zip(stages, found, strict=True):
-            column.append(value)
+        stages = Stages(*((*k, new) for k, new in zip(stages, found, strict=True)))
     end = Motion(*(i + k[-1] for i, k in zip(inside, stages, strict=True)))
     return Step(end, stages)
 
 
-def _inside(start: Motion, a: tuple[float, ...], stages: Motion) -> Motion:
+def _inside(start: Motion, a: tuple[float, ...], stages: Stages) -> Motion:
     return Motion(*(s + combine(a, k) for s, k in zip(start, stages, strict=True)))
 
 

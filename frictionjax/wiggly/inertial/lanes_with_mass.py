@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool
 
 from ..._checks import Real
 from ..._compile import Program
@@ -78,10 +78,10 @@ class AtStops(NamedTuple):
     """At the ends of segments: `z` (m), `velocity` (m/s), `lost` (J) and what is `left` of
     the energy balance (J), (lanes, n)."""
 
-    z: Real
-    velocity: Real
-    lost: Real
-    left: Real
+    z: Any
+    velocity: Any
+    lost: Any
+    left: Any
 
 
 class _Going(NamedTuple):
@@ -103,9 +103,9 @@ class MarchedRow(NamedTuple):
 
     stops: AtStops
     suprema: Suprema
-    steps: Float[Array, " lanes"]
-    rejected: Float[Array, " lanes"]
-    code: Float[Array, " lanes"]
+    steps: Any
+    rejected: Any
+    code: Any
 
 
 @Program
@@ -238,7 +238,7 @@ def _widened(
     far, outside, apart = going.suprema
     for share in SETTINGS.shares:
         y, lost = (
-            dense_output(SETTINGS.tableau, before, end, stages, share)
+            dense_output(SETTINGS.tableau, before, end, list(stages), jnp.asarray(share))
             for before, end, stages in (
                 (going.motion.tip, step.end.tip, step.stages.tip),
                 (going.motion.lost, step.end.lost, step.stages.lost),

@@ -14,7 +14,7 @@ class Settings(NamedTuple):
     places: int = 2048  # of a period: max |W''| to 2e-6
     shares: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0)  # of a step, looked at for suprema
     # Of the tolerance of lanes without mass: slips are not forgotten.
-    share: float = 0.1
+    share: float = 1.0
     finer: float = 0.04  # tolerance of the second run over that of the first
     rounds: int = 2  # more, each finer again, where two runs end in different wells
     well: float = 0.5  # in eps: runs further apart are in different wells
