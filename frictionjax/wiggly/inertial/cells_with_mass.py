@@ -26,7 +26,7 @@ from .lanes_with_mass import (
     MarchedRow,
     MassiveLane,
     MassiveScene,
-    Segments,
+    Stretches,
     march_with_mass,
 )
 from .settings import SETTINGS
@@ -61,7 +61,7 @@ class _Course(NamedTuple):
     """What all runs of some cells share: parts, segments, and which stops are asked for."""
 
     scene: MassiveScene
-    segments: Segments
+    segments: Stretches
     asked: np.ndarray
     with_suprema: bool
     accuracy: float
@@ -125,7 +125,7 @@ def _course(
         rho_minus=np.asarray(scene.rho_minus),
     )
     asked = np.searchsorted(stops, ts) - 1  # -1: at 0
-    return _Course(parts, Segments(start, length), asked, suprema, accuracy)
+    return _Course(parts, Stretches(start, length), asked, suprema, accuracy)
 
 
 class _Lengths(NamedTuple):

@@ -19,8 +19,8 @@ from ...supports import AbstractSupport
 from ..equation import Status, TipField
 from ..rosenbrock import dense_output
 from ..stepping import Control, ControlState, judge, step_of
-from .coupled_step import Step, step_with_mass
-from .massive_tip import MassiveTip, Motion
+from .coupled_step import MassiveStep, step_with_mass
+from .massive_tip import MassiveTip, TipMotion
 from .settings import SETTINGS
 
 
@@ -50,7 +50,7 @@ class MassiveLane(NamedTuple):
     budget: Any
 
 
-class Segments(NamedTuple):
+class Stretches(NamedTuple):
     """Stretches between stops, (n,): start and length in s. The load turns at stops."""
 
     start: Any
@@ -66,7 +66,7 @@ class _Stretch(NamedTuple):
     limit_lost: Real
 
 
-class Suprema(NamedTuple):
+class SupremaSoFar(NamedTuple):
     """So far, of |z - limit| and the distance from the strip in m, of dissipations in J."""
 
     far: Real
@@ -74,7 +74,7 @@ class Suprema(NamedTuple):
     apart: Real
 
 
-class AtStops(NamedTuple):
+class MassAtStops(NamedTuple):
     """At the ends of segments: `z` (m), `velocity` (m/s), `lost` (J) and what is `left` of
     the energy balance (J), (lanes, n)."""
 
@@ -88,11 +88,11 @@ class _Going(NamedTuple):
     """A lane on its way; `time` in s since the segment's start."""
 
     well: Real
-    motion: Motion
+    motion: TipMotion
     time: Real
     arrived: Bool[Array, ""]
     control: ControlState
-    suprema: Suprema
+    suprema: SupremaSoFar
     steps: Real
     rejected: Real
     code: Real
@@ -101,8 +101,8 @@ class _Going(NamedTuple):
 class MarchedRow(NamedTuple):
     """What a row of lanes has found, and how each has ended."""
 
-    stops: AtStops
-    suprema: Suprema
+    stops: MassAtStops
+    suprema: SupremaSoFar
     steps: Any
     rejected: Any
     code: Any
@@ -111,7 +111,7 @@ class MarchedRow(NamedTuple):
 @Program
 def march_with_mass(
     scene: MassiveScene,
-    segments: Segments,
+    segments: Stretches,
     with_suprema: bool,
     lanes: MassiveLane,
 ) -> MarchedRow:
@@ -123,7 +123,7 @@ def march_with_mass(
     step = of_row(lambda lane, going, at: _stepped(scene, lane, going, at, with_suprema))
     report = of_row(lambda lane, going, at: _at_stop(scene, lane, going, at))
 
-    def through(before: tuple, segment: Segments) -> tuple[tuple, AtStops]:
+    def through(before: tuple, segment: Stretches) -> tuple[tuple, MassAtStops]:
         going, limit, limit_lost = before
         at = _Stretch(*segment, limit, limit_lost)
         there = jnp.broadcast_to(at.length <= 0, going.arrived.shape)
@@ -138,7 +138,7 @@ def march_with_mass(
 
     start = jax.vmap(_at_start)(lanes), scene.z0, jnp.zeros_like(scene.z0)
     (going, *_), found = jax.lax.scan(through, start, segments)
-    stops = AtStops(*(jnp.moveaxis(column, 0, -1) for column in found))
+    stops = MassAtStops(*(jnp.moveaxis(column, 0, -1) for column in found))
     return MarchedRow(stops, going.suprema, going.steps, going.rejected, going.code)
 
 
@@ -150,11 +150,11 @@ def _at_start(lane: MassiveLane) -> _Going:
     none = jnp.zeros_like(lane.eps)
     return _Going(
         well=lane.well,
-        motion=Motion(lane.tip, none, none, none),
+        motion=TipMotion(lane.tip, none, none, none),
         time=none,
         arrived=none > 0,
         control=ControlState(none, none),
-        suprema=Suprema(none, none, none),
+        suprema=SupremaSoFar(none, none, none),
         steps=none,
         rejected=none,
         code=none,
@@ -230,11 +230,11 @@ def _widened(
     scene: MassiveScene,
     tip: MassiveTip,
     going: _Going,
-    step: Step,
+    step: MassiveStep,
     size: Real,
     at: _Stretch,
-) -> Suprema:
-    """Suprema with what a step shows at a few shares of it."""
+) -> SupremaSoFar:
+    """SupremaSoFar with what a step shows at a few shares of it."""
     far, outside, apart = going.suprema
     for share in SETTINGS.shares:
         y, lost = (
@@ -249,7 +249,7 @@ def _widened(
         far = jnp.maximum(far, jnp.abs(z - limit))
         outside = jnp.maximum(outside, jnp.maximum(strip[0] - z, z - strip[1]))
         apart = jnp.maximum(apart, jnp.abs(lost - limit_lost))
-    return Suprema(far, outside, apart)
+    return SupremaSoFar(far, outside, apart)
 
 
 def _limit_in(scene: MassiveScene, at: _Stretch, time: Real, near: Real) -> tuple:
@@ -268,17 +268,17 @@ def _limit_in(scene: MassiveScene, at: _Stretch, time: Real, near: Real) -> tupl
 
 def _at_stop(
     scene: MassiveScene, lane: MassiveLane, going: _Going, at: _Stretch
-) -> AtStops:
+) -> MassAtStops:
     tip = _tip_of(scene, lane, going.well, at.start)
     first = _tip_of(scene, lane, lane.well, at.start)
     none = jnp.zeros_like(lane.tip)
-    before = first.energy(Motion(lane.tip, none, none, none))
+    before = first.energy(TipMotion(lane.tip, none, none, none))
     left = before + going.motion.work - tip.energy(going.motion) - going.motion.lost
-    values = AtStops(
+    values = MassAtStops(
         z=tip.field.state(going.motion.tip),
         velocity=lane.eps * going.motion.speed,
         lost=going.motion.lost,
         left=left,
     )
     unknown = jnp.full_like(lane.tip, jnp.nan)
-    return AtStops(*(jnp.where(going.code == 0, value, unknown) for value in values))
+    return MassAtStops(*(jnp.where(going.code == 0, value, unknown) for value in values))

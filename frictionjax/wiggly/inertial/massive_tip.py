@@ -10,7 +10,7 @@ from ..._checks import Real
 from ..equation import TipField
 
 
-class Motion(NamedTuple):
+class TipMotion(NamedTuple):
     """What moves: `tip` y in periods from its well, `speed` z'/eps in 1/s.
 
     `lost`: `int eps^gamma z'^2`, `work`: `int l z'`, both in J since the start. They are
@@ -23,7 +23,7 @@ class Motion(NamedTuple):
     work: Real
 
 
-class Coupling(NamedTuple):
+class FieldSlopes(NamedTuple):
     """Derivatives of the field at one point, by name of the row and the column.
 
     Columns `lost` and `work` are zero, and so is what is not listed.
@@ -49,27 +49,27 @@ class MassiveTip(eqx.Module):
     field: TipField
     mass: Real
 
-    def rates(self, t: Real, motion: Motion) -> Motion:
+    def rates(self, t: Real, motion: TipMotion) -> TipMotion:
         """Time derivatives of all four."""
         field = self.field
         force, stretch = field.driving_force(t, motion.tip)
         velocity = field.eps * motion.speed
         drag = field.viscosity * velocity
-        return Motion(
+        return TipMotion(
             tip=motion.speed / stretch,
             speed=(force - drag) / (self.mass * field.eps),
             lost=drag * velocity,
             work=field.load(field.origin + t) * velocity,
         )
 
-    def coupling(self, t: Real, motion: Motion) -> Coupling:
+    def coupling(self, t: Real, motion: TipMotion) -> FieldSlopes:
         """The derivatives of `rates`."""
         field, one = self.field, jnp.ones_like(motion.tip)
         (_, stretch), (steep, bend) = jax.jvp(
             lambda y: field.driving_force(t, y), (motion.tip,), (one,)
         )
         velocity = field.eps * motion.speed
-        return Coupling(
+        return FieldSlopes(
             tip_by_tip=-motion.speed * bend / stretch**2,
             tip_by_speed=1 / stretch,
             speed_by_tip=steep / (self.mass * field.eps),
@@ -80,7 +80,7 @@ class MassiveTip(eqx.Module):
             work_by_time=field.load_slope(t) * velocity,
         )
 
-    def energy(self, motion: Motion) -> Real:
+    def energy(self, motion: TipMotion) -> Real:
         """`Phi + V_eps + m z'^2/2` in J, without the load."""
         field = self.field
         still = field.support.energy(field.state(motion.tip))
