@@ -56,7 +56,7 @@ class Solution(CodedResult, eqx.Module):
 
     With `effects.Inertia` also `velocity` (n,), z' in m/s; else it is None. `residual` is
     then what is left of the balance of energies, kinetic energy among them, `spread` (n,)
-    how far in m two runs at different tolerances are apart (where they end in different
+    how far in m runs at other tolerances are from it (where they end in different
     wells the status is SENSITIVE), and `beta` the number that decides whether mass matters.
     """
 
@@ -326,7 +326,7 @@ def _with_mass(
         jnp.asarray(found.running_residual[0]) if balanced else None,
         jnp.asarray(found.status[0]),
         counts,
-        "resolved, every slip since z0, with mass, at two tolerances",
+        "resolved, every slip since z0, with mass, at three tolerances",
         jnp.asarray(found.velocity[0]),
     )
 
@@ -365,7 +365,7 @@ def solve(
     is. Steps are fixed then, and accuracy, max_steps and adjoint are refused; dissipation
     and residual are None, as `int eps^gamma z'^2` of a path with noise is infinite.
     With `effects.Inertia` the equation has `m_eps z''`, z0 is at rest, every slip is
-    integrated at two tolerances, and there are no derivatives.
+    integrated at three tolerances, and there are no derivatives.
     Failure is a `status`, not an exception.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
@@ -393,9 +393,7 @@ def solve(
     inertia = inertia_among(scene.effects)
     if inertia is not None:
         given = is_concrete(scene, eps, gamma, ts, accuracy) and adjoint is None
-        needs = (
-            "known numbers and no adjoint: with effects.Inertia there are no derivatives"
-        )
+        needs = "known numbers and no adjoint: effects.Inertia has no derivatives"
         require(given, "scene", "traced, or with an adjoint", needs)
         return _with_mass(
             scene=scene,

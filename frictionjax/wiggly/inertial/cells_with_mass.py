@@ -1,4 +1,4 @@
-"""Cells of a scene with inertia: each integrated twice, at tolerances that must agree."""
+"""Cells of a scene with inertia: each integrated thrice, at tolerances that must agree."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -36,8 +36,8 @@ class CellsWithMass(NamedTuple):
     """Values of all cells; (cells, n) at the requested times, else (cells,).
 
     `z` (m), `velocity` (m/s), `dissipation` (J), `running_residual`: what is left of the
-    energy balance until then (J). `spread`: how far in m two runs at different tolerances
-    are apart. `sup_error`, `strip_excess` (m), `dissipation_error` (J): over [0, T], NaN
+    energy balance until then (J). `spread`: how far in m runs at other tolerances are
+    from it. `sup_error`, `strip_excess` (m), `dissipation_error` (J): over [0, T], NaN
     where no suprema were wanted. `beta`: see `inertia_numbers`. `steps`, `rejected`: of
     all runs; `tolerance`: of the last, in periods.
     """
@@ -82,8 +82,8 @@ def integrate_with_mass(
 ) -> CellsWithMass:
     """Every cell (eps, gamma), from z0 at rest through every slip.
 
-    Each is integrated at two tolerances, of which the finer counts. Where they end in
-    different wells both are made finer; where they still do, the status is SENSITIVE.
+    Each is integrated at three tolerances, of which the finest counts. Where they end in
+    different wells all are made finer; where they still do, the status is SENSITIVE.
     `budget`: steps of a run. `report` is told the share of the first runs that is done.
     """
     # A sum of tips is a surface of its own at every eps.
@@ -111,7 +111,8 @@ def _course(
 ) -> _Course:
     last = scene.duration if suprema else float(ts[-1])
     turns = scene.turning_points
-    stops = np.unique(np.concatenate([[0.0, last], ts, turns[turns < last]]))
+    checks = np.linspace(0.0, last, SETTINGS.checks if suprema else 2)
+    stops = np.unique(np.concatenate([checks, ts, turns[turns < last]]))
     starts = stops[:-1]
     room = padded_size(max(starts.size, 1), SETTINGS.stops, 2)
     start, length = np.full(room, stops[-1]), np.zeros(room)
@@ -210,26 +211,35 @@ def _finer(lanes: MassiveLane, by: float) -> MassiveLane:
 def _trusted(
     course: _Course, lanes: MassiveLane, report: Callable[[float], None]
 ) -> CellsWithMass:
-    """Two runs of each cell, and more where they end in different wells."""
-    cells, finer = lanes.eps.size, _finer(lanes, SETTINGS.finer)
-    both = _marched(course, concatenated([lanes, finer]), report)
-    first, second = rows_of(both, slice(cells)), rows_of(both, slice(cells, None))
-    found = _compared(course, finer, first, second)
+    """Three runs of each cell, and more where they end in different wells."""
+    cells = lanes.eps.size
+    others = [lanes, _finer(lanes, SETTINGS.beside)]
+    finest = _finer(lanes, SETTINGS.finer)
+    every = _marched(course, concatenated([*others, finest]), report)
+    rough, beside, fine = (
+        rows_of(every, slice(i * cells, (i + 1) * cells)) for i in range(3)
+    )
+    found = _compared(course, finest, (rough, beside), fine)
     for _ in range(SETTINGS.rounds):
         doubtful = np.flatnonzero(found.status == int(Status.SENSITIVE))
         if doubtful.size == 0:
             break
-        finer = _finer(finer, SETTINGS.finer)
-        some = rows_of(finer, doubtful)
-        third = _marched(course, some, lambda share: None)
-        again = _compared(course, some, rows_of(second, doubtful), third)
+        rough, lanes = rows_of(fine, doubtful), finest
+        finest = _finer(lanes, SETTINGS.finer)
+        some = rows_of(_finer(lanes, SETTINGS.beside), doubtful)
+        last = rows_of(finest, doubtful)
+        both = _marched(course, concatenated([some, last]), lambda share: None)
+        beside, finer = (
+            rows_of(both, i * doubtful.size + np.arange(doubtful.size)) for i in range(2)
+        )
+        again = _compared(course, last, (rough, beside), finer)
         before = rows_of(found, doubtful)
         again = again._replace(
-            steps=(before.steps + third.steps).astype(int),
-            rejected=(before.rejected + third.rejected).astype(int),
+            steps=again.steps + before.steps - rough.steps.astype(int),
+            rejected=again.rejected + before.rejected - rough.rejected.astype(int),
         )
         found = _with_rows_of(found, again, doubtful)
-        second = _with_rows_of(second, third, doubtful)
+        fine = _with_rows_of(fine, finer, doubtful)
     return found
 
 
@@ -271,18 +281,19 @@ def _march_row(fixed: tuple, row: MassiveLane) -> MarchedRow:
 
 
 def _compared(
-    course: _Course, lanes: MassiveLane, rough: MarchedRow, fine: MarchedRow
+    course: _Course, lanes: MassiveLane, others: tuple[MarchedRow, ...], fine: MarchedRow
 ) -> CellsWithMass:
-    """Values of the finer run, that of `lanes`, trusted where the rougher one is in the
-    same wells at all stops."""
+    """Values of the finest run, that of `lanes`, trusted where the others are in the same
+    wells at all stops."""
     asked, z0 = course.asked, float(course.scene.z0)
 
     def at_times(column: np.ndarray, start: float) -> np.ndarray:
         return np.where(asked >= 0, column[:, asked], start)
 
-    apart = np.abs(fine.stops.z - rough.stops.z)
+    apart = np.max([np.abs(fine.stops.z - o.stops.z) for o in others], axis=0)
     wells = np.max(apart, axis=1, initial=0.0) / lanes.eps
-    code = np.where(fine.code != 0, fine.code, rough.code).astype(int)
+    every = (fine, *others)
+    code = np.max([run.code for run in every], axis=0).astype(int)
     sensitive = (code == 0) & ~(wells <= SETTINGS.well)
     unbalanced = (code == 0) & ~_is_balanced(course, lanes, fine)
     code = np.where(unbalanced, int(Status.UNBALANCED), code)
@@ -299,8 +310,8 @@ def _compared(
         dissipation_error=lost,
         beta=np.full(code.size, np.nan),
         status=np.where(sensitive, int(Status.SENSITIVE), code),
-        steps=(rough.steps + fine.steps).astype(int),
-        rejected=(rough.rejected + fine.rejected).astype(int),
+        steps=np.sum([run.steps for run in every], axis=0).astype(int),
+        rejected=np.sum([run.rejected for run in every], axis=0).astype(int),
         tolerance=np.asarray(lanes.control.tolerance),
     )
 
