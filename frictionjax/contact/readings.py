@@ -89,8 +89,8 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
     friction could hold. What a model does not have is NaN, with an attribute `missing`
     that says why; what is taken for granted is an attribute `note`.
 
-    With `effects.Inertia` a wiggly solution has `energy_kinetic` (J) too, which counts among
-    the energies; the bristle itself has no mass.
+    With `effects.Inertia` a wiggly solution has `energy_kinetic` (J) too, which counts
+    among the energies; the bristle itself has no mass.
 
     With `effects.AxialLoad` also `compression` (N), `buckling_share`, it over the critical
     load, and the attributes `critical_load` (N) and `buckling`, in words.
@@ -162,9 +162,9 @@ def _kinetic(scene: Scene, solution: Solution, eps: Any) -> dict[str, Any]:
     inertia = inertia_among(scene.effects)
     if inertia is None:
         return {}
-    known, needs = solution.velocity is not None, "that of this scene, with effects.Inertia"
-    require(known, "solution", "one without velocity", needs)
-    return {"energy_kinetic": 0.5 * inertia.mass_at(eps) * solution.velocity**2}
+    velocity, needs = solution.velocity, "that of this scene, with effects.Inertia"
+    require(velocity is not None, "solution", "one without velocity", needs)
+    return {"energy_kinetic": 0.5 * inertia.mass_at(eps) * np.asarray(velocity) ** 2}
 
 
 def _bounds(scene: Scene, support: SupportRows) -> dict[str, Any]:

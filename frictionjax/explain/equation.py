@@ -8,6 +8,7 @@ import numpy as np
 from ..effects import (
     AbstractEffect,
     CompliantArray,
+    Inertia,
     LeadingOrder,
     Noise,
     RigidArray,
@@ -83,3 +84,10 @@ def _(effect: Noise, equation: Equation) -> Equation:
     motion = f"{driven}) dt + sqrt(2 eps^gamma T_eps) dB"
     bath = f"T_eps = {float(effect.temperature):.6g} eps^{float(effect.exponent):.6g} J"
     return Equation(motion, (*equation.where, f"{bath}, B a Wiener process"))
+
+
+@with_effect.register
+def _(effect: Inertia, equation: Equation) -> Equation:
+    mass = f"m_eps = {float(effect.mass):.6g} eps^{float(effect.exponent):.6g} kg"
+    where = (*equation.where, f"{mass}, z' = 0 at t = 0")
+    return Equation(f"m_eps z'' + {equation.motion}", where)
