@@ -131,11 +131,15 @@ def force_of_retrapping(beta):
 
 
 def test_force_of_retrapping_at_weak_damping():
-    """`(4/pi) rho/sqrt(beta)` for large beta."""
-    betas = np.array([25.0, 100.0])
-    shares = [force_of_retrapping(b) * np.sqrt(b) / RHO for b in betas]
-    assert shares[1] == pytest.approx(4 / np.pi, rel=0.05)
-    assert abs(shares[1] - 4 / np.pi) < abs(shares[0] - 4 / np.pi) + 0.01
+    """`(4/pi) rho/sqrt(beta)` for large beta; 1.2534, 1.2636, 1.2645 at 25, 100, 400.
+
+    What is left is the pull that falls while a tip is caught, by 1% of its own.
+    """
+    off = [
+        4 / np.pi - force_of_retrapping(beta) * np.sqrt(beta) / RHO for beta in (25, 100)
+    ]
+    assert 0 < off[1] < 0.01 * 4 / np.pi
+    assert off[1] < off[0] < 0.02 * 4 / np.pi
 
 
 def test_a_cell_has_the_same_bits_in_any_company():
