@@ -24,6 +24,7 @@ def test_a_scene_without_it_loads_nothing_of_it():
     assert fx.solve(plain, 0.05, ts=[0.1]).velocity is None
 
 
+@pytest.mark.slow
 def test_other_effects_go_with_it():
     plain = massive_scene(1e-4)
     mass = plain.effects

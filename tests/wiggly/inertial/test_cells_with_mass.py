@@ -43,6 +43,7 @@ def test_a_stiff_method_agrees_where_mass_is_small():
     np.testing.assert_allclose(found.dissipation[-1], dissipation[-1], rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_without_mass_the_limit_is_the_overdamped_tip_with_order_one():
     eps = 0.02
     plain = overdamped(eps)
@@ -107,7 +108,9 @@ def wells_of_slips(eta, beta, gamma=1.0):
     return jumps[jumps != 0]
 
 
-@pytest.mark.parametrize(("eta", "most"), [(4.5, 1), (7.7, 2)])
+@pytest.mark.parametrize(
+    ("eta", "most"), [pytest.param(4.5, 1, marks=pytest.mark.slow), (7.7, 2)]
+)
 def test_a_slip_reaches_as_many_wells_as_can_hold_the_tip(eta, most):
     """Beyond eta = 4.6033 a second well ahead can, beyond 7.7897 a third."""
     slips = [wells_of_slips(eta, beta) for beta in (0.1, 3.0, 10.0, 30.0)]
@@ -130,6 +133,7 @@ def force_of_retrapping(beta):
     return pull - stiffness * float(found.z[0])
 
 
+@pytest.mark.slow
 def test_force_of_retrapping_at_weak_damping():
     """`(4/pi) rho/sqrt(beta)` for large beta; 1.2534, 1.2636, 1.2645 at 25, 100, 400.
 
