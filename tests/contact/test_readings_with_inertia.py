@@ -29,6 +29,7 @@ def test_a_solution_without_velocity_is_refused():
     scene = massive_scene(1e-4)
     plain = scene.replace(effects=())
     solution = fx.solve(plain, EPS, ts=[0.0, 1.0])
+    assert solution.velocity is None
     with pytest.raises(ValueError, match=r"without velocity.*: needs that of this scene"):
         fx.mechanics(scene, solution, EPS)
     assert "energy_kinetic" not in fx.mechanics(plain, solution, EPS)

@@ -109,7 +109,11 @@ def wells_of_slips(eta, beta, gamma=1.0):
 
 
 @pytest.mark.parametrize(
-    ("eta", "most"), [pytest.param(4.5, 1, marks=pytest.mark.slow), (7.7, 2)]
+    ("eta", "most"),
+    [
+        pytest.param(4.5, 1, marks=pytest.mark.slow),
+        pytest.param(7.7, 2, marks=pytest.mark.slow),
+    ],
 )
 def test_a_slip_reaches_as_many_wells_as_can_hold_the_tip(eta, most):
     """Beyond eta = 4.6033 a second well ahead can, beyond 7.7897 a third."""
