@@ -92,6 +92,22 @@ def test_the_scene_written_gives_the_same_study(study):
     assert data.z_limit.values == pytest.approx(fx.solve_limit(again, data.time.values).z)
 
 
+def test_a_study_has_the_effects_of_its_scene(tmp_path):
+    parts = fx.supports.Spring(1.0), fx.loads.Ramp(1.0), 0.5
+    effects = (fx.effects.Inertia(1.0, 3.0),)
+    bristle = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
+    scene = fx.Scene(fx.profiles.Sine(0.1), bristle, *parts, effects=effects)
+    fx.save_scene(scene, tmp_path / "mine.toml")
+    options = ["--eps", "0.05,0.04,0.03", "--gamma", "1", "--no-progress"]
+    result = run("study", tmp_path / "mine.toml", *options, "--out", tmp_path / "made")
+    assert result.exit_code == 0, result.stderr
+    assert "Inertia\ngamma = 1: the mass does not fall faster" in result.stdout
+    assert "as nobody has measured scenes with such effects" in result.stderr
+    data = xr.load_dataset(tmp_path / "made" / "study.nc", engine="h5netcdf")
+    assert np.all(data.beta > 0)
+    assert fx.load_scene(tmp_path / "made" / "scene.toml").effects
+
+
 def test_friction():
     result = run("friction")
     assert result.exit_code == 0

@@ -41,7 +41,7 @@ FLOORS = {
         {"stepping"},
         {"equation", "rosenbrock"},
         {"sequential", "lanes", "limit_path", "settings", "turning"},
-        {"slip_map"},
+        {"slip_map", "inertial"},
         {"enclosure"},
         {"sums", "ways"},
         {"plan"},

@@ -14,7 +14,7 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program
-from ..effects import Engine
+from ..effects import Engine, inertia_among
 from ..limit import LimitSolution
 from ..loads import Pulled
 from ..model import (
@@ -49,6 +49,7 @@ _UNITS = {
     "support_force": ("N", "force of the horizontal spring on the root"),
     "energy_support": ("J", "energy of the horizontal spring"),
     "energy_bristle": ("J", "energy of the bristle"),
+    "energy_kinetic": ("J", "kinetic energy of what moves"),
     "power": ("W", "power put in at the far end of the horizontal spring"),
     "dissipation": ("J", "energy lost since the start"),
 }
@@ -88,6 +89,9 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
     friction could hold. What a model does not have is NaN, with an attribute `missing`
     that says why; what is taken for granted is an attribute `note`.
 
+    With `effects.Inertia` a wiggly solution has `energy_kinetic` (J) too, which counts
+    among the energies; the bristle itself has no mass.
+
     With `effects.AxialLoad` also `compression` (N), `buckling_share`, it over the critical
     load, and the attributes `critical_load` (N) and `buckling`, in words.
 
@@ -109,6 +113,7 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
     else:
         forces = _wiggly_rows(scene.potential, solution.z, eps)
         columns = _columns(scene, solution, forces, support)
+        columns |= _kinetic(scene, solution, eps)
     system = {"system": "limit"} if in_limit else {"system": "wiggly", "eps": float(eps)}
     reading = axial_reading(scene, -np.asarray(columns["axial_force"], float))
     if reading is not None:
@@ -151,6 +156,15 @@ def _columns(
         "energy_bristle": forces.energy,
         "power": support.power,
     } | ({} if solution.dissipation is None else {"dissipation": solution.dissipation})
+
+
+def _kinetic(scene: Scene, solution: Solution, eps: Any) -> dict[str, Any]:
+    inertia = inertia_among(scene.effects)
+    if inertia is None:
+        return {}
+    velocity, needs = solution.velocity, "that of this scene, with effects.Inertia"
+    require(velocity is not None, "solution", "one without velocity", needs)
+    return {"energy_kinetic": 0.5 * inertia.mass_at(eps) * np.asarray(velocity) ** 2}
 
 
 def _bounds(scene: Scene, support: SupportRows) -> dict[str, Any]:

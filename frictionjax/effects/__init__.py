@@ -10,6 +10,8 @@ from .engines import engine_of as engine_of
 from .engines import require_bristle as require_bristle
 from .engines import require_done as require_done
 from .engines import require_together as require_together
+from .inertia import Inertia as Inertia
+from .inertia import inertia_among as inertia_among
 from .leading_order import LeadingOrder as LeadingOrder
 from .nap_flip import NapFlip as NapFlip
 from .nap_flip import nap_flip_among as nap_flip_among

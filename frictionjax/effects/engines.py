@@ -37,11 +37,13 @@ _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset({_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP}),
     "Noise": frozenset({_E.RESOLVED, _E.ENSEMBLE, _E.FRICTION_CURVE}),
     "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED}),
+    "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
 }
 """Of effects that change what moves: the engines that do them."""
 _READS_NOT: dict[str, frozenset[Engine]] = {"AxialLoad": frozenset({_E.ENSEMBLE})}
 """Of effects that only read: the engines of scenes that do not hold them."""
 
+_MASSLESS = "a scene without it"
 _ALONE = "a bristle at a time: a scene without it"
 _INSTEAD: dict[tuple[str, Engine], str] = {
     ("CompliantArray", _E.PATH): "methods of its own, for scenes of known numbers",
@@ -53,6 +55,16 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
     ("Noise", _E.WINDOWED): 'method="auto", and key',
     ("Noise", _E.PATH): 'method="auto", and key',
     ("Noise", _E.SWEEP): "ensemble and friction_curve, at one eps after the other",
+    (
+        "Inertia",
+        _E.WINDOWED,
+    ): 'method="auto": tips with mass are not ordered, no window holds',
+    ("Inertia", _E.PATH): 'method="auto", and scenes of known numbers',
+    ("Inertia", _E.CERTIFICATE): "residual of solve, of the balance with kinetic energy",
+    ("Inertia", _E.COST): "stats of solve, which tell steps",
+    ("Inertia", _E.TRACE): _MASSLESS,
+    ("Inertia", _E.ENSEMBLE): _MASSLESS,
+    ("Inertia", _E.FRICTION_CURVE): "sweep of a long ramp: its dissipation over its way",
     ("Noise", _E.MECHANICS): "a scene without it: power along its paths is infinite",
 }
 """What to do where an engine does not do an effect, after "needs"."""
@@ -70,10 +82,15 @@ _APART: dict[frozenset[str], str] = {
 }
 _APART |= {
     frozenset({"NapFlip", other}): "one of them: its rod is bent and turns over"
-    for other in ("LeadingOrder", "RigidArray", "CompliantArray", "AxialLoad", "Noise")
+    for other in (
+        *("LeadingOrder", "RigidArray", "CompliantArray"),
+        *("AxialLoad", "Noise", "Inertia"),
+    )
 }
 _APART |= {
     frozenset({"CompliantArray", "Noise"}): "one of them: each bristle has its own noise",
+    frozenset({"CompliantArray", "Inertia"}): "one of them: each bristle has its own mass",
+    frozenset({"Inertia", "Noise"}): "one of them: noise is that of overdamped tips",
     frozenset({"AxialLoad", "Noise"}): "one of them: no call reads loads of noisy paths",
 }
 """Pairs that no scene holds together, and why."""

@@ -8,6 +8,7 @@ import numpy as np
 from ..effects import (
     AbstractEffect,
     CompliantArray,
+    Inertia,
     LeadingOrder,
     NapFlip,
     Noise,
@@ -95,3 +96,10 @@ def _(effect: NapFlip, equation: Equation) -> Equation:
         "past it the same in a mirror, rest angle of the other sign",
     )
     return equation._replace(where=(*equation.where, *turns))
+
+
+@with_effect.register
+def _(effect: Inertia, equation: Equation) -> Equation:
+    mass = f"m_eps = {float(effect.mass):.6g} eps^{float(effect.exponent):.6g} kg"
+    where = (*equation.where, f"{mass}, z' = 0 at t = 0")
+    return Equation(f"m_eps z'' + {equation.motion}", where)

@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 
 from .._checks import Real
 from .._compile import Program, in_chunks
-from ..effects import AbstractEffect, CompliantArray, NapFlip, RigidArray
+from ..effects import AbstractEffect, CompliantArray, Inertia, NapFlip, RigidArray
 from ..model import AbstractPotential, Coefficients, Scene
 from ..slide_laws import SlideData, predict_errors
 
@@ -17,6 +17,11 @@ _PLACES = 512  # of a period, for forces of a well and their change
 # Outside of slips tips move at most so many times as fast as their slide: 0.05 eps in 0.5%
 # of a slip period. A slip that comes earlier is felt by that much.
 _FASTEST = 10.0
+# Of beta, in eps: what a mass changes below the border, 0.7 (gamma = 0.75) to 1 was seen.
+_LIGHT = 2.0
+# Times sqrt(beta) over rho: least force that keeps a tip running. 4/pi for large beta; for
+# a sine all are caught at rho where beta < 0.70.
+_CAUGHT = 0.84
 
 
 class Estimate(NamedTuple):
@@ -117,3 +122,22 @@ def _(effect: NapFlip, at: Setting) -> Estimate:
 def _array(cost: float) -> Estimate:
     """Arrays, and rods that turn over, are another scene, not another accuracy."""
     return Estimate(np.nan, np.nan, cost, "none: another scene")
+
+
+@estimate_of.register
+def _(effect: Inertia, at: Setting) -> Estimate:
+    """By beta: a light mass delays slips, a heavy one runs until the pull has fallen.
+
+    A tip that runs is caught where the force falls to about `rho/sqrt(beta)`; on the spring
+    it swings as far again at most.
+    """
+    from ..wiggly import inertia_numbers  # nothing else needs it
+
+    beta = float(inertia_numbers(at.scene.potential, effect, at.eps, at.gamma))
+    rho = max(float(at.law.rho_plus), -float(at.law.rho_minus))
+    soft, stiff = float(np.min(at.data.stiffness)), float(np.max(at.data.stiffness))
+    light = _LIGHT * min(beta, 1.0) * at.eps
+    run = rho * (1 - min(1.0, _CAUGHT / np.sqrt(beta)))
+    force = stiff * light / _FASTEST + run
+    source = f"beta = {beta:.3g}: overdamped far below 1"
+    return Estimate(light + 2 * run / soft, force, np.nan, source)

@@ -40,6 +40,7 @@ EFFECTS = _by_name(
     effects.AxialLoad,
     effects.Noise,
     effects.NapFlip,
+    effects.Inertia,
 )
 """Kinds of the tables [[effects]], of which a scene has any number."""
 _WITHOUT_SCENE = PARTS["profile"] | PARTS["bristle"]  # what documents of results hold

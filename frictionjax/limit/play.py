@@ -174,7 +174,8 @@ def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
 
     `ts`: times in s, not decreasing, in [0, duration], shape (n,); 201 evenly spaced ones
     where None. The grid inside always holds the turning points of the load, so values do
-    not depend on which other times are asked for.
+    not depend on which other times are asked for. Of a scene with `effects.Inertia` it is
+    the limit of the scene without mass, to compare with.
 
     Raises `ValueError` for bad times, 32 bits, or z0 outside the strip at t = 0 (with the
     allowed interval). Source: the play operator, see A. Mielke and T. Roubicek,

@@ -142,7 +142,7 @@ def _read_job(
 
 def with_surface(old: Scene, profile: Any, bristle: AbstractBristle) -> Scene:
     """The scene with another surface and bristle."""
-    return Scene(profile, bristle, old.support, old.load, old.duration, old.z0)
+    return old.replace(profile=profile, bristle=bristle)
 
 
 def _notes(path: str, measured: Measured, found: Any, row: int | None) -> list[str]:

@@ -8,6 +8,7 @@ import numpy as np
 from .._checks import cells_of, grid_of
 from .._compile import in_background
 from ..cost import PREDICTED_ACCURACIES, CostPrediction, fit_budget, predict_cost
+from ..effects import Engine, does
 from ..model import require_reach
 from ..sweeps import sweep
 from ..wiggly import is_ours, prepare_cells, require_accuracy, solver_of
@@ -23,10 +24,15 @@ def expected_cost(job: Job, method: str) -> CostPrediction | None:
     Another machine's numbers where this one has not been measured: that would take longer
     than most studies.
     """
-    if not is_ours(method):
+    if not is_ours(method) or not _is_predicted(job):
         return None
     ts = study_times(job)
     return predict_cost(job.scene, ts=ts, method=method, measure=False, **job.study)
+
+
+def _is_predicted(job: Job) -> bool:
+    """Whether work can be foretold: effects of the scene may be of another kind."""
+    return all(does(Engine.COST, effect) for effect in job.scene.effects)
 
 
 def expectation(job: Job, method: str) -> str:
@@ -35,6 +41,8 @@ def expectation(job: Job, method: str) -> str:
     Raises `ValueError` for a method that there is not.
     """
     found = expected_cost(job, method)
+    if found is None and is_ours(method):
+        return "unknown time, as nobody has measured scenes with such effects"
     if found is None:
         solver_of(method)
         return f"unknown time, as nobody has measured {method}"
@@ -48,7 +56,7 @@ def prepare_study(job: Job, method: str) -> None:
 
     Raises `ValueError` for eps and gamma as `sweep` does.
     """
-    if not is_ours(method):
+    if not is_ours(method) or not _is_predicted(job):
         return
     eps, gamma = grid_of("eps", job.study["eps"]), grid_of("gamma", job.study["gamma"])
     require_reach(job.scene.potential, jnp.asarray(eps))

@@ -48,6 +48,8 @@ def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
             ("Orders of convergence", f"{order_table(found.orders)}\n{_COVERS}"),
             ("Lemmas 7 to 9", lemma_table(found.orders)),
         ]
+    if "inertia" in found.orders.attrs:
+        sections.append(("Inertia", found.orders.attrs["inertia"]))
     sections.append(("Failed cells", failed_table(found.failed)))
     text = joined(sections)
     toml = scene_document(scene, job.study)

@@ -79,6 +79,11 @@ def study(dataset: xr.Dataset) -> Study:
     `order_seen` and, where a law is used, `.curves`. (The paper proves no rate for the sup
     error.)
 
+    Of a scene with `effects.Inertia` there are no laws, and `inertia_order` is the power of
+    eps with which `beta` of the data set goes to 0, `exponent - 1 - 2 gamma`; where it is
+    not positive the system is not overdamped for eps -> 0: `overdamped` is 0 there, the
+    attribute `inertia` says it in words, and errors need not vanish.
+
     Cells that failed are left out, and a warning (`FailedCells`) names them. Each of
     several scenes is studied alone; `.spread` tells how they differ.
 
@@ -134,6 +139,8 @@ def _study_of_one(dataset: xr.Dataset) -> Study:
             curves[f"{error.name}_fitted"] = np.array([fit.fitted for fit in fits])
             if error.name in laws:
                 curves[f"{error.name}_predicted"] = laws[error.name].errors
+    if "beta" in dataset and np.isfinite(dataset.beta).any():  # a scene with inertia
+        columns |= _inertia_columns(dataset)
     columns["beta"] = np.minimum(1.0, gammas)
     columns["C0"] = np.array([_lemma_7(dataset.sel(gamma=g)) for g in gammas])
     columns["C"] = np.array([_lemma_9(dataset.sel(gamma=g)) for g in gammas])
@@ -142,6 +149,8 @@ def _study_of_one(dataset: xr.Dataset) -> Study:
         coords={"gamma": gammas},
         attrs=dataset.attrs,
     )
+    if "inertia_order" in orders:
+        orders.attrs["inertia"] = _inertia_message(orders)
     along = xr.Dataset(
         {name: (("gamma", "eps"), values) for name, values in curves.items()},
         coords={"gamma": gammas, "eps": dataset.eps.values},
@@ -208,6 +217,32 @@ def _columns(
     return columns
 
 
+def _inertia_columns(dataset: xr.Dataset) -> dict[str, np.ndarray]:
+    """The power of eps that beta falls with, for each gamma: exact, as beta is one."""
+    beta = np.log(dataset.beta.transpose("gamma", "eps").values)
+    if dataset.eps.size < 2:
+        power = np.full(dataset.gamma.size, np.nan)
+    else:
+        power = np.round((beta[:, 0] - beta[:, -1]) / np.log(_ratio(dataset)), 9)
+    return {"inertia_order": power, "overdamped": (power > 0).astype(np.int8)}
+
+
+def _ratio(dataset: xr.Dataset) -> float:
+    return float(dataset.eps[0] / dataset.eps[-1])
+
+
+def _inertia_message(orders: xr.Dataset) -> str:
+    """Of a scene with inertia: for which gamma its limit is that of overdamped tips."""
+    never = orders.gamma.values[orders.overdamped.values == 0]
+    if never.size == 0:
+        return "the mass falls faster than eps^(1 + 2 gamma): overdamped for eps -> 0"
+    named = ", ".join(f"{gamma:.4g}" for gamma in never)
+    return (
+        f"gamma = {named}: the mass does not fall faster than eps^(1 + 2 gamma), so tips "
+        "are not overdamped for eps -> 0; the limit need not be the play operator"
+    )
+
+
 def _lemma_7(cells: xr.Dataset) -> float:
     """Smallest C0 with `dist(z_eps, strip) <= C0 eps^beta` in all cells of one gamma."""
     beta = min(1.0, float(cells.gamma))
@@ -268,6 +303,8 @@ _MEANING = {
     "floor": ("1", "cells left out, error near the solver's own"),
     "failed": ("1", "cells left out, failed"),
     "beta": ("1", "exponent min(1, gamma) of Lemmas 7 to 9"),
+    "inertia_order": ("1", "power of eps with which m_eps max|W''|/eps^(1+2 gamma) falls"),
+    "overdamped": (None, "1 where mass does not matter for eps -> 0"),
     "C0": (None, "smallest C0 of Lemma 7 in these cells, in m^(1-beta)"),
     "C": (None, "smallest C of Lemma 9 in these cells"),
     "constant": (None, "error over eps^order for eps -> 0"),
@@ -304,7 +341,7 @@ def _described(orders: xr.Dataset) -> xr.Dataset:
         if bare in _COMMENTS:
             orders[name].attrs["comment"] = _COMMENTS[bare]
         of = error.name
-        lemma = name in ("beta", "C0", "C")
+        lemma = name in ("beta", "C0", "C", "inertia_order", "overdamped")
         orders[name].attrs["long_name"] = meaning if lemma else f"{meaning} ({of})"
         if units is not None:
             orders[name].attrs["units"] = units

@@ -8,10 +8,11 @@ from jaxtyping import Array, Float
 
 from .._checks import cells_of, viscosity_of
 from ..contact import largest_compression
+from ..effects import Inertia, inertia_among
 from ..limit import LimitSolution, solve_limit
 from ..model import Scene, coefficients_jit, strips_at, tabulated_scene
 from ..slide_laws import slide_data
-from ..wiggly import Status, integrate_scene
+from ..wiggly import MAX_STEPS, Status, integrate_scene
 
 DIMS = ("gamma", "eps", "time")
 SUPREMA = ("sup_error", "strip_excess", "survey_error")
@@ -54,8 +55,12 @@ def scene_columns(
     """Solve all cells of a scene; `report` is told each share that is done."""
     limit = solve_limit(scene, request.ts)
     values, method, own = None, request.method, ""
+    inertia = inertia_among(scene.effects)
     if request.solver is None:
-        values = _by_lanes(scene, request, report)
+        if inertia is None:
+            values = _by_lanes(scene, request, report)
+        else:
+            values = _with_mass(scene, inertia, request, report)
         own = tabulated_scene(scene, request.eps).untabulated
     if values is None:
         values, method = _by_diffrax(scene, request, report)
@@ -73,7 +78,7 @@ def scene_columns(
         columns["compression"] = DIMS[:2], reading.compression
         columns["buckling_share"] = DIMS[:2], reading.share
     known = None
-    if request.suprema:
+    if request.suprema and inertia is None:  # laws are of overdamped slides
         found = coefficients_jit(scene.potential)
         known = slide_data(scene, found, np.asarray(request.eps))
     laws = {} if known is None else known.attributes()
@@ -111,6 +116,37 @@ def _by_lanes(
     if not request.balanced:
         unused += ["dissipation", "dissipation_error", "residual", "dissipation_gap"]
     return {name: value for name, value in values.items() if name not in unused}
+
+
+def _with_mass(
+    scene: Scene,
+    inertia: Inertia,
+    request: SweepRequest,
+    report: Callable[[float], None],
+) -> dict[str, np.ndarray]:
+    """Values of all cells with inertia, by name; NaN for what tells of brackets."""
+    from ..wiggly import integrate_with_mass  # nothing else needs it
+
+    found = integrate_with_mass(
+        scene,
+        *cells_of(request.eps, request.gamma),
+        inertia=inertia,
+        ts=np.asarray(request.ts),
+        accuracy=request.accuracy,
+        suprema=True,
+        budget=MAX_STEPS,
+        report=report,
+    )
+    values = found._asdict()
+    left = values.pop("running_residual")[:, -1]
+    values["status"] = values["status"].astype(np.int8)
+    values["how"] = np.zeros(left.size, dtype=np.int8)
+    nothing = np.full(left.size, np.nan)
+    values |= {"bracket": values["spread"] * np.nan, "sampled": nothing}
+    values |= {"survey_error": nothing}
+    if not request.balanced:
+        return {k: v for k, v in values.items() if not k.startswith("dissipation")}
+    return values | {"residual": left, "dissipation_gap": left}
 
 
 def _by_diffrax(

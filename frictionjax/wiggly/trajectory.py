@@ -21,7 +21,15 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program
-from ..effects import NapFlip, Noise, engine_of, nap_flip_among, noise_among
+from ..effects import (
+    Inertia,
+    NapFlip,
+    Noise,
+    engine_of,
+    inertia_among,
+    nap_flip_among,
+    noise_among,
+)
 from ..model import (
     Scene,
     TabulatedScene,
@@ -54,6 +62,11 @@ class Solution(CodedResult, eqx.Module):
     are means over its bristles, and `spread` (n,) is their standard deviation in m.
     Of a path with noise `step` is the length of its steps in s.
 
+    With `effects.Inertia` also `velocity` (n,), z' in m/s; else it is None. `residual` is
+    then what is left of the balance of energies, kinetic energy among them, `spread` (n,)
+    how far in m runs at other tolerances are from it (where they end in different
+    wells the status is SENSITIVE), and `beta` the number that decides whether mass matters.
+
     With `effects.NapFlip` also `root` u in m and `mode` (n,): 1 as the rod stands at first,
     -1 turned over, 0 in between; else they are None.
     """
@@ -65,6 +78,7 @@ class Solution(CodedResult, eqx.Module):
     status_code: Int[Array, ""]
     counts: dict[str, Any]
     how: str = eqx.field(static=True)
+    velocity: Float[Array, " n"] | None = None
     root: Float[Array, " n"] | None = None
     mode: Int[Array, " n"] | None = None
     _outcomes = Status
@@ -288,6 +302,48 @@ def _one_path(
     return Solution(ts, z, None, None, jnp.asarray(int(status)), counts, how)
 
 
+def _with_mass(
+    scene: Scene,
+    inertia: Inertia,
+    eps: Any,
+    gamma: Any,
+    ts: Array,
+    accuracy: float,
+    balanced: bool,
+    max_steps: int,
+) -> Solution:
+    from .inertial import integrate_with_mass  # nothing else needs it
+
+    found = integrate_with_mass(
+        scene,
+        np.atleast_1d(float(eps)),
+        np.atleast_1d(float(gamma)),
+        inertia=inertia,
+        ts=np.asarray(ts),
+        accuracy=accuracy,
+        suprema=False,
+        budget=max_steps,
+    )
+    counts = {
+        "steps": int(found.steps[0]),
+        "rejected": int(found.rejected[0]),
+        "tolerance": float(found.tolerance[0]),
+        "dissipation_gap": float(found.running_residual[0, -1]) if balanced else None,
+        "spread": found.spread[0],
+        "beta": float(found.beta[0]),
+    }
+    return Solution(
+        ts,
+        jnp.asarray(found.z[0]),
+        jnp.asarray(found.dissipation[0]) if balanced else None,
+        jnp.asarray(found.running_residual[0]) if balanced else None,
+        jnp.asarray(found.status[0]),
+        counts,
+        "resolved, every slip since z0, with mass, at three tolerances",
+        jnp.asarray(found.velocity[0]),
+    )
+
+
 def _with_turning(
     scene: Scene,
     effect: NapFlip,
@@ -362,6 +418,8 @@ def solve(
     `key`: of a scene with `effects.Noise`, a seed or a key of `jax.random`, whose path it
     is. Steps are fixed then, and accuracy, max_steps and adjoint are refused; dissipation
     and residual are None, as `int eps^gamma z'^2` of a path with noise is infinite.
+    With `effects.Inertia` the equation has `m_eps z''`, z0 is at rest, every slip is
+    integrated at three tolerances, and there are no derivatives.
     With `effects.NapFlip` every slip is integrated, and there are no derivatives.
     Failure is a `status`, not an exception.
 
@@ -387,6 +445,21 @@ def solve(
     eps, gamma = jnp.asarray(as_real(eps)), jnp.asarray(as_real(gamma))
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)
+    inertia = inertia_among(scene.effects)
+    if inertia is not None:
+        given = is_concrete(scene, eps, gamma, ts, accuracy) and adjoint is None
+        needs = "known numbers and no adjoint: effects.Inertia has no derivatives"
+        require(given, "scene", "traced, or with an adjoint", needs)
+        return _with_mass(
+            scene=scene,
+            inertia=inertia,
+            eps=eps,
+            gamma=gamma,
+            ts=ts,
+            accuracy=float(as_real(accuracy)),
+            balanced=bool(dissipation),
+            max_steps=int(max_steps),
+        )
     turning = nap_flip_among(scene.effects)
     if turning is not None:
         given = is_concrete(scene, eps, gamma, ts, accuracy) and adjoint is None

@@ -17,6 +17,7 @@ EFFECTS = {
     "AxialLoad": fx.effects.AxialLoad(1.0),
     "Noise": fx.effects.Noise(1e-4),
     "NapFlip": fx.effects.NapFlip(0.1),
+    "Inertia": fx.effects.Inertia(1e-4),
 }
 APART = {
     frozenset({rod, other})
@@ -24,6 +25,7 @@ APART = {
     for other in ("LeadingOrder", "RigidArray", "CompliantArray")
 } | {frozenset({"Noise", other}) for other in ("AxialLoad", "CompliantArray")}
 APART |= {frozenset({"NapFlip", other}) for other in EFFECTS if other != "NapFlip"}
+APART |= {frozenset({"Inertia", other}) for other in ("Noise", "CompliantArray")}
 AT_REST = LimitSolution(*([np.zeros(2)] * 3))
 TS = np.linspace(0, 1, 4001)
 

@@ -3,6 +3,7 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from tips_with_mass import mass_for, massive_scene
 
 import frictionjax as fx
 
@@ -115,6 +116,42 @@ def test_the_equation_holds_every_effect():
     printed = repr(found)
     assert printed.startswith(found.equation)
     assert "CompliantArray" in printed
+
+
+@pytest.mark.parametrize("beta", [0.01, 0.1, 2.0, 10.0])
+def test_what_a_mass_does_to_states_is_less_than_told(beta):
+    eps = 1e-2
+    mass = mass_for(beta, eps, 1.0)
+    heavy = massive_scene(mass)
+    row = row_of("Inertia", heavy, eps)
+    base = np.linspace(0.01, 2.95, 150)
+    slope = 1.0488 * 2 * np.pi / 3 * np.abs(np.cos(2 * np.pi * base / 3))
+    later = base + np.minimum(0.005 * eps / np.maximum(slope, 1e-3), 5e-3)
+    ts = np.sort(np.concatenate([base, later]))
+    first, second = np.searchsorted(ts, base), np.searchsorted(ts, later)
+    pair = [
+        np.asarray(fx.solve(s, eps, ts=ts, accuracy=1e-5, method="resolved").z)
+        for s in (heavy, heavy.replace(effects=()))
+    ]
+    calm = np.all([np.abs(z[second] - z[first]) < 0.05 * eps for z in pair], axis=0)
+    seen = np.max(np.abs(pair[0] - pair[1])[first][calm])
+    assert seen <= float(row.in_z) <= 10 * seen
+    assert bool(row.called_for)
+    assert float(row.source.item().split("=")[1].split(":")[0]) == pytest.approx(beta)
+    pulled = heavy.replace(load=fx.loads.Ramp(1.0, 0.0))
+    forces = [friction_of_a_slide(s, eps) for s in (pulled, pulled.replace(effects=()))]
+    changed = abs(forces[0] - forces[1])
+    assert changed <= float(row.in_force) <= 10 * changed
+
+
+def test_a_light_mass_is_not_called_for_and_is_in_the_equation():
+    light = massive_scene(mass_for(1e-6, 1e-2, 1.0))
+    found = fx.explain(light, 1e-2, 1.0)
+    assert not bool(found.effects.called_for.sel(effect="Inertia"))
+    motion, *_, mass, _ = found.equation.splitlines()
+    assert motion == "m_eps z'' + eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)"
+    assert mass.startswith("  m_eps = ")
+    assert mass.endswith(" eps^0 kg, z' = 0 at t = 0")
 
 
 def test_noise_is_in_the_equation():

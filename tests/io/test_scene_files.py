@@ -45,6 +45,7 @@ EFFECTS = [
     (fx.effects.RigidArray([0.0, ODD], [1.0, 1 / 3]), fx.effects.LeadingOrder()),
     (fx.effects.CompliantArray([0.0, 1 / 3, ODD]), fx.effects.RigidArray([0.0, 0.1])),
     (fx.effects.Noise(ODD, exponent=1 / 3),),
+    (fx.effects.Inertia(ODD, exponent=1 / 3),),
 ]
 SCENES = [
     *(scene().replace(effects=some) for some in EFFECTS),

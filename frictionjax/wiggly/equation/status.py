@@ -25,6 +25,7 @@ class Status(Outcome):
     ROUGH_SURVEY = 8, "a slide changes too fast to be known from some of its slips"
     TOO_SLOW = 9, "the run was ended at the seconds allowed"
     NOT_TRIED = 10, "not run: the method was too slow at a looser accuracy"
+    SENSITIVE = 11, "which well a slip ends in hangs on errors that no step size removes"
 
 
 # How runs end that have come to their end.

@@ -1,7 +1,7 @@
 """Steps of Rosenbrock methods for a scalar stiff equation."""
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -36,7 +36,7 @@ class Linearised(NamedTuple):
     by_time: Real
 
 
-def combine(weights: tuple[float, ...], values: list | Array) -> Real | float:
+def combine(weights: tuple[float, ...], values: Sequence[Any] | Array) -> Real | float:
     """Weighted sum that leaves zero weights out of the program."""
     terms = [w * v for w, v in zip(weights, values, strict=True) if w != 0]
     return sum(terms[1:], terms[0]) if terms else 0.0
