@@ -432,6 +432,33 @@ def design(scene: str | None, bristle: str | None, out: str, **asked: Any) -> No
 
 
 @main.command()
+@click.argument("name", required=False, metavar="[NAME]")
+@click.option("--schema", is_flag=True, help="Every field of a scene file instead.")
+@click.option("--out", metavar="FILE", help="Write the scene there instead.")
+def scenes(name: str | None, schema: bool, out: str | None) -> None:
+    """Scenes that ship: all of them, a line each, or the file of one to start from."""
+    _start()
+    from .io import example_lines, example_text, schema_text
+
+    if schema:
+        click.echo(schema_text())
+        return
+    if name is None:
+        known = example_lines()
+        width = max(map(len, known))
+        click.echo("\n".join(f"{n.ljust(width)}  {line}" for n, line in known.items()))
+        return
+    text = example_text(name)
+    if out is None:
+        click.echo(text, nl=False)
+        return
+    from ._checks import write_whole
+
+    write_whole(out, text)
+    click.echo(f"Written to {out}")
+
+
+@main.command()
 @_out("figures")
 def figures(out: str) -> None:
     """Figures of the paper: coefficients against the angle of the bristle."""

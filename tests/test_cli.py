@@ -134,6 +134,16 @@ def test_nap(tmp_path):
     assert refused.exit_code == 2
 
 
+def test_scenes(tmp_path):
+    assert "nap-flip " in run("scenes").stdout
+    text = run("scenes", "noise").stdout
+    assert 'kind = "Noise"' in text
+    assert "Written to" in run("scenes", "noise", "--out", tmp_path / "mine.toml").stdout
+    assert (tmp_path / "mine.toml").read_text() == text
+    assert "bending_stiffness" in run("scenes", "--schema").stdout
+    assert "needs one of angular-spring" in run("scenes", "noises").stderr
+
+
 def test_friction_of_a_scene_file(tmp_path):
     parts = fx.supports.Spring(1.0), fx.loads.Ramp(1.0), 1.0
     scene = fx.Scene(fx.profiles.Sine(0.2), fx.bristles.Homothetic(3.0), *parts)

@@ -1,4 +1,7 @@
 from .documents import written as written
+from .example_scenes import example_lines as example_lines
+from .example_scenes import example_text as example_text
+from .example_scenes import schema_text as schema_text
 from .results import ARRAY as ARRAY
 from .results import AS_IS as AS_IS
 from .results import BOOLS as BOOLS

@@ -1,0 +1,65 @@
+"""Scenes that ship with the package, and what a scene file may hold."""
+
+import inspect
+from importlib import resources
+
+from .._checks import Part, asked_names, require
+from ..profiles import Fourier
+from .registry import EFFECTS, PARTS
+
+_FOLDER, _ENDING = "examples", ".toml"
+_TOP = """\
+duration = (s) how long the load acts, > 0
+z0 = (m) the state at the start, 0 where it is left out
+[profile], [bristle], [support], [load]: one part each; [[effects]]: any number
+[study]: eps (m) and gamma, lists of numbers > 0, and accuracy (in eps), a number > 0"""
+_HEIGHTS = """\
+  or heights = the file of a measured surface, instead of cos and sin, with period,
+  harmonics, row, smoothing, pixel, height_scale and units as commands take them"""
+
+
+def example_lines() -> dict[str, str]:
+    """What each scene that ships is, in a line, by name."""
+    folder = resources.files(__package__) / _FOLDER
+    names = sorted(f.name for f in folder.iterdir() if f.name.endswith(_ENDING))
+    found = {name.removesuffix(_ENDING): example_text(name) for name in names}
+    return {name: text.splitlines()[0].removeprefix("# ") for name, text in found.items()}
+
+
+def example_text(name: str) -> str:
+    """The file of a scene that ships, by name.
+
+    Raises `ValueError` for another name, with those that there are.
+    """
+    stem = name.removesuffix(_ENDING)
+    source = resources.files(__package__) / _FOLDER / f"{stem}{_ENDING}"
+    if "/" in stem or not source.is_file():
+        require(False, "NAME", name, f"one of {', '.join(example_lines())}")
+    return source.read_text(encoding="utf-8")
+
+
+def schema_text() -> str:
+    """Every table of a scene file, its kinds and their fields, as the parts say it.
+
+    Each field with the default it has, and of each kind what its class says: symbols,
+    units, and what is refused.
+    """
+    tables = {f"[{name}]": kinds for name, kinds in PARTS.items()}
+    tables["[[effects]]"] = EFFECTS
+    sections = [_TOP]
+    for table, kinds in tables.items():
+        sections += [_kind_text(table, name, kind) for name, kind in kinds.items()]
+    return "\n\n".join(sections)
+
+
+def _kind_text(table: str, name: str, kind: type[Part]) -> str:
+    lines = [f'{table} kind = "{name}"']
+    signature = inspect.signature(kind.__init__).parameters
+    for field in asked_names(kind, {}):
+        default = signature[field].default
+        needed = default is inspect.Parameter.empty
+        lines.append(f"  {field}{'' if needed else f' (may be left out: {default})'}")
+    if kind is Fourier:
+        lines.append(_HEIGHTS)
+    said = inspect.cleandoc(kind.__doc__ or "")
+    return "\n".join([*lines, *(f"    {line}".rstrip() for line in said.splitlines())])
