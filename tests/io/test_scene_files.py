@@ -266,12 +266,39 @@ EFFECT_MISTAKES = {
         r"effects\.CompliantArray\.offsets = .*needs finite places"
     ),
     '[effects]\nkind = "LeadingOrder"': r"effects = .*: needs tables \[\[effects\]\]$",
+    '[[effects]]\nkind = "Inertia"\nmass = 0.0': (
+        r"effects\.Inertia\.mass = 0: needs mass > 0 in kg"
+    ),
+    '[[effects]]\nkind = "Inertia"\nmass = 1.0\nexponent = "gamma"': (
+        r"\[\[effects\]\] exponent = 'gamma': needs a number"
+    ),
+    '[[effects]]\nkind = "Inertia"\nmas = 1.0': r"mas is unknown: .*\(mass\?\)$",
+    '[[effects]]\nkind = "Noise"\ntemperature = -1e-4': (
+        r"effects\.Noise\.temperature = -0\.0001: needs temperature > 0 in J"
+    ),
+    '[[effects]]\nkind = "Noise"': r"\[\[effects\]\] temperature is missing",
+    '[[effects]]\nkind = "NapFlip"\nbending_stiffness = [1.0, 2.0]': (
+        r"effects\.NapFlip\.bending_stiffness = .*: needs one number"
+    ),
+    '[[effects]]\nkind = "NapFlip"\nbending_stiffness = 1.0': (
+        r"scene\.bristle = SlantedSpring: needs an AngularSpring, as .* has NapFlip"
+    ),
+    '[[effects]]\nkind = "AxialLoad"\nbending_stiffness = 1.0': (
+        r"scene\.bristle = SlantedSpring: needs an AngularSpring, as .* has AxialLoad"
+    ),
+    '[[effects]]\nkind = "Noise"\ntemperature = 1.0\n'
+    '[[effects]]\nkind = "Inertia"\nmass = 1.0': (
+        r"scene\.effects = Noise and Inertia: needs one of them"
+    ),
+    '[[effects]]\nkind = "LeadingOrder"\n[[effects]]\nkind = "LeadingOrder"': (
+        r"scene\.effects = LeadingOrder and LeadingOrder: needs one of each kind"
+    ),
 }
 
 
 @pytest.mark.parametrize(("added", "words"), EFFECT_MISTAKES.items())
 def test_mistakes_in_effects_are_one_line(added, words):
-    text = f"{scene_document(SCENES[-1])}\n{added}\n"
+    text = f"{scene_document(scene(bristle=BRISTLES[2]))}\n{added}\n"
     with pytest.raises(ValueError, match=words) as caught:
         parse_scene(text, "rough.toml")
     assert str(caught.value).startswith("rough.toml: ")
