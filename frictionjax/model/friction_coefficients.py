@@ -13,7 +13,7 @@ from ..bristles import pulling_text
 from ..numerics import periodic_extrema, slope_of
 from .potentials import AbstractPotential, BristlePotential
 from .summed_potential import SummedPotential
-from .tabulated_potential import potential_at_rest
+from .tabulated_potential import cancels, potential_at_rest
 
 OfBristle = Any
 """A traced real scalar, or None in the abstract setting, where there is no bristle."""
@@ -119,6 +119,9 @@ _FOUND = ByIdentity()  # coefficients of potentials that are known
 def coefficients_jit(potential: AbstractPotential) -> Coefficients:
     """The same, compiled once for all potentials of known numbers; found once of each."""
     found = _FOUND.get(potential)
+    if found is None and cancels(potential):
+        found = Coefficients(jnp.zeros(()), jnp.zeros(()))
+        _FOUND.put(potential, found)
     if found is None:
         found = _of_tables(potential_at_rest(potential))
         if isinstance(potential, SummedPotential):  # of no bristle

@@ -1,5 +1,7 @@
 """Several tips on one root as one surface, at one eps."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -37,6 +39,24 @@ def surface_of_sum(
 
     Raises `ValueError` where so little of the tips' forces is left that it is rounding.
     """
+    waves, share = _waves_of_sum(total, single, eps)
+    needs = f"phases of which more than {SETTINGS.sum_left:g} of the forces is left"
+    require(share > SETTINGS.sum_left, "effects.RigidArray: share left", share, needs)
+    kept = np.abs(waves) > SETTINGS.sum_negligible * np.max(np.abs(waves))
+    size = int(np.max(np.flatnonzero(kept))) + 1
+    profile = Fourier(cos=waves.real[:size], sin=-waves.imag[:size])
+    return BristlePotential(profile, Homothetic(jnp.asarray(1.0)))
+
+
+def leaves_nothing(total: SummedPotential, single: AbstractPotential) -> bool:
+    """Whether the forces of the tips cancel for eps -> 0, up to rounding."""
+    return _waves_of_sum(total, single, 0.0)[1] <= SETTINGS.sum_left
+
+
+def _waves_of_sum(
+    total: SummedPotential, single: AbstractPotential, eps: float
+) -> tuple[Any, float]:
+    """Harmonics of the sum of `V_eps/eps` in N, and what share of the forces is left."""
     one = _waves_of_one(single, eps)
     numbers = np.arange(1, one.size + 1)
     phases = np.asarray(total.offsets)[:, None] * numbers
@@ -45,13 +65,7 @@ def surface_of_sum(
     weights = np.asarray(total.weights)
     waves = one * (weights @ turns)
     forces = [np.max(np.abs(numbers * each)) for each in (waves, one)]
-    share = float(forces[0] / (np.sum(weights) * forces[1]))
-    needs = f"phases of which more than {SETTINGS.sum_left:g} of the forces is left"
-    require(share > SETTINGS.sum_left, "effects.RigidArray: share left", share, needs)
-    kept = np.abs(waves) > SETTINGS.sum_negligible * np.max(np.abs(waves))
-    size = int(np.max(np.flatnonzero(kept))) + 1
-    profile = Fourier(cos=waves.real[:size], sin=-waves.imag[:size])
-    return BristlePotential(profile, Homothetic(jnp.asarray(1.0)))
+    return waves, float(forces[0] / (np.sum(weights) * forces[1]))
 
 
 def _waves_of_one(single: AbstractPotential, eps: float) -> Float[np.ndarray, " n"]:

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from .._checks import ByIdentity
+from .._checks import ByIdentity, require
 from ..loads import AbstractPull, PiecewiseLinear
 from ..supports import AbstractSupport, Spring
 from ..tables import (
@@ -73,6 +73,9 @@ def tabulated_scene(scene: Scene, eps: Any) -> TabulatedScene:
     if known is not None and known[0] == highest:
         return known[1]
     law = coefficients_jit(scene.potential)
+    needs = "phases that leave friction: without, only friction and solve_limit are left"
+    slides = float(law.rho_plus) > 0
+    require(slides, "effects.RigidArray: rho_plus", float(law.rho_plus), needs)
     planning, lanes = tabulated_potentials(scene.potential, highest)
     tables = TabulatedScene(
         potential=planning,

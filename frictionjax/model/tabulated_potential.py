@@ -6,7 +6,7 @@ from .._checks import is_concrete
 from ..tables import bristle_at_rest, bristle_series, profile_tables
 from .potentials import AbstractPotential, BristlePotential
 from .summed_potential import SummedPotential
-from .summed_series import surface_of_sum
+from .summed_series import leaves_nothing, surface_of_sum
 
 _MARGIN = 1.01  # heights beyond those of the samples
 
@@ -21,6 +21,13 @@ def potential_at_rest(potential: AbstractPotential) -> AbstractPotential:
         return potential
     tables = profile_tables(potential.profile)
     return BristlePotential(tables.planning, bristle_at_rest(potential.bristle))
+
+
+def cancels(potential: AbstractPotential) -> bool:
+    """Whether several tips of a known potential leave no friction for eps -> 0."""
+    if not isinstance(potential, SummedPotential) or not is_concrete(potential):
+        return False
+    return leaves_nothing(potential, potential_at_rest(potential.single))
 
 
 def tabulated_potentials(

@@ -58,7 +58,8 @@ def coefficients_by_name(found: Coefficients) -> dict[str, float]:
 
     Only those that exist: the abstract setting has no bristle's.
     """
-    numbers = {"ratio": -float(found.rho_plus) / float(found.rho_minus)}
+    left = float(found.rho_minus)
+    numbers = {"ratio": -float(found.rho_plus) / left} if left else {}
     for name, _, _ in _LAW:
         value = getattr(found, name, None)
         if value is not None:

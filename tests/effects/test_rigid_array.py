@@ -29,9 +29,16 @@ def test_equal_phases_add_up():
 
 
 def test_phases_spread_evenly_over_a_sine_leave_nothing():
-    homothetic = fx.bristles.Homothetic(1.0)
-    with pytest.raises(ValueError, match=r"RigidArray: share left = .*needs phases"):
-        rho_of(np.arange(3) / 3, bristle=homothetic)
+    bristle = fx.bristles.Homothetic(1.0)
+    assert rho_of(np.arange(3) / 3, bristle=bristle) == (0.0, 0.0)
+    spread = (fx.effects.RigidArray(np.arange(3) / 3),)
+    parts = SINE, bristle, fx.supports.Spring(2.0), fx.loads.Ramp(1.0)
+    one = fx.Scene(*parts, 1.0, effects=spread)
+    limit = fx.solve_limit(one, [0.5, 1.0])  # without friction the load is followed
+    np.testing.assert_allclose(limit.z, [0.25, 0.5], rtol=1e-12)
+    np.testing.assert_array_equal(limit.dissipation, 0.0)
+    with pytest.raises(ValueError, match=r"RigidArray: rho_plus = 0: needs phases that"):
+        fx.solve(one, 0.05)
 
 
 def test_phases_spread_evenly_leave_the_harmonics_that_they_divide():
