@@ -12,7 +12,7 @@ from ..effects import Inertia, inertia_among
 from ..limit import LimitSolution, solve_limit
 from ..model import Scene, coefficients_jit, strips_at, tabulated_scene
 from ..slide_laws import slide_data
-from ..wiggly import MAX_STEPS, Status, integrate_scene
+from ..wiggly import Status, integrate_scene
 
 DIMS = ("gamma", "eps", "time")
 SUPREMA = ("sup_error", "strip_excess", "survey_error")
@@ -125,7 +125,7 @@ def _with_mass(
     report: Callable[[float], None],
 ) -> dict[str, np.ndarray]:
     """Values of all cells with inertia, by name; NaN for what tells of brackets."""
-    from ..wiggly import integrate_with_mass  # nothing else needs it
+    from ..wiggly import MAX_STEPS, integrate_with_mass  # and diffrax, 0.5 s
 
     found = integrate_with_mass(
         scene,
