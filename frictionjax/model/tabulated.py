@@ -74,7 +74,7 @@ def tabulated_scene(scene: Scene, eps: Any) -> TabulatedScene:
         return known[1]
     law = coefficients_jit(scene.potential)
     needs = "phases that leave friction: without, only friction and solve_limit are left"
-    slides = float(law.rho_plus) > 0
+    slides = float(law.rho_plus) != 0
     require(slides, "effects.RigidArray: rho_plus", float(law.rho_plus), needs)
     planning, lanes = tabulated_potentials(scene.potential, highest)
     tables = TabulatedScene(

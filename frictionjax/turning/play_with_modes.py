@@ -7,7 +7,7 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 
 from .._checks import no_less, no_more, require
-from .._compile import Program
+from .._compile import Program, padded_size
 from ..effects import NapFlip
 from ..model import Scene, known_turning_points
 from ..supports import AbstractSupport
@@ -149,12 +149,11 @@ def hybrid_play(scene: Scene, effect: NapFlip, ts: np.ndarray) -> HybridPlay:
     Raises `ValueError` as `flipping_rod` does, and for z0 outside of what the rod as it
     stands at first withstands at t = 0.
     """
-    system = _System(
-        scene.support, rod := flipping_rod(scene, effect), turning_force(rod.bent)
-    )
+    rod = flipping_rod(scene, effect)
+    system = _System(scene.support, rod, turning_force(rod.bent))
     turns = known_turning_points(scene.load, scene.duration, scene.turns)
     grid, back = np.unique(np.concatenate([[0.0], ts, turns]), return_inverse=True)
-    room = np.full(_room(grid.size), grid[-1])
+    room = np.full(padded_size(grid.size, SETTINGS.times, 2), grid[-1])
     room[: grid.size] = grid
     loads = np.asarray(_loads(load_table(scene.load), room))[: grid.size]
     state = _State(1, float(scene.z0), float(loads[0]), 0.0)
@@ -169,15 +168,9 @@ def hybrid_play(scene: Scene, effect: NapFlip, ts: np.ndarray) -> HybridPlay:
     return HybridPlay(z, z + rod.reach, mode, lost)
 
 
-def _room(count: int) -> int:
-    return max(256, 1 << (count - 1).bit_length())
-
-
 def _require_start(system: _System, state: _State) -> None:
     least, most = system.rod.standing_rest
-    ends = [
-        float(_state_of(system.support, np.asarray(state.load - f))) for f in (most, least)
-    ]
+    ends = [system.held(state.load - force) for force in (most, least)]
     slack = 4 * float(np.finfo(float).eps) * max(map(abs, ends))
     needs = "what the rod withstands at t = 0, the interval "
     needs += f"[{no_less(ends[0], 9)}, {no_more(ends[1], 9)}]"

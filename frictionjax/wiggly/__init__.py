@@ -4,7 +4,8 @@ From the bottom: `stepping` (step sizes, their control), `equation` (vector fiel
 step plan), `rosenbrock` (the scheme), `sequential` (one traced trajectory, through
 diffrax), `lanes` (many short integrations side by side), `limit_path` (what the limit does,
 as a guide), `slip_map` (fast slides, well after well), `enclosure` (lanes from below and
-above until they meet), `inertial` (tips with mass, every slip), `sums` (values at stops,
+above until they meet), `inertial` (tips with mass, every slip), `turning`
+(rods that turn over), `sums` (values at stops,
 integrals). `plan` says which way each cell goes, `batch` drives them all, and `trajectory`
 is `fx.solve`."""
 

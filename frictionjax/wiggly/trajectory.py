@@ -302,6 +302,13 @@ def _one_path(
     return Solution(ts, z, None, None, jnp.asarray(int(status)), counts, how)
 
 
+def _require_known(numbers: tuple, adjoint: Any, who: str) -> None:
+    """What has no derivatives needs known numbers."""
+    needs = f"known numbers and no adjoint: {who} no derivatives"
+    known = is_concrete(*numbers) and adjoint is None
+    require(known, "scene", "traced, or with an adjoint", needs)
+
+
 def _with_mass(
     scene: Scene,
     inertia: Inertia,
@@ -447,9 +454,7 @@ def solve(
     require_told_apart(scene, eps)
     inertia = inertia_among(scene.effects)
     if inertia is not None:
-        given = is_concrete(scene, eps, gamma, ts, accuracy) and adjoint is None
-        needs = "known numbers and no adjoint: effects.Inertia has no derivatives"
-        require(given, "scene", "traced, or with an adjoint", needs)
+        _require_known((scene, eps, gamma, ts, accuracy), adjoint, "effects.Inertia has")
         return _with_mass(
             scene=scene,
             inertia=inertia,
@@ -462,9 +467,7 @@ def solve(
         )
     turning = nap_flip_among(scene.effects)
     if turning is not None:
-        given = is_concrete(scene, eps, gamma, ts, accuracy) and adjoint is None
-        needs = "known numbers and no adjoint: rods that turn over have no derivatives"
-        require(given, "scene", "traced, or with an adjoint", needs)
+        _require_known((scene, eps, gamma, ts, accuracy), adjoint, "effects.NapFlip has")
         return _with_turning(
             scene,
             turning,

@@ -95,15 +95,9 @@ class SceneParts(eqx.Module):
 
 def compression(potential: BristlePotential, y: Real, eps: Real) -> Real:
     """Along the straight rod in N, its tip at y: `N (cos(theta) - w' sin(theta))`."""
-    pull, _ = potential.tip_force(y, eps)
-    normal, angle = _pressed(potential, y, eps)
-    return normal * jnp.cos(angle) - pull * jnp.sin(angle)
-
-
-def _pressed(potential: BristlePotential, y: Real, eps: Real) -> tuple[Real, Real]:
-    """Normal force in N and angle in rad."""
     eta = eps * potential.profile(y)
-    _, stretch = potential.tip_force(y, eps)
+    pull, stretch = potential.tip_force(y, eps)
     stance = potential.bristle.geometry(eta)
     assert stance is not None
-    return slope_of(potential.bristle.energy)(eta) / stretch, stance.angle
+    normal = slope_of(potential.bristle.energy)(eta) / stretch
+    return normal * jnp.cos(stance.angle) - pull * jnp.sin(stance.angle)
