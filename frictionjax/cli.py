@@ -272,6 +272,11 @@ def _numbers(**given: str | None) -> dict[str, Any]:
     "with --accuracy the eps, that fit.",
 )
 @click.option(
+    "--effects",
+    type=click.Choice(["all", "auto"]),
+    help="Of the scene: all, or those that the accuracy calls for.",
+)
+@click.option(
     "--rows", is_flag=True, help="Every row of the map of --heights, and how they differ."
 )
 @_out("study")
@@ -283,6 +288,7 @@ def study(
     accuracy: float | None,
     method: str,
     budget: float | None,
+    effects: str | None,
     out: str,
     progress: bool,
     **surface: Any,
@@ -302,6 +308,8 @@ def study(
     wanted = _numbers(eps=eps, gamma=gamma)
     if accuracy is not None:
         wanted["accuracy"] = accuracy
+    if effects is not None:
+        wanted["effects"] = effects
     if surface["rows"] and budget is not None:
         _refuse("--rows", "budget")
     job = read_job(scene, **surface)

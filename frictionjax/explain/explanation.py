@@ -6,12 +6,18 @@ import numpy as np
 import xarray as xr
 
 from .._checks import as_real, require_numbers, with_nan
+from ..called_for import (
+    Estimate,
+    Setting,
+    estimate_of,
+    finite_speed,
+    higher_order,
+    setting_of,
+)
 from ..effects import LeadingOrder, Stage
-from ..model import Scene, coefficients_jit, composed, known_scene, require_reach
-from ..slide_laws import slide_data
+from ..model import Scene, composed, known_scene
 from ..wiggly import require_accuracy
 from .equation import composed_equation
-from .estimates import Estimate, Setting, estimate_of, finite_speed, higher_order
 
 _COLUMNS = {
     "in_z": ("m", "largest change of the state, from above"),
@@ -73,13 +79,9 @@ def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explana
     require_numbers("gamma", gamma, needs, lambda g: (g > 0) & (g.ndim == 0))
     require_accuracy(accuracy)
     size, power = float(as_real(eps)), float(as_real(gamma))
-    plain = composed(scene)
-    require_reach(plain.potential, size)
-    law = coefficients_jit(plain.potential)
-    data = slide_data(plain, law, np.array([size]))
-    if data is None:
+    at = setting_of(scene, size, power)
+    if at is None:
         raise ValueError("scene.load turns too often: needs slides, to be told of them")
-    at = Setting(plain, size, power, law, data)
     rows = {"higher order": _rest_of(scene, at), "finite speed": finite_speed(at)}
     called = {name: _matters(row, at, accuracy) for name, row in rows.items()}
     asked = {"higher order": not _leading(scene), "finite speed": True}

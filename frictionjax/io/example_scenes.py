@@ -12,7 +12,8 @@ _TOP = """\
 duration = (s) how long the load acts, > 0
 z0 = (m) the state at the start, 0 where it is left out
 [profile], [bristle], [support], [load]: one part each; [[effects]]: any number
-[study]: eps (m) and gamma, lists of numbers > 0, and accuracy (in eps), a number > 0"""
+[study]: eps (m) and gamma, lists of numbers > 0, and accuracy (in eps), a number > 0;
+         effects, "all" of the scene's or "auto": those that the accuracy calls for"""
 _HEIGHTS = """\
   or heights = the file of a measured surface, instead of cos and sin, with period,
   harmonics, row, smoothing, pixel, height_scale and units as commands take them"""

@@ -20,7 +20,8 @@ from ..profiles import Fourier
 from .registry import EFFECTS, PARTS, numbers_of_part
 
 _TOP = ("duration", "z0")
-_STUDY = ("eps", "gamma", "accuracy")
+_STUDY = ("eps", "gamma", "accuracy", "effects")
+_EFFECTS = ("all", "auto")  # of a study: those of the scene, or those called for
 _TEXTS = ("length_unit", "height_unit", "decimal", "outliers")
 _READING = ("pixel", "height_scale", *_TEXTS)
 _WHOLE = ("harmonics", "row")
@@ -32,7 +33,7 @@ _SAVED = "a profile and a bristle: what Python functions give cannot be saved"
 
 
 class SceneFile(NamedTuple):
-    """What a scene file holds: the scene, and `eps`, `gamma`, `accuracy` where given."""
+    """What a scene file holds: the scene, and `eps gamma accuracy effects` where given."""
 
     scene: Scene
     study: dict[str, Any]
@@ -213,8 +214,13 @@ def _numbers(name: str, value: Any) -> Any:
 def _study_of(entries: Any) -> dict[str, Any]:
     _need(isinstance(entries, dict), f"study = {entries!r}", "a table [study]")
     _require_keys("[study] ", entries, _STUDY, ())
-    study = {key: _numbers(f"[study] {key}", value) for key, value in entries.items()}
-    for key, value in study.items():
+    study = dict(entries)
+    if "effects" in study:
+        said = f"[study] effects = {study['effects']!r}"
+        _need(study["effects"] in _EFFECTS, said, f"one of {', '.join(_EFFECTS)}")
+    numbers = {key: value for key, value in entries.items() if key != "effects"}
+    for key, given in numbers.items():
+        study[key] = value = _numbers(f"[study] {key}", given)
         good = np.size(value) > 0 and np.all(np.isfinite(value)) and np.min(value) > 0
         single = key != "accuracy" or np.ndim(value) == 0
         needs = "a number > 0" if key == "accuracy" else "one or more numbers > 0"
@@ -242,7 +248,10 @@ def scene_document(scene: Scene, study: dict[str, Any] | None = None) -> str:
         entries = [_entries_of("scene.effects", each, EFFECTS) for each in scene.effects]
         document["effects"] = entries
     if study:
-        document["study"] = {key: _plain(value) for key, value in study.items()}
+        document["study"] = {
+            key: value if isinstance(value, str) else _plain(value)
+            for key, value in study.items()
+        }
     return tomli_w.dumps(document)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from .._checks import cells_of, grid_of
 from .._compile import in_background
+from ..called_for import simulated
 from ..cost import PREDICTED_ACCURACIES, CostPrediction, fit_budget, predict_cost
 from ..effects import Engine, does
 from ..model import require_reach
@@ -24,10 +25,18 @@ def expected_cost(job: Job, method: str) -> CostPrediction | None:
     Another machine's numbers where this one has not been measured: that would take longer
     than most studies.
     """
+    job = _as_simulated(job)
     if not is_ours(method) or not _is_predicted(job):
         return None
     ts = study_times(job)
     return predict_cost(job.scene, ts=ts, method=method, measure=False, **job.study)
+
+
+def _as_simulated(job: Job) -> Job:
+    """The job with what is simulated of its scene's effects, and numbers of a study."""
+    numbers = {key: value for key, value in job.study.items() if key != "effects"}
+    found = simulated(job.scene, job.study.get("effects", "all"), **numbers)
+    return job._replace(scene=found.scene, study=numbers)
 
 
 def _is_predicted(job: Job) -> bool:
@@ -56,6 +65,7 @@ def prepare_study(job: Job, method: str) -> None:
 
     Raises `ValueError` for eps and gamma as `sweep` does.
     """
+    job = _as_simulated(job)
     if not is_ours(method) or not _is_predicted(job):
         return
     eps, gamma = grid_of("eps", job.study["eps"]), grid_of("gamma", job.study["gamma"])
@@ -76,8 +86,15 @@ def within_budget(
         require_accuracy(asked)  # `fit_budget` would name its own argument, accuracies
     own = float(job.study["accuracy"])
     tried = {*PREDICTED_ACCURACIES, own} if asked is None else {asked}
+    finest = job._replace(study=job.study | {"accuracy": min(tried)})
     found = fit_budget(
-        job.scene, eps, gamma, seconds, study_times(job), method, sorted(tried)
+        _as_simulated(finest).scene,
+        eps,
+        gamma,
+        seconds,
+        study_times(job),
+        method,
+        sorted(tried),
     )
     count = np.unique(eps).size
     note = (

@@ -37,6 +37,8 @@ def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
     law = friction(scene)
     found = study(data)
     sections = [("", line) for line in job.notes]
+    if "left_out" in data.attrs:
+        sections.append(("", f"Effects left out: {data.attrs['left_out']}"))
     sections.append(("Friction coefficients", coefficient_table(law, job.error)))
     if job.rows is not None:
         sections.append(("Friction over the rows of the map", row_table(job.rows)))

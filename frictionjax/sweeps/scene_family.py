@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import as_text, require
+from ..called_for import Simulated
 from ..effects import Engine, require_done
 from ..limit import require_start_in_strip
 from ..model import (
@@ -24,12 +25,14 @@ from .scene_columns import Columns, SceneColumns
 class SceneFamily(NamedTuple):
     """Scenes and what they are called; `labels` is None for one that was given alone.
 
-    `asked`: as they were given, effects of the potential not yet worked in.
+    `asked`: as they were given, effects of the potential not yet worked in. `left_out`: in
+    words, effects that were not called for.
     """
 
     scenes: list[Scene]
     labels: list[str] | list[int] | None
     asked: list[Scene]
+    left_out: str = ""
 
     def each(self, work: Callable[[Scene], Any]) -> list[Any]:
         """What `work` makes of each; `ValueError`s name the scene that they are of."""
@@ -45,9 +48,14 @@ class SceneFamily(NamedTuple):
 
 
 def family_of(
-    given: Any, eps: Float[np.ndarray, " e"], engines: Sequence[Engine]
+    given: Any,
+    eps: Float[np.ndarray, " e"],
+    engines: Sequence[Engine],
+    simulate: Callable[[Any], Simulated],
 ) -> SceneFamily:
     """The scenes of an argument, each as it can be solved at these eps (m).
+
+    `simulate`: which of a scene's effects are.
 
     Raises `ValueError` for what is neither a scene nor a list or mapping of them, and as
     `sweep` does for each of them.
@@ -60,6 +68,10 @@ def family_of(
         asked, labels = [given], None
     require(asked, "scene", as_text(given), "a Scene, or several")
     family = SceneFamily(asked, labels, asked)
+    found = family.each(simulate)
+    family = family._replace(
+        scenes=[one.scene for one in found], left_out=_left_out(found, labels)
+    )
 
     def solvable(scene: Any) -> Scene:
         for engine in engines:
@@ -71,6 +83,13 @@ def family_of(
         return scene
 
     return family._replace(scenes=family.each(solvable))
+
+
+def _left_out(found: list[Simulated], labels: list[Any] | None) -> str:
+    if labels is None:
+        return found[0].in_words
+    pairs = zip(labels, found, strict=True)
+    return "; ".join(f"{label}: {one.in_words}" for label, one in pairs if one.left_out)
 
 
 def _labels(names: list[Any]) -> list[Any]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from .._checks import as_real, grid_of, require_flags, with_nan
 from .._compile import progress_bar
+from ..called_for import Simulated, simulated
 from ..effects import Engine, engine_of
 from ..model import Scene
 from ..wiggly import is_ours, require_accuracy, warn_of_failed
@@ -30,6 +31,7 @@ def sweep(
     *,
     dissipation: bool = True,
     suprema: bool = True,
+    effects: str = "all",
 ) -> "xr.Dataset":
     """Solve all cells `eps` x `gamma` and compare each with the limit.
 
@@ -50,7 +52,9 @@ def sweep(
     and provenance are in the attributes, and with suprema what the laws of the orders need
     (`law_...`: the force of a well, the speeds of the limit); it goes to NetCDF and back
     without loss. `compiled_for`, among them: parts that no table holds to rounding, for
-    which programs were compiled.
+    which programs were compiled. `effects="auto"` leaves out effects of a scene that no
+    cell calls for at this accuracy, see `solve`; the attribute `left_out` says which, and
+    the most that each changes z by in eps.
 
     Several scenes, in a list or under labels (strings or integers) in a mapping, make a
     data set with the dimension `scene` in front, the limit's values and the laws' arrays
@@ -66,7 +70,12 @@ def sweep(
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
     require_flags(progress=progress, dissipation=dissipation, suprema=suprema)
-    family = family_of(scene, eps, engines=(Engine.SWEEP, engine_of(method)))
+
+    def simulate(one: Any) -> Simulated:
+        return simulated(one, effects, eps, gamma, accuracy)
+
+    engines = Engine.SWEEP, engine_of(method)
+    family = family_of(scene, eps, engines, simulate)
     request = SweepRequest(
         eps=eps,
         gamma=gamma,
@@ -96,7 +105,11 @@ def sweep(
     if family.labels is None:
         data.attrs |= found[0].laws
     own = dict.fromkeys(one.compiled_for for one in found if one.compiled_for)
-    return data.assign_attrs(compiled_for="; ".join(own)) if own else data
+    if own:
+        data.attrs["compiled_for"] = "; ".join(own)
+    if family.left_out:
+        data.attrs["left_out"] = family.left_out
+    return data
 
 
 def _all_columns(

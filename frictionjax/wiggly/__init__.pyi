@@ -16,7 +16,6 @@ from .equation import pull_of as pull_of
 from .equation import require_accuracy as require_accuracy
 from .equation import status_of as status_of
 from .equation import warn_of_failed as warn_of_failed
-from .inertial import inertia_numbers as inertia_numbers
 from .inertial import integrate_with_mass as integrate_with_mass
 from .predicted_work import Workload as Workload
 from .predicted_work import workload as workload

@@ -1,5 +1,6 @@
 """One trajectory of the wiggly system."""
 
+import dataclasses
 from typing import Any, NamedTuple
 
 import diffrax
@@ -21,6 +22,7 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program
+from ..called_for import Simulated, simulated
 from ..effects import (
     Inertia,
     NapFlip,
@@ -392,6 +394,15 @@ def _with_turning(
     )
 
 
+def _called_for(found: Simulated, *numbers: Any, key: Any, **options: Any) -> Solution:
+    """The solution of what is left of a scene, which says what was left out."""
+    used = None if "Noise" in found.left_out else key  # of noise alone
+    solution = solve(found.scene, *numbers, key=used, **options)
+    counts = solution.counts | {"left_out": found.left_out}
+    how = solution.how + (f"; without {found.in_words}" if found.left_out else "")
+    return dataclasses.replace(solution, counts=counts, how=how)
+
+
 @with_nan
 def solve(
     scene: Scene,
@@ -405,6 +416,7 @@ def solve(
     max_steps: int = MAX_STEPS,
     adjoint: diffrax.AbstractAdjoint | None = None,
     key: Any = None,
+    effects: str = "all",
 ) -> Solution:
     """Solve `eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.7) from z0.
 
@@ -428,16 +440,28 @@ def solve(
     With `effects.Inertia` the equation has `m_eps z''`, z0 is at rest, every slip is
     integrated at three tolerances, and there are no derivatives.
     With `effects.NapFlip` every slip is integrated, and there are no derivatives.
+    `effects`: "all" of the scene's, or "auto": without those that this accuracy does not
+    call for, as `explain` tells; `left_out` in `stats` says which, and the most that each
+    changes z by in eps.
     Failure is a `status`, not an exception.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact (`G > 0` fails), with the largest eps allowed.
     """
-    scene = scene_for(engine_of(method), scene)
     require_numbers("eps", eps, "one number eps > 0", lambda e: (e > 0) & (e.ndim == 0))
     allowed = "one number gamma > 0"
     require_numbers("gamma", gamma, allowed, lambda g: (g > 0) & (g.ndim == 0))
     require_accuracy(accuracy)
+    if effects != "all":
+        return _called_for(
+            simulated(scene, effects, eps, gamma, accuracy),
+            *(eps, gamma, ts, accuracy, method),
+            dissipation=dissipation,
+            max_steps=max_steps,
+            adjoint=adjoint,
+            key=key,
+        )
+    scene = scene_for(engine_of(method), scene)
     require_flags(dissipation=dissipation)
     require_whole("max_steps", max_steps)
     known = adjoint is None or isinstance(adjoint, diffrax.AbstractAdjoint)

@@ -1,3 +1,2 @@
 from .cells_with_mass import CellsWithMass as CellsWithMass
 from .cells_with_mass import integrate_with_mass as integrate_with_mass
-from .inertia_number import inertia_numbers as inertia_numbers

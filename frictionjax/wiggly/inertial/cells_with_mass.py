@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from ..._checks import quiet_where_extreme, viscosity_of
 from ..._compile import Program, in_chunks, padded_size
+from ...called_for import inertia_numbers
 from ...effects import Inertia
 from ...model import Scene, SummedPotential, TabulatedScene, padded_edges, tabulated_scene
 from ...numerics import concatenated, rows_of, slope_of
@@ -21,7 +22,6 @@ from ..equation import (
     pull_between,
 )
 from ..stepping import Control
-from .inertia_number import inertia_numbers
 from .lanes_with_mass import (
     MarchedRow,
     MassiveLane,

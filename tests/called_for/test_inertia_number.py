@@ -2,7 +2,7 @@ import numpy as np
 from tips_with_mass import RHO
 
 import frictionjax as fx
-from frictionjax.wiggly.inertial import inertia_numbers
+from frictionjax.called_for import inertia_numbers
 
 
 def test_beta_of_a_sine():

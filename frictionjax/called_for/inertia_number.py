@@ -7,17 +7,18 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from ..._checks import Real
-from ..._compile import Program
-from ...effects import Inertia
-from ...model import AbstractPotential, potential_at_rest
-from .settings import SETTINGS
+from .._checks import Real
+from .._compile import Program
+from ..effects import Inertia
+from ..model import AbstractPotential, potential_at_rest
+
+_PLACES = 2048  # of a period: max |W''| to 2e-6
 
 
 @Program
 def _steepest(potential: AbstractPotential) -> Real:
     """`max |W''|` in N."""
-    places = jnp.arange(SETTINGS.places) / SETTINGS.places - 0.5
+    places = jnp.arange(_PLACES) / _PLACES - 0.5
     slope = jax.vmap(jax.grad(jax.grad(potential._leading)))
     return jnp.max(jnp.abs(slope(places)))
 

@@ -1,0 +1,11 @@
+"""Which effects of a scene its accuracy calls for: what each changes, from above."""
+
+from .estimates import Estimate as Estimate
+from .estimates import estimate_of as estimate_of
+from .inertia_number import inertia_numbers as inertia_numbers
+from .left_out import Simulated as Simulated
+from .left_out import simulated as simulated
+from .plain_system import finite_speed as finite_speed
+from .plain_system import higher_order as higher_order
+from .setting import Setting as Setting
+from .setting import setting_of as setting_of

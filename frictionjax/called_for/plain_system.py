@@ -1,0 +1,71 @@
+"""How much of the plain system matters: the potential's higher order, finite speed."""
+
+import jax
+import numpy as np
+from jaxtyping import Array, Float
+
+from .._checks import Real
+from .._compile import Program, in_chunks
+from ..model import AbstractPotential
+from ..slide_laws import predict_errors
+from .estimates import Estimate
+from .setting import Setting
+
+_PLACES = 512  # of a period, for forces of a well and their change
+_SLIP = 30.0  # times eps^(1 + gamma)/max|W''|: a slip, with its way over the fold
+_FELT = 3.0  # times eps: the most that tips move while a slip is late
+
+
+@Program
+def _rest(potential: AbstractPotential, eps: Real, Y: Float[Array, " n"]):
+    """Q' and Q'' in N/m, W'' and W''' in N at phases Y."""
+
+    def rest(phase: Real) -> Real:
+        return potential._rest(eps, phase)
+
+    def leading(phase: Real) -> Real:
+        return potential._leading(phase)
+
+    def at(phase: Real) -> tuple[Real, ...]:
+        slope, force = jax.grad(rest), jax.grad(leading)
+        steep = jax.grad(force)
+        return slope(phase), jax.grad(slope)(phase), steep(phase), jax.grad(steep)(phase)
+
+    return jax.vmap(at)(Y)
+
+
+def higher_order(at: Setting) -> Estimate:
+    """What `eps^2 Q` changes: `LeadingOrder` leaves it out.
+
+    The extreme forces of a well change by `eps Q'(Y*)`, and to second order by
+    `(eps Q'')^2/(2 |W'''|)`, as the steepest place moves; strip and slides by that over
+    Phi'', and a tip on its way to the next slip by `fastest` times as much. Where tips
+    rest inside wells they move by `eps^2 Q'/W''`, and slips last longer as forces change.
+    """
+    Y = np.arange(_PLACES) / _PLACES - 0.5
+    Y = np.append(Y, [at.data.phase[np.argmax(s * at.data.force)] for s in (1.0, -1.0)])
+    Y = Y - np.round(Y)
+    fixed = at.scene.potential, np.asarray(at.eps)
+    slope, bend, steep, sharp = in_chunks(_rest, _PLACES + 2, fixed, (Y,))
+    tops = slice(-2, None)
+    moved = (at.eps * bend[tops]) ** 2 / (2 * np.maximum(np.abs(sharp[tops]), 1e-300))
+    force = float(np.max(at.eps * np.abs(slope[tops]) + moved))
+    flat = at.eps * at.softest / at.fastest
+    inside = at.eps**2 * float(np.max(np.abs(slope) / np.maximum(np.abs(steep), flat)))
+    share = at.eps * float(np.max(np.abs(slope))) / at.rho
+    slip = _SLIP * at.eps ** (1 + at.gamma) / float(np.max(np.abs(steep)))
+    longer = share * min(at.fastest * at.speed * slip, _FELT * at.eps)
+    in_z = max(at.fastest * force / at.softest, inside) + longer
+    return Estimate(in_z, force, 1.0, "eps Q' at the steepest places (Lemma 2)")
+
+
+def finite_speed(at: Setting) -> Estimate:
+    """What viscosity adds to friction on the fastest slide: force and state beyond rho.
+
+    NaN where the limit does not slide through a few wells.
+    """
+    plain = at.data._replace(change=np.zeros_like(at.data.change))
+    found = predict_errors(plain, np.array([at.eps]), np.array([at.gamma]))
+    in_z = float(found["strip_excess"].errors[0, 0])
+    law = found["strip_excess"].laws[0]
+    return Estimate(in_z, in_z * at.stiffest, np.nan, f"law of a slide: {law.name}")

@@ -1,0 +1,82 @@
+"""What estimates are made from: a scene at one eps and gamma, and laws of its slides."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..model import Coefficients, Scene, coefficients_jit, composed, require_reach
+from ..slide_laws import SlideData, slide_data
+
+_AWAY = 0.005  # of the time that a well takes
+_FASTEST = 10.0  # 0.05 eps in that time
+_BESIDE = 12  # places about a fold, that tell how it bends
+
+
+class Setting(NamedTuple):
+    """`scene`: as engines see it, effects of the potential worked in. `eps` in m.
+
+    `law`: its coefficients; `data`: force of a well and speeds of the limit.
+    """
+
+    scene: Scene
+    eps: float
+    gamma: float
+    law: Coefficients
+    data: SlideData
+
+    @property
+    def rho(self) -> float:
+        """The larger of the two coefficients of friction, in N."""
+        return max(float(self.law.rho_plus), -float(self.law.rho_minus))
+
+    @property
+    def speed(self) -> float:
+        """Speed of the fastest slide, in m/s."""
+        return float(np.max(np.abs(self.data.speed)))
+
+    @property
+    def fastest(self) -> float:
+        """How many times as fast as their slide tips move, at most, outside of slips.
+
+        Outside is further from one than half a percent of the time a well takes, and where
+        a tip moves by less than 0.05 eps in that. What makes a slip early is felt so many
+        times. With k the stiffness and v the speed of the slide, a tip on the way to a
+        fold, `W' = rho - c (Y - Y*)^2/2`, moves as fast as `v sqrt(100 eps k/c)` then, one
+        that viscosity holds up at the fold as `8e4 eps^gamma v^2/c`.
+        """
+        phase, force = self.data.phase, self.data.force
+        bend = np.inf
+        for sign in (1.0, -1.0):
+            top = int(np.argmax(sign * force))
+            away = phase - phase[top]
+            away = away - np.round(away)
+            near = np.argsort(np.abs(away))[1:_BESIDE]
+            fall = np.abs(force[near] - force[top])
+            bend = min(bend, float(np.median(2 * fall / away[near] ** 2)))
+        if not bend > 0:
+            return _FASTEST
+        resting = np.sqrt(self.eps * self.stiffest / (2 * _AWAY * bend))
+        held_up = 2 * self.eps**self.gamma * self.speed / (_AWAY**2 * bend)
+        return float(np.clip(max(resting, held_up), 1.0, _FASTEST))
+
+    @property
+    def softest(self) -> float:
+        """Least Phi'' along the limit, in N/m."""
+        return float(np.min(self.data.stiffness))
+
+    @property
+    def stiffest(self) -> float:
+        """Largest Phi'' along the limit, in N/m."""
+        return float(np.max(self.data.stiffness))
+
+
+def setting_of(scene: Scene, eps: float, gamma: float) -> Setting | None:
+    """The setting of a known scene; None where its load turns too often to slide long.
+
+    Raises `ValueError` for an eps (m) at which the bristle loses its contact.
+    """
+    plain = composed(scene)
+    require_reach(plain.potential, eps)
+    law = coefficients_jit(plain.potential)
+    data = slide_data(plain, law, np.array([eps]))
+    return None if data is None else Setting(plain, eps, gamma, law, data)
