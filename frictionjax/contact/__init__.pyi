@@ -6,4 +6,5 @@ from .forces import limit_forces as limit_forces
 from .forces import tip_forces as tip_forces
 from .nap_effect import Nap as Nap
 from .nap_effect import nap as nap
+from .nap_loops import nap_loops as nap_loops
 from .readings import mechanics as mechanics

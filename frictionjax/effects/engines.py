@@ -36,7 +36,7 @@ _E = Engine
 _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset({_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP}),
     "Noise": frozenset({_E.RESOLVED, _E.ENSEMBLE, _E.FRICTION_CURVE}),
-    "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED}),
+    "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
     "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
 }
 """Of effects that change what moves: the engines that do them."""
@@ -69,7 +69,7 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
 }
 """What to do where an engine does not do an effect, after "needs"."""
 
-_TURNS = "solve and solve_limit, of the scene; nap, of its bristle"
+_TURNS = "solve, solve_limit, sweep and mechanics, of the scene; nap, of its bristle"
 _INSTEAD |= {
     ("NapFlip", engine): _TURNS for engine in Engine if engine not in _DOES["NapFlip"]
 }

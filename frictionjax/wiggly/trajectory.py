@@ -67,8 +67,8 @@ class Solution(CodedResult, eqx.Module):
     how far in m runs at other tolerances are from it (where they end in different
     wells the status is SENSITIVE), and `beta` the number that decides whether mass matters.
 
-    With `effects.NapFlip` also `root` u in m and `mode` (n,): 1 as the rod stands at first,
-    -1 turned over, 0 in between; else they are None.
+    With `effects.NapFlip` also `root` u and `tip` p in m and `mode` (n,): 1 as the rod
+    stands at first, -1 turned over, 0 in between; else they are None.
     """
 
     ts: Float[Array, " n"]
@@ -81,6 +81,7 @@ class Solution(CodedResult, eqx.Module):
     velocity: Float[Array, " n"] | None = None
     root: Float[Array, " n"] | None = None
     mode: Int[Array, " n"] | None = None
+    tip: Float[Array, " n"] | None = None
     _outcomes = Status
 
     @property
@@ -389,6 +390,7 @@ def _with_turning(
         how="resolved, every slip, with a rod that turns over",
         root=jnp.asarray(found.root),
         mode=jnp.asarray(found.mode),
+        tip=jnp.asarray(found.tip),
     )
 
 
