@@ -1,10 +1,10 @@
 from .axial import AxialReading as AxialReading
 from .axial import axial_reading as axial_reading
 from .axial import largest_compression as largest_compression
+from .both_effects import nap_loops as nap_loops
 from .forces import TipForces as TipForces
 from .forces import limit_forces as limit_forces
 from .forces import tip_forces as tip_forces
 from .nap_effect import Nap as Nap
 from .nap_effect import nap as nap
-from .nap_loops import nap_loops as nap_loops
 from .readings import mechanics as mechanics

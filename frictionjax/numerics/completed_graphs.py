@@ -5,10 +5,10 @@ from jaxtyping import Float
 
 from .settings import SETTINGS
 
-Column = Float[np.ndarray, " n"]
+_Column = Float[np.ndarray, " n"]
 
 
-def graph_distance(times: Column, first: Column, second: Column, speed: float) -> float:
+def graph_distance(times: _Column, first: _Column, second: _Column, speed: float) -> float:
     """Hausdorff distance in m of two graphs {(t, z)}, completed by vertical segments.
 
     `times` (s) do not fall, `first` and `second` (m) are the values there: at a jump a time
@@ -32,7 +32,7 @@ def graph_distance(times: Column, first: Column, second: Column, speed: float) -
 
 
 def _within(
-    places: Column, first: Column, second: Column, wanted: np.ndarray, distance: float
+    places: _Column, first: _Column, second: _Column, wanted: np.ndarray, distance: float
 ) -> bool:
     """Whether the `wanted` points of each graph are as near to the other one."""
     rows = np.flatnonzero(wanted)
@@ -48,7 +48,7 @@ def _within(
     return True
 
 
-def _largest(values: Column, low: np.ndarray, high: np.ndarray) -> Column:
+def _largest(values: _Column, low: np.ndarray, high: np.ndarray) -> _Column:
     """Of `values[low:high]`, each: from windows of 1, 2, 4 ... values."""
     found = np.empty(low.size)
     level = np.frexp(high - low)[1] - 1

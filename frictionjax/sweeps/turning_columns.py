@@ -18,7 +18,7 @@ from .settings import SETTINGS
 if TYPE_CHECKING:
     from ..wiggly import MotionSteps
 
-Column = Float[np.ndarray, " n"]
+_Column = Float[np.ndarray, " n"]
 
 NOTHING_OF_IT = {
     "strip_excess": "a rod in between has no strip, and each mode has its own",
@@ -33,7 +33,7 @@ NOTHING_OF_IT = {
 _INSIDE = np.array([0.25, 0.5, 0.75])  # of other steps: where their cubics are seen
 
 
-class Errors(NamedTuple):
+class GraphErrors(NamedTuple):
     """Over all of [0, T]: sup |z_eps - z| (m) and of the dissipations (J), and how far
     their completed graphs are apart, in m and J."""
 
@@ -43,7 +43,7 @@ class Errors(NamedTuple):
     dissipation_graph: float
 
 
-_UNKNOWN = Errors(*[float("nan")] * 4)
+_UNKNOWN = GraphErrors(*[float("nan")] * 4)
 
 
 class Pace(NamedTuple):
@@ -132,7 +132,7 @@ def limit_values(
     return {name: np.asarray(value) for name, value in values.items()}
 
 
-def _row(found: Any, errors: Errors, request: Any) -> dict[str, Any]:
+def _row(found: Any, errors: GraphErrors, request: Any) -> dict[str, Any]:
     none = np.full(found.z.size, np.nan)
     row = {
         "z": found.z,
@@ -161,7 +161,9 @@ def _row(found: Any, errors: Errors, request: Any) -> dict[str, Any]:
     return row
 
 
-def _errors(made: "MotionSteps", course: LimitCourse, pace: Pace, eps: float) -> Errors:
+def _errors(
+    made: "MotionSteps", course: LimitCourse, pace: Pace, eps: float
+) -> GraphErrors:
     """Of a motion that has come to its end, on the times of both."""
     times, z, spent = _curve(made, eps)
     jumps = course.jumps()
@@ -174,16 +176,16 @@ def _errors(made: "MotionSteps", course: LimitCourse, pace: Pace, eps: float) ->
     late = np.repeat(jumps.time, 2)
     grid = np.insert(grid, places, late)
 
-    def beside(values: Column, ends: tuple[Column, Column]) -> Column:
+    def beside(values: _Column, ends: tuple[_Column, _Column]) -> _Column:
         return np.insert(values, places, np.stack(ends, axis=1).ravel())
 
-    def with_jumps(values: Column, curve: Column) -> Column:
+    def with_jumps(values: _Column, curve: _Column) -> _Column:
         return np.insert(values, places, np.interp(late, times, curve))
 
     state, loss = with_jumps(own[0], z), with_jumps(own[1], spent)
     aim = beside(limit.z, (jumps.z, jumps.last))
     lost = beside(limit.dissipation, (jumps.lost, jumps.spent))
-    return Errors(
+    return GraphErrors(
         sup=float(np.max(np.abs(state - aim))),
         graph=graph_distance(grid, state, aim, pace.speed),
         of_dissipation=float(np.max(np.abs(loss - lost))),
@@ -191,7 +193,7 @@ def _errors(made: "MotionSteps", course: LimitCourse, pace: Pace, eps: float) ->
     )
 
 
-def _curve(made: "MotionSteps", eps: float) -> tuple[Column, Column, Column]:
+def _curve(made: "MotionSteps", eps: float) -> tuple[_Column, _Column, _Column]:
     """Times, states and dissipation of a motion, so close that straight lines join them."""
     length, rise = made.end - made.begin, made.z1 - made.z0
     slopes = made.slope0 * length, made.slope1 * length

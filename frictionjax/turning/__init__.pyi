@@ -1,9 +1,9 @@
+from .course_pieces import HybridPlay as HybridPlay
+from .course_pieces import Jumps as Jumps
+from .course_pieces import LimitCourse as LimitCourse
+from .course_pieces import LimitPiece as LimitPiece
 from .critical_forces import FlippingRod as FlippingRod
 from .critical_forces import flipping_rod as flipping_rod
-from .limit_course import HybridPlay as HybridPlay
-from .limit_course import Jumps as Jumps
-from .limit_course import LimitCourse as LimitCourse
-from .limit_course import Piece as Piece
 from .play_with_modes import hybrid_play as hybrid_play
 from .play_with_modes import limit_course as limit_course
 from .polynomials import BentForce as BentForce

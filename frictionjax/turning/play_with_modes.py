@@ -12,8 +12,8 @@ from ..effects import NapFlip
 from ..model import Scene, known_turning_points
 from ..supports import AbstractSupport
 from ..tables import load_table
+from .course_pieces import HybridPlay, LimitCourse, LimitPiece, loads_at
 from .critical_forces import FlippingRod, flipping_rod
-from .limit_course import HybridPlay, LimitCourse, Piece, loads_at
 from .polynomials import turning_force
 from .settings import SETTINGS
 from .way_over import WayOver
@@ -57,9 +57,9 @@ class _System(NamedTuple):
     rod: FlippingRod
     turning: Chebyshev
 
-    def after(self, state: _State, load: float) -> tuple[_State, list[Piece]]:
+    def after(self, state: _State, load: float) -> tuple[_State, list[LimitPiece]]:
         """The state once the load has gone to `load`, one way, and on what way."""
-        pieces: list[Piece] = []
+        pieces: list[LimitPiece] = []
         while True:
             before, (state, found) = state, self._on(state, load)
             pieces += found
@@ -68,7 +68,7 @@ class _System(NamedTuple):
                     pieces.append(_still(state, load))
                 return state, pieces
 
-    def _on(self, state: _State, load: float) -> tuple[_State, list[Piece]]:
+    def _on(self, state: _State, load: float) -> tuple[_State, list[LimitPiece]]:
         """As far as it goes in one mode."""
         if state.mode == 0:
             return self._over(state, load)
@@ -98,7 +98,7 @@ class _System(NamedTuple):
         """Where in m the support takes up a force in N."""
         return float(_state_of(self.support, np.asarray(force)))
 
-    def _jumped(self, state: _State, friction: float) -> tuple[_State, Piece]:
+    def _jumped(self, state: _State, friction: float) -> tuple[_State, LimitPiece]:
         """To where friction holds the tip, under a load that stays."""
         load = state.load
         z = self.held(load - friction)
@@ -108,7 +108,7 @@ class _System(NamedTuple):
 
     def _slid(
         self, state: _State, load: float, friction: float, pull: float
-    ) -> tuple[_State, list[Piece]]:
+    ) -> tuple[_State, list[LimitPiece]]:
         """With the tip where friction holds it, after a rest."""
         begins = pull + friction
         late = state.mode * (begins - state.load) <= 0
@@ -129,7 +129,7 @@ class _System(NamedTuple):
         path = WayOver.of(held + self.turning)
         return state._replace(mode=0, load=load, ahead=ahead, way=way, path=path)
 
-    def _over(self, state: _State, load: float) -> tuple[_State, list[Piece]]:
+    def _over(self, state: _State, load: float) -> tuple[_State, list[LimitPiece]]:
         assert state.path is not None
         way = (1 if load > state.load else -1) if load != state.load else state.way
         found = state.path.follow(state.ahead, state.load, load, way)
@@ -146,8 +146,8 @@ class _System(NamedTuple):
         return end, pieces
 
 
-def _between(first: _State, last: _State) -> Piece:
-    return Piece(
+def _between(first: _State, last: _State) -> LimitPiece:
+    return LimitPiece(
         mode=first.mode,
         load=first.load,
         until=last.load,
@@ -160,11 +160,11 @@ def _between(first: _State, last: _State) -> Piece:
     )
 
 
-def _still(state: _State, load: float) -> Piece:
+def _still(state: _State, load: float) -> LimitPiece:
     return _between(state, state._replace(load=load))
 
 
-def _rests(state: _State, load: float) -> list[Piece]:
+def _rests(state: _State, load: float) -> list[LimitPiece]:
     return [_still(state, load)] if load != state.load else []
 
 

@@ -4,9 +4,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from ..contact import nap_loops
-from ..model import Scene
-from .style import GUIDE, colour, new_figure, styled
+from ...contact import nap_loops
+from ...model import Scene
+from ..style import GUIDE, colour, new_figure, styled
 
 _TITLES = {
     "geometric": "Geometric: the rod keeps its nap",

@@ -6,13 +6,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .._checks import require
-from ..contact import mechanics
-from ..effects import nap_flip_among
-from ..model import Scene
-from ..rods import bent_shape
-from ..turning import FlippingRod, flipping_rod
-from .style import GUIDE, LIMIT, STRIP, Picture, colour, styled
+from ..._checks import require
+from ...contact import mechanics
+from ...effects import nap_flip_among
+from ...model import Scene
+from ...rods import bent_shape
+from ...turning import FlippingRod, flipping_rod
+from ..style import GUIDE, LIMIT, STRIP, Picture, colour, styled
 
 _BENT = (0.5, 0.0, -0.5)  # where roots stand ahead of their tips, in reaches
 _PERIODS = 400  # of the surface that are drawn, at most: more would be a grey bar

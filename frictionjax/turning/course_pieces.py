@@ -12,7 +12,7 @@ from ..supports import AbstractSupport
 from .settings import SETTINGS
 from .way_over import WayOver
 
-Column = Float[np.ndarray, " n"]
+_Column = Float[np.ndarray, " n"]
 
 
 class HybridPlay(NamedTuple):
@@ -26,7 +26,7 @@ class HybridPlay(NamedTuple):
     dissipation: np.ndarray
 
 
-class Piece(NamedTuple):
+class LimitPiece(NamedTuple):
     """While the load goes from `load` to `until` (N), one way, in a mode.
 
     `z`, `last`: states in m at both ends, `lost` and `spent` the dissipation in J there. A
@@ -56,11 +56,11 @@ class Jumps(NamedTuple):
     """Jumps of a limit, (j,): `time` in s, states `z` before and `last` after in m, and the
     dissipation `lost` before and `spent` after in J."""
 
-    time: Column
-    z: Column
-    last: Column
-    lost: Column
-    spent: Column
+    time: _Column
+    z: _Column
+    last: _Column
+    lost: _Column
+    spent: _Column
 
 
 @Program
@@ -73,12 +73,12 @@ def _states_of(support: AbstractSupport, forces: Array) -> Array:
     return jax.vmap(support.state_of)(forces)
 
 
-def loads_at(load: AbstractPull, times: Column) -> Column:
+def loads_at(load: AbstractPull, times: _Column) -> _Column:
     """The load in N at times in s."""
     return in_chunks(_loads, SETTINGS.times, (load,), (np.asarray(times, float),))
 
 
-def states_of(support: AbstractSupport, forces: Column) -> Column:
+def states_of(support: AbstractSupport, forces: _Column) -> _Column:
     """Where in m a support takes up forces in N."""
     return in_chunks(_states_of, SETTINGS.times, (support,), (np.asarray(forces, float),))
 
@@ -90,18 +90,18 @@ class LimitCourse(NamedTuple):
     in N on the root that the rod withstands.
     """
 
-    edges: Column
-    stretches: list[list[Piece]]
+    edges: _Column
+    stretches: list[list[LimitPiece]]
     load: AbstractPull
     support: AbstractSupport
     reach: float
     rests: dict[int, tuple[float, float]]
 
-    def loads(self, ts: Column) -> Column:
+    def loads(self, ts: _Column) -> _Column:
         """The load in N at times in s."""
         return loads_at(self.load, ts)
 
-    def at(self, ts: Column) -> HybridPlay:
+    def at(self, ts: _Column) -> HybridPlay:
         """The limit at sorted times in s; on a jump, before it."""
         loads, last = self.loads(ts), len(self.stretches) - 1
         number = np.clip(np.searchsorted(self.edges, ts) - 1, 0, last)
@@ -126,7 +126,7 @@ class LimitCourse(NamedTuple):
                     tip[rows] = piece.z + self.reach - piece.ahead
         return HybridPlay(z, z + self.reach, tip, mode, spent)
 
-    def strip(self, ts: Column, mode: np.ndarray) -> tuple[Column, Column]:
+    def strip(self, ts: _Column, mode: np.ndarray) -> tuple[_Column, _Column]:
         """States in m that a rod in its mode withstands at times in s: NaN in between."""
         loads = self.loads(ts)
         ends = np.full((2, ts.size), np.nan)
@@ -154,7 +154,7 @@ class LimitCourse(NamedTuple):
                 before = piece
         return Jumps(*np.array(rows, float).reshape(-1, 5).T)
 
-    def changes(self) -> Column:
+    def changes(self) -> _Column:
         """Times in s at which one piece ends and another begins, edges among them."""
         inside = [
             self._time_of(number, piece.until)
@@ -163,7 +163,7 @@ class LimitCourse(NamedTuple):
         ]
         return np.unique([*self.edges, *inside])
 
-    def _states(self, piece: Piece, loads: Column) -> Column:
+    def _states(self, piece: LimitPiece, loads: _Column) -> _Column:
         if piece.friction is not None:
             return states_of(self.support, loads - piece.friction)
         if piece.over is None:
@@ -183,10 +183,10 @@ class LimitCourse(NamedTuple):
         return float(last)
 
 
-def _moving(pieces: list[Piece]) -> list[Piece]:
+def _moving(pieces: list[LimitPiece]) -> list[LimitPiece]:
     """Those on which time passes: the last one, a rest, where the load stays."""
     return [piece for piece in pieces if piece.load != piece.until] or pieces[-1:]
 
 
-def _way(pieces: list[Piece]) -> float:
+def _way(pieces: list[LimitPiece]) -> float:
     return 1.0 if pieces[-1].until >= pieces[0].load else -1.0
