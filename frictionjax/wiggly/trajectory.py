@@ -429,7 +429,8 @@ def solve(
     and residual are None, as `int eps^gamma z'^2` of a path with noise is infinite.
     With `effects.Inertia` the equation has `m_eps z''`, z0 is at rest, every slip is
     integrated at three tolerances, and there are no derivatives.
-    With `effects.NapFlip` every slip is integrated, and there are no derivatives.
+    With `effects.NapFlip` every slip is integrated, from mode to mode, and there are no
+    derivatives.
     Failure is a `status`, not an exception.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the

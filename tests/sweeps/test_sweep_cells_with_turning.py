@@ -151,5 +151,5 @@ def test_it_comes_back_from_a_file(jumping, tmp_path):
 
 
 def test_windows_are_refused():
-    with pytest.raises(ValueError, match="does not do NapFlip: needs solve, solve_limit"):
+    with pytest.raises(ValueError, match="does not do NapFlip: needs method="):
         fx.sweep(jumping_scene(), EPS, [1.0], method="windowed")
