@@ -37,5 +37,5 @@ def test_around_a_loop_the_work_is_what_is_lost(loops):
 
 
 def test_a_scene_without_the_effect_is_refused():
-    with pytest.raises(ValueError, match=r"scene\.effects = none of NapFlip"):
+    with pytest.raises(ValueError, match=r"scene\.effects = .none of NapFlip"):
         nap_loops(turning_scene().replace(effects=()))

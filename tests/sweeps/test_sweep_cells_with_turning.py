@@ -98,9 +98,10 @@ def test_where_it_jumps_suprema_stay_and_graphs_come_together(jumping):
     assert float(jumping.jump_loss) == pytest.approx(np.sum(jumping.attrs["jump_losses"]))
     sup, graph = jumping.sup_error.values[0], jumping.graph_error.values[0]
     assert np.all(sup > 0.5)
-    assert graph[0] > 1.5 * graph[1] > 2.2 * graph[2]
+    # It sets off slowly, as eps^(2/3) of a fold: to 1/4 at 1/16 of this eps.
+    assert graph[0] > 1.1 * graph[1] > 1.4 * graph[2]
     lost = jumping.dissipation_graph_error.values[0]
-    assert lost[0] > lost[1] > lost[2]
+    assert lost[0] > 1.4 * lost[1] > 2.2 * lost[2]
 
 
 def test_where_it_does_not_both_do(followed):

@@ -47,7 +47,7 @@ def draw_nap_loops(scene: Scene, ts: Any = None) -> Figure:
         for level, side, word in _LEVELS[name]:
             _level(axes, side * data.attrs[level], side, word)
         lost = float(one.dissipation[-1])
-        axes.set(title=f"{title}: {lost:.4g} J lost", xlabel="z (m)")
+        axes.set(title=f"{title}, {lost:.4g} J lost", xlabel="z (m)")
         axes.set_ylabel("friction force $\\ell - \\Phi'(z)$ (N)")
         axes.margins(y=0.12)
     low, high = zip(*(axes.get_ylim() for axes in grid[0]), strict=True)

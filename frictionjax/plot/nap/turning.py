@@ -48,12 +48,12 @@ def draw_turning(scene: Scene, solution: Any, eps: Any = None) -> Figure:
     assert effect is not None
     data, law = mechanics(scene, solution, eps), flipping_rod(scene, effect)
     instants = _instants(data, law)
-    figure = Picture(figsize=(10.8, 7.4), layout="constrained")
-    grid = figure.add_gridspec(3, len(instants), height_ratios=[1.5, 1.2, 1])
+    figure = Picture(figsize=(11.4, 7.2), layout="constrained")
+    grid = figure.add_gridspec(3, len(instants), height_ratios=[0.85, 1.2, 1])
     strip = [figure.add_subplot(grid[0, i]) for i in range(len(instants))]
     for index, (axes, instant) in enumerate(zip(strip, instants, strict=True)):
         _bristle(axes, scene, law, eps, instant)
-        axes.set_title(f"{_letter(index)}  {instant.name}", fontsize=9)
+        axes.set_title(f"{_letter(index)}  {instant.name}", fontsize=8.5)
     way = figure.add_subplot(grid[1, :])
     force = figure.add_subplot(grid[2, :], sharex=way)
     _way(way, data, instants)
@@ -83,9 +83,9 @@ def _instants(data: xr.Dataset, law: FlippingRod) -> list[_Instant]:
     if furthest > 0:
         middle = 0.5 * (root[0] + root[furthest])
         nearest = np.abs(root[: furthest + 1] - middle)
-        add(int(np.argmin(nearest)), "slides with the nap")
+        add(int(np.argmin(nearest)), "slides with nap")
     if last > furthest + 1:
-        add((furthest + last) // 2, "held, pulled against")
+        add((furthest + last) // 2, "held against it")
     add(last, "critical load")
     gone = way * (root[last:] - foot)
     for share in _BENT:
@@ -102,7 +102,7 @@ def _instants(data: xr.Dataset, law: FlippingRod) -> list[_Instant]:
         until = int(end[0]) if end.size else mode.size
         rows = np.arange(after[0], until)
         middle = 0.5 * (root[rows[0]] + way * np.max(way * root[rows]))
-        add(int(rows[np.argmin(np.abs(root[rows] - middle))]), "turned over, slides")
+        add(int(rows[np.argmin(np.abs(root[rows] - middle))]), "turned over")
     return found
 
 
@@ -113,7 +113,7 @@ def _bristle(
     profile: Any = scene.profile
     length, reach = float(law.bent.length), law.reach
     x, depth = instant.tip, 0.12 * length
-    ground = np.linspace(x - 1.35 * reach, x + 1.35 * reach, 2001)
+    ground = np.linspace(x - 1.2 * reach, x + 1.2 * reach, 2001)
     low = np.zeros_like(ground)
     foot = 0.0
     if eps is not None:
@@ -131,7 +131,8 @@ def _bristle(
     axes.plot(points[0], foot + points[1], color=colour(0), linewidth=2.2)
     axes.plot([0], [foot], "o", color=colour(1), markersize=4)
     axes.plot([instant.root - x], [float(law.bent.height)], "s", color=LIMIT, markersize=5)
-    axes.set(xlim=(-1.35 * reach, 1.35 * reach), ylim=(-depth, 1.25 * length))
+    top = float(law.bent.height) + depth
+    axes.set(xlim=(-1.2 * reach, 1.2 * reach), ylim=(-depth, top))
     axes.set_aspect("equal")
     axes.set_axis_off()
 

@@ -117,8 +117,7 @@ def integrate_turning(
         return _nothing(ts.size, Status.TOO_MANY_TURNS)
     end = ts[-1] if until is None else max(float(until), ts[-1])
     stops = np.unique(np.concatenate([[0.0], ts, [end], turns[turns < end]]))
-    number, inside = course.parts.potential(jnp.ones(())).tip(scene.z0, eps)
-    at = _At(0.0, 1, float(number + inside))
+    at = _At(0.0, 1, float(_start(course.parts, scene.z0, np.asarray(float(eps)))))
     rows = [_row(course, at)]
     sums = np.zeros(3)  # lost, viscous, residual
     lost = [sums]
@@ -286,6 +285,13 @@ def _stance(parts: SceneParts, side: Any, place: Any, eps: Any) -> tuple[Any, An
     potential = parts.potential(side)
     state = eps * place + potential.offset(place, eps)
     return parts.held(side).place(state), eps * potential.profile(place)
+
+
+@Program
+def _start(parts: SceneParts, z0: Any, eps: Any) -> Any:
+    """Where the tip of the rod as it stands at first is, in periods."""
+    number, inside = parts.potential(jnp.ones_like(eps)).tip(z0, eps)
+    return number + inside
 
 
 def _row(course: _Course, at: _At) -> tuple[float, float, int]:

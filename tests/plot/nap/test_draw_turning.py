@@ -28,11 +28,11 @@ def picture(scene, **kwargs):
 def test_every_phase_is_drawn_in_its_order(scene):
     *strip, way, force = picture(scene)
     assert titles(strip) == [
-        "slides with the nap",
-        "held, pulled against",
+        "slides with nap",
+        "held against it",
         "critical load",
         *3 * ["bent over its tip"],
-        "turned over, slides",
+        "turned over",
     ]
     marks = [t for t in way.texts if t.get_text() in LETTERS]
     assert [m.get_text() for m in marks] == list(LETTERS)
@@ -53,7 +53,7 @@ def test_rods_are_as_long_as_they_are_and_bent_over_one_tip():
         assert np.sum(np.hypot(*np.diff(points))) == pytest.approx(2**0.5, rel=1e-3)
         np.testing.assert_allclose(points[:, 0], 0, atol=1e-12)
         assert points[1, -1] == pytest.approx(1.0)
-        assert np.min(points[1]) >= 0
+        assert np.min(points[1]) >= -1e-12
     ends = [points[0, -1] / REACH for points in rods]
     np.testing.assert_allclose(ends, [1, 1, 1, 0.5, 0, -0.5, -1], atol=1e-9)
     # The root goes to the left, and there the rod is bent.
@@ -89,7 +89,7 @@ def test_what_does_not_turn_is_refused():
     with pytest.raises(ValueError, match="one in which the rod turns over"):
         picture(turning_scene(amplitude=0.1))
     plain = turning_scene().replace(effects=())
-    with pytest.raises(ValueError, match=r"scene\.effects = none of NapFlip"):
+    with pytest.raises(ValueError, match=r"scene\.effects = .none of NapFlip"):
         fx.plot.draw_turning(plain, fx.solve_limit(plain))
 
 
