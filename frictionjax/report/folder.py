@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _TIMES = 2001  # a picture follows a rod that turns over
+_SLIPS = 50  # while a rod slides as far as it reaches
 
 
 def study_figures(
@@ -39,7 +40,7 @@ def study_figures(
         if "dissipation" in data:
             yield "dissipation", plot.draw_dissipation(data)
         if turning is not None:
-            yield from _turning_figures(data, scene)
+            yield from _turning_figures(data, scene, turning)
 
 
 def _both_ways(scene: Scene, effect: NapFlip) -> Coefficients:
@@ -50,12 +51,17 @@ def _both_ways(scene: Scene, effect: NapFlip) -> Coefficients:
     )
 
 
-def _turning_figures(data: "xr.Dataset", scene: Scene) -> "Iterator[tuple[str, Figure]]":
-    """How the rod turns over at the largest eps, and both effects of its nap."""
+def _turning_figures(
+    data: "xr.Dataset", scene: Scene, effect: NapFlip
+) -> "Iterator[tuple[str, Figure]]":
+    """How the rod turns over at one eps, and both effects of its nap."""
     good = data.isel(gamma=0)
-    eps = float(np.max(good.eps.values[good.status.values == 0], initial=0.0))
+    known = good.eps.values[good.status.values == 0]
     ts = np.linspace(0.0, float(scene.duration), _TIMES)
-    if eps > 0 and bool((data["mode"] != 1).any()):
+    if known.size and bool((data["mode"] != 1).any()):
+        # Slips that can be seen, and little drag.
+        seen = flipping_rod(scene, effect).reach / _SLIPS
+        eps = float(known[np.argmin(np.abs(np.log(known / seen)))])
         gamma, accuracy = float(good.gamma), float(data.attrs["accuracy"])
         found = solve(scene, eps, gamma, ts, accuracy)
         if np.any(np.asarray(found.mode) != 1):

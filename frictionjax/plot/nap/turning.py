@@ -48,8 +48,8 @@ def draw_turning(scene: Scene, solution: Any, eps: Any = None) -> Figure:
     assert effect is not None
     data, law = mechanics(scene, solution, eps), flipping_rod(scene, effect)
     instants = _instants(data, law)
-    figure = Picture(figsize=(11.4, 7.2), layout="constrained")
-    grid = figure.add_gridspec(3, len(instants), height_ratios=[0.85, 1.2, 1])
+    figure = Picture(figsize=(11.4, 7), layout="constrained")
+    grid = figure.add_gridspec(3, len(instants), height_ratios=[0.7, 1.2, 1])
     strip = [figure.add_subplot(grid[0, i]) for i in range(len(instants))]
     for index, (axes, instant) in enumerate(zip(strip, instants, strict=True)):
         _bristle(axes, scene, law, eps, instant)
@@ -192,5 +192,13 @@ def _shade(axes: Any, data: xr.Dataset) -> None:
     where = axes.get_xaxis_transform()
     label = "in between" if between.any() else None
     axes.fill_between(
-        data.time, 0, 1, between, transform=where, color=STRIP, linewidth=0, label=label
+        data.time,
+        0,
+        1,
+        between,
+        transform=where,
+        color=STRIP,
+        linewidth=0,
+        label=label,
+        zorder=0,
     )
