@@ -206,10 +206,17 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
 @_scene
 @_surface
 @click.option(
-    "--bending-stiffness", type=_POSITIVE, help="Of a rod on an angular spring, in N m^2."
+    "--bending-stiffness",
+    type=_POSITIVE,
+    help="Of a rod on an angular spring, in N m^2. [the scene's, of its NapFlip]",
 )
 @click.option("--json", "as_json", is_flag=True, help="Numbers as JSON.")
-@click.option("--out", metavar="DIR", help="Also nap.png there, over angles of the rod.")
+@click.option(
+    "--out",
+    metavar="DIR",
+    help="Also nap.png there, over angles of the rod; of one that turns over also "
+    "turning.png and nap_loops.png.",
+)
 def nap(
     scene: str | None,
     bending_stiffness: float | None,
@@ -219,12 +226,12 @@ def nap(
 ) -> None:
     """Friction with and against the nap, and whether the bristle turns over."""
     _start()
-    from .report import nap_document, nap_figure, nap_text, read_job, require_folder
+    from .report import nap_document, nap_figures, nap_text, read_job, require_folder
 
     folder = None if out is None else require_folder(out)
     job = read_job(scene, **surface)
     if folder is not None:
-        _write(folder, lambda place: nap_figure(job, bending_stiffness, place))
+        _write(folder, lambda place: nap_figures(job, bending_stiffness, place))
     if not as_json:
         click.echo(nap_text(job, bending_stiffness))
         return

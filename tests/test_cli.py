@@ -134,6 +134,15 @@ def test_nap(tmp_path):
     assert refused.exit_code == 2
 
 
+def test_nap_of_a_rod_that_turns_over(tmp_path):
+    run("scenes", "nap-flip", "--out", tmp_path / "mine.toml")
+    told = run("nap", tmp_path / "mine.toml", "--out", tmp_path).stdout
+    assert "turns over, and friction is rho_with and rho_flipped" in told
+    for name in ("nap.png", "turning.png", "nap_loops.png"):
+        assert name in told
+        assert (tmp_path / name).stat().st_size > 10_000
+
+
 def test_scenes(tmp_path):
     assert "nap-flip " in run("scenes").stdout
     text = run("scenes", "noise").stdout

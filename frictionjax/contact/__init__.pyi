@@ -1,6 +1,7 @@
 from .axial import AxialReading as AxialReading
 from .axial import axial_reading as axial_reading
 from .axial import largest_compression as largest_compression
+from .both_effects import nap_loops as nap_loops
 from .forces import TipForces as TipForces
 from .forces import limit_forces as limit_forces
 from .forces import tip_forces as tip_forces

@@ -56,6 +56,12 @@ class Nap(NamedTuple):
         """Friction of the rod turned over, moved likewise: the paper's rho_against."""
         return np.nan if self.flipped is None else self.flipped.rho_with
 
+    @property
+    def turns_over(self) -> bool:
+        """Whether it turns over against its nap and only then, by its critical load."""
+        loads, own = self.window, self.critical_load
+        return bool(loads and own and loads.least < own < loads.greatest)
+
     def __repr__(self) -> str:
         rows = [
             ("with the nap", self.rho_with, self.axial_with),

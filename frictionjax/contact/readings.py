@@ -14,7 +14,7 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program
-from ..effects import Engine, inertia_among
+from ..effects import Engine, NapFlip, inertia_among, nap_flip_among
 from ..limit import LimitSolution
 from ..loads import Pulled
 from ..model import (
@@ -27,10 +27,12 @@ from ..model import (
     scene_for,
 )
 from ..supports import Spring
+from ..turning import flipping_rod
 from ..wiggly import Solution
 from .axial import axial_reading
 from .forces import TipForces, limit_forces, tip_forces
 from .support_spring import SupportRows, support_rows
+from .turned_readings import jumps_of, turning_bounds, turning_forces
 
 _UNITS = {
     "z": ("m", "state z = u + c"),
@@ -38,7 +40,8 @@ _UNITS = {
     "q": ("m", "far end of the horizontal spring"),
     "p": ("m", "tip of the bristle"),
     "theta": ("rad", "angle of the bristle from the vertical, > 0 where p < u"),
-    "length": ("m", "length of the bristle"),
+    "mode": ("1", "1: the rod as it stands at first; -1: turned over; 0: in between"),
+    "length": ("m", "length of the bristle; of a bent one, of its chord"),
     "normal_force": ("N", "force of the surface on the bristle, upwards"),
     "tangential_force": ("N", "force of the surface on the bristle, along x"),
     "tangential_low": ("N", "least tangential force that friction allows there"),
@@ -95,6 +98,11 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
     With `effects.AxialLoad` also `compression` (N), `buckling_share`, it over the critical
     load, and the attributes `critical_load` (N) and `buckling`, in words.
 
+    With `effects.NapFlip` also `mode`, `compression` and `buckling_share`. While the rod is
+    in between it is an elastica over its pinned tip: theta, length and what is along it are
+    those of its chord. A limit solution tells over `jump` when it jumps and what that loses
+    (`jump_time`, `jump_from`, `jump_to`, `jump_loss`), which is in `dissipation` too.
+
     Raises `ValueError` for a batch of solutions, an eps that does not fit, or an effect
     whose forces are not those of one bristle.
     """
@@ -107,6 +115,11 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
     require(known, "solution", kind, "one solution with known numbers, as of no batch")
     eps = _eps_of(scene, eps, in_limit)
     support = support_rows(scene, solution.ts, solution.z)
+    turning = nap_flip_among(scene.effects)
+    if turning is not None:
+        columns, system = _with_turning(scene, turning, solution, support, eps)
+        jumps = jumps_of(scene, turning) if in_limit else {}
+        return _data_set(scene, solution, columns, system).assign(jumps)
     if in_limit:
         forces = _limit_rows(scene.potential, solution.z, support.force)
         columns = _columns(scene, solution, forces, support) | _bounds(scene, support)
@@ -114,12 +127,38 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
         forces = _wiggly_rows(scene.potential, solution.z, eps)
         columns = _columns(scene, solution, forces, support)
         columns |= _kinetic(scene, solution, eps)
-    system = {"system": "limit"} if in_limit else {"system": "wiggly", "eps": float(eps)}
+    system = _system(eps)
     reading = axial_reading(scene, -np.asarray(columns["axial_force"], float))
     if reading is not None:
         columns |= {"compression": reading.compression, "buckling_share": reading.share}
         system |= {"critical_load": reading.critical, "buckling": reading.verdict}
     return _data_set(scene, solution, columns, system)
+
+
+def _system(eps: Any) -> dict[str, Any]:
+    return {"system": "limit"} if eps is None else {"system": "wiggly", "eps": float(eps)}
+
+
+def _with_turning(
+    scene: Scene, effect: NapFlip, solution: Any, support: SupportRows, eps: Any
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Numbers by name, and what is said of all, of a rod that turns over."""
+    needs = "that of this scene, with effects.NapFlip"
+    require(solution.tip is not None, "solution", "one without root, tip and mode", needs)
+    forces = turning_forces(scene, effect, solution, support.force, eps)
+    columns = _columns(scene, solution, forces, support)
+    if eps is None:
+        ends = turning_bounds(scene, effect, support.force, np.asarray(solution.mode))
+        columns |= {"tangential_low": ends[0], "tangential_high": ends[1]}
+    critical = flipping_rod(scene, effect).critical
+    compression = -np.asarray(forces.axial)
+    columns |= {
+        "mode": solution.mode,
+        "compression": compression,
+        "buckling_share": compression / critical,
+    }
+    said = "turns over where the share comes to 1 while the root moves against the nap"
+    return columns, _system(eps) | {"critical_load": critical, "buckling": said}
 
 
 def _eps_of(scene: Scene, eps: Any, in_limit: bool) -> Any:

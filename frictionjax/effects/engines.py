@@ -36,7 +36,7 @@ _E = Engine
 _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset({_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP}),
     "Noise": frozenset({_E.RESOLVED, _E.ENSEMBLE, _E.FRICTION_CURVE}),
-    "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED}),
+    "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
     "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
 }
 """Of effects that change what moves: the engines that do them."""
@@ -69,9 +69,15 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
 }
 """What to do where an engine does not do an effect, after "needs"."""
 
-_TURNS = "solve and solve_limit, of the scene; nap, of its bristle"
+_STANDS = "a scene without it, of a rod that keeps its nap"
 _INSTEAD |= {
-    ("NapFlip", engine): _TURNS for engine in Engine if engine not in _DOES["NapFlip"]
+    ("NapFlip", _E.WINDOWED): 'method="auto": where a rod turns over no window holds',
+    ("NapFlip", _E.PATH): 'method="auto", and scenes of known numbers',
+    ("NapFlip", _E.CERTIFICATE): "residual of solve, of the balance of energies",
+    ("NapFlip", _E.COST): "stats of solve, which tell steps",
+    ("NapFlip", _E.TRACE): _STANDS,
+    ("NapFlip", _E.ENSEMBLE): _STANDS,
+    ("NapFlip", _E.FRICTION_CURVE): "nap, of its bristle, and sweep of a slow load",
 }
 
 _ONE_ROD = "one rod, whose geometry the other leaves out: scenes apart"

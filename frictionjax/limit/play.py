@@ -50,8 +50,8 @@ class LimitSolution(CodedResult, eqx.Module):
 
     `dissipation` is cumulative, `int_0^ts R(z')`. `ok`, `status`: not finite only where
     the scene was traced, so that nothing could be checked. Of a scene with
-    `effects.NapFlip` also `root` u in m and `mode`: 1 as the rod stands at first, -1 turned
-    over, 0 in between; None of others.
+    `effects.NapFlip` also `root` u and `tip` p in m and `mode`: 1 as the rod stands at
+    first, -1 turned over, 0 in between; None of others.
     """
 
     ts: Float[Array, " n"]
@@ -59,6 +59,7 @@ class LimitSolution(CodedResult, eqx.Module):
     dissipation: Float[Array, " n"]
     root: Float[Array, " n"] | None = None
     mode: Int[Array, " n"] | None = None
+    tip: Float[Array, " n"] | None = None
     _outcomes = LimitStatus
 
     @property
@@ -164,7 +165,7 @@ def _with_turning(scene: Scene, effect: NapFlip, ts: Float[Array, " n"]) -> Limi
     known = is_concrete(scene, ts)
     require(known, "scene", "traced numbers", "known ones, as it has effects.NapFlip")
     found = hybrid_play(scene, effect, np.asarray(ts))
-    columns = found.z, found.dissipation, found.root, found.mode
+    columns = found.z, found.dissipation, found.root, found.mode, found.tip
     return LimitSolution(ts, *map(jnp.asarray, columns))
 
 

@@ -1,3 +1,4 @@
+from .completed_graphs import graph_distance as graph_distance
 from .extrema import Extrema as Extrema
 from .extrema import periodic_extrema as periodic_extrema
 from .extrema import slope_of as slope_of

@@ -33,5 +33,8 @@ class Settings(NamedTuple):
     # Differences and their integrals (`taylor.py`).
     cancelled: float = 8 * float(np.finfo(np.float64).eps)  # rounding of a difference
 
+    # Distances of graphs (`completed_graphs.py`).
+    halvings: int = 30  # of the largest difference: 1e-9 of it is left
+
 
 SETTINGS = Settings()

@@ -4,7 +4,9 @@ from .design import draw_profile_fit as draw_profile_fit
 from .design_maps import draw_design_map as draw_design_map
 from .dissipation import draw_dissipation as draw_dissipation
 from .loop import draw_loop as draw_loop
-from .own_nap import draw_own_nap as draw_own_nap
+from .nap import draw_nap_loops as draw_nap_loops
+from .nap import draw_own_nap as draw_own_nap
+from .nap import draw_turning as draw_turning
 from .paper import draw_mu_angular as draw_mu_angular
 from .paper import draw_mu_slanted as draw_mu_slanted
 from .paper import draw_nap as draw_nap

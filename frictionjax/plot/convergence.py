@@ -26,6 +26,21 @@ _PANELS = (
         "State: distance from the strip",
     ),
 )
+_GRAPHS = (
+    _PANELS[0],
+    (
+        "graph_",
+        "graph_error",
+        "distance of graphs (m)",
+        "State: distance of graphs, jumps filled",
+    ),
+    (
+        "dissipation_graph_",
+        "dissipation_graph_error",
+        "distance of graphs (J)",
+        "Dissipated energy: distance of graphs",
+    ),
+)
 
 _NUMBERS = (
     *("order", "order_low", "order_high", "order_seen"),
@@ -50,10 +65,11 @@ def draw_convergence(
     drawn as a power, and no law. Filled points are in the window that the fitted
     line rests on, hollow ones are outside; a cross on the axis is a failed cell. Dotted
     guides have the slope `eps^beta` of the lemmas. A second panel shows the dissipation,
-    where the data set has it.
+    where the data set has it; of a rod that turns over others show distances of graphs.
     """
     dataset = whole_grid(dataset)
-    panels = [panel for panel in _PANELS if panel[1] in dataset]
+    chosen = _GRAPHS if "graph_error" in dataset else _PANELS
+    panels = [panel for panel in chosen if panel[1] in dataset]
     figure, grid = new_figure(1, len(panels), 5.4 * len(panels), 5.2)
     for axes, (prefix, name, label, title) in zip(grid[0], panels, strict=True):
         for index, gamma in enumerate(dataset.gamma.values):

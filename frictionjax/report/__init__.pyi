@@ -8,7 +8,7 @@ from .folder import write_figures as write_figures
 from .friction import friction_document as friction_document
 from .friction import friction_text as friction_text
 from .friction import nap_document as nap_document
-from .friction import nap_figure as nap_figure
+from .friction import nap_figures as nap_figures
 from .friction import nap_text as nap_text
 from .job import number_list as number_list
 from .job import read_job as read_job

@@ -4,14 +4,23 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import jax.numpy as jnp
+import numpy as np
+
 from .. import plot
 from .._checks import naming, write_whole
+from ..effects import NapFlip, nap_flip_among
 from ..model import Coefficients, Scene
 from ..studies import Study
+from ..turning import flipping_rod
+from ..wiggly import solve
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
+
+_TIMES = 2001  # a picture follows a rod that turns over
+_SLIPS = 50  # while a rod slides as far as it reaches
 
 
 def study_figures(
@@ -25,9 +34,39 @@ def study_figures(
     yield "convergence", plot.draw_convergence(data, found.orders, found.curves)
     if bool((data.status == 0).any()):
         yield "trajectories", plot.draw_trajectories(data)
-        yield "loop", plot.draw_loop(data, scene.support, law)
+        turning = nap_flip_among(scene.effects)
+        loop_law = law if turning is None else _both_ways(scene, turning)
+        yield "loop", plot.draw_loop(data, scene.support, loop_law)
         if "dissipation" in data:
             yield "dissipation", plot.draw_dissipation(data)
+        if turning is not None:
+            yield from _turning_figures(data, scene, turning)
+
+
+def _both_ways(scene: Scene, effect: NapFlip) -> Coefficients:
+    """Friction of a rod that turns over: with its nap both ways."""
+    found = flipping_rod(scene, effect)
+    return Coefficients(
+        jnp.asarray(found.standing.rho_with), jnp.asarray(-found.turned.rho_with)
+    )
+
+
+def _turning_figures(
+    data: "xr.Dataset", scene: Scene, effect: NapFlip
+) -> "Iterator[tuple[str, Figure]]":
+    """How the rod turns over at one eps, and both effects of its nap."""
+    good = data.isel(gamma=0)
+    known = good.eps.values[good.status.values == 0]
+    ts = np.linspace(0.0, float(scene.duration), _TIMES)
+    if known.size and bool((data["mode"] != 1).any()):
+        # Slips that can be seen, and little drag.
+        seen = flipping_rod(scene, effect).reach / _SLIPS
+        eps = float(known[np.argmin(np.abs(np.log(known / seen)))])
+        gamma, accuracy = float(good.gamma), float(data.attrs["accuracy"])
+        found = solve(scene, eps, gamma, ts, accuracy)
+        if np.any(np.asarray(found.mode) != 1):
+            yield "turning", plot.draw_turning(scene, found, eps)
+    yield "nap_loops", plot.draw_nap_loops(scene, ts)
 
 
 def paper_figures() -> "Iterator[tuple[str, Figure]]":

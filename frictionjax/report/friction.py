@@ -4,10 +4,16 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..contact import Nap, nap
+from ..effects import NapFlip, nap_flip_among
+from ..limit import solve_limit
 from ..model import friction
 from .job import Job, joined
 from .tables import coefficient_table, coefficients_by_name, errors_by_name, row_table
+
+_TIMES = 2001  # pictures follow a rod that turns over
 
 
 def friction_text(job: Job) -> str:
@@ -64,13 +70,40 @@ def nap_document(job: Job, bending_stiffness: float | None) -> dict[str, Any]:
     return {**forces, "window": window, "message": found.message}
 
 
-def nap_figure(job: Job, bending_stiffness: float | None, folder: Path) -> str:
-    """Its picture, of a rod on an angular spring, into a folder."""
+def nap_figures(job: Job, bending_stiffness: float | None, folder: Path) -> str:
+    """Pictures of a rod on an angular spring into a folder; their names, a line each.
+
+    Of one that turns over under the load of the scene also how it does, and the loops of
+    both effects, all in the limit.
+    """
     from .. import plot
     from .folder import write_figures
 
-    picture = plot.draw_own_nap(job.scene.profile, job.scene.bristle, bending_stiffness)
-    return write_figures(folder, iter([("nap", picture)]))[0].name
+    stiffness = _stiffness(job, bending_stiffness)
+    own = plot.draw_own_nap(job.scene.profile, job.scene.bristle, stiffness)
+    pictures = [("nap", own)]
+    notes = []
+    found = _nap_of(job, stiffness)
+    if stiffness is not None and found.turns_over:
+        effect = NapFlip(np.asarray(stiffness))  # type: ignore[arg-type]
+        scene = job.scene.replace(effects=(effect,))
+        ts = np.linspace(0.0, float(scene.duration), _TIMES)
+        limit = solve_limit(scene, ts)
+        if np.any(np.asarray(limit.mode) != 1):
+            pictures.append(("turning", plot.draw_turning(scene, limit)))
+            pictures.append(("nap_loops", plot.draw_nap_loops(scene, ts)))
+        else:
+            notes.append("under the load of the scene the rod does not turn over")
+    names = [path.name for path in write_figures(folder, iter(pictures))]
+    return "\n".join(names + notes)
+
+
+def _stiffness(job: Job, asked: float | None) -> float | None:
+    """The bending stiffness asked for, else that of the scene, where it has one."""
+    effect = nap_flip_among(job.scene.effects)
+    if asked is not None or effect is None:
+        return asked
+    return float(effect.bending_stiffness)
 
 
 def _nap_of(job: Job, bending_stiffness: float | None) -> Nap:
@@ -78,7 +111,7 @@ def _nap_of(job: Job, bending_stiffness: float | None) -> Nap:
     profile, bristle = job.scene.profile, job.scene.bristle
     assert profile is not None
     assert bristle is not None
-    return nap(profile, bristle, bending_stiffness)
+    return nap(profile, bristle, _stiffness(job, bending_stiffness))
 
 
 def _finite(number: float | None) -> float | None:

@@ -52,6 +52,8 @@ def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
         ]
     if "inertia" in found.orders.attrs:
         sections.append(("Inertia", found.orders.attrs["inertia"]))
+    if "turning" in found.orders.attrs:
+        sections.append(("Turning over", found.orders.attrs["turning"]))
     sections.append(("Failed cells", failed_table(found.failed)))
     text = joined(sections)
     toml = scene_document(scene, job.study)

@@ -176,9 +176,16 @@ def _with_meanings(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return table(padded[0], padded[1:], left=1)
 
 
+_GRAPHS = (
+    ("graph_error", "graph error/m"),
+    ("dissipation_graph_error", "graph error/J"),
+)
+
+
 def sweep_table(dataset: "xr.Dataset") -> str:
     """One line a cell: errors, residual, steps, status."""
     names = flag_names(dataset.status)
+    graphs = [column for column in _GRAPHS if column[0] in dataset]
     rows = []
     for gamma in dataset.gamma.values:
         for eps in dataset.eps.values:
@@ -190,6 +197,7 @@ def sweep_table(dataset: "xr.Dataset") -> str:
                     f"{eps:.4g}",
                     formatted(error),
                     formatted(error / eps),
+                    *(formatted(float(cell[name])) for name, _ in graphs),
                     formatted(_value(cell, "dissipation_error")),
                     formatted(_value(cell, "residual")),
                     f"{int(cell.steps)}",
@@ -201,6 +209,7 @@ def sweep_table(dataset: "xr.Dataset") -> str:
         "eps/m",
         "sup error/m",
         "in eps",
+        *(title for _, title in graphs),
         "dissipation error/J",
         "residual/J",
         "steps",
@@ -209,7 +218,13 @@ def sweep_table(dataset: "xr.Dataset") -> str:
     return table(header, rows)
 
 
-_ERRORS = (("", "state"), ("dissipation_", "dissipation"), ("strip_", "from the strip"))
+_ERRORS = (
+    ("", "state"),
+    ("dissipation_", "dissipation"),
+    ("strip_", "from the strip"),
+    ("graph_", "graph of the state"),
+    ("dissipation_graph_", "graph of the dissipation"),
+)
 
 
 def order_table(orders: "xr.Dataset") -> str:

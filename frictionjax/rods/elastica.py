@@ -37,7 +37,7 @@ def bent_between_hinges(
     short = 1 - chord / length
     inside = (short >= _BEYOND) & (short <= 1 - _LEAST)
     held = jnp.where(inside, short, 0.5)
-    found = complete_elliptic(_parameter(held))
+    found = complete_elliptic(parameter_of(held))
     critical = hinged_load(bending_stiffness, length)
     share = (2 * found.K / jnp.pi) ** 2
     energy = 2 * critical * length * share * found.bend
@@ -46,7 +46,7 @@ def bent_between_hinges(
     )
 
 
-def _parameter(short: Real) -> Real:
+def parameter_of(short: Real) -> Real:
     """m of a rod whose ends have come closer by so many lengths: `2 (K - E)/K = short`."""
     short = jnp.asarray(short, dtype=float)
 

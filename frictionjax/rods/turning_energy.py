@@ -33,9 +33,8 @@ class TurningRod(NamedTuple):
         bending of the elastica between hinges. At both ends the rod is straight, and this
         is the energy of the straight one, of the rest angle and of the other sign.
         """
-        turn = 0.5 * self.stiffness * (self._angle(ahead) - self.rest_angle) ** 2
-        chord = jnp.hypot(self.height, ahead)
-        return turn + self._bent(chord).energy
+        turn = 0.5 * self.stiffness * (self.angle(ahead) - self.rest_angle) ** 2
+        return turn + self._bent(ahead).energy
 
     def force(self, ahead: Real) -> Real:
         """Derivative of `energy` in N: what pulls the root back towards the tip.
@@ -43,12 +42,36 @@ class TurningRod(NamedTuple):
         `-P sin(theta) + k (theta - theta_rest) cos(theta)^2/height`: at the ends what the
         straight rod exerts where its compression is the critical load.
         """
-        chord = jnp.hypot(self.height, ahead)
-        twist = self.stiffness * (self._angle(ahead) - self.rest_angle)
-        return (twist * self.height / chord - self._bent(chord).thrust * ahead) / chord
+        chord = self.chord(ahead)
+        return (
+            self._twist(ahead) * self.height / chord - self.thrust(ahead) * ahead
+        ) / chord
 
-    def _bent(self, chord: Real) -> Elastica:
-        return bent_between_hinges(self.bending_stiffness, self.length, chord)
+    def weight(self, ahead: Real) -> Real:
+        """What the tip presses on the surface with in N: derivative of -energy by height.
 
-    def _angle(self, ahead: Real) -> Real:
+        `P cos(theta) + k (theta - theta_rest) sin(theta)/chord`.
+        """
+        chord = self.chord(ahead)
+        return (
+            self._twist(ahead) * ahead / chord + self.thrust(ahead) * self.height
+        ) / chord
+
+    def thrust(self, ahead: Real) -> Real:
+        """Compression P along the chord in N."""
+        return self._bent(ahead).thrust
+
+    def chord(self, ahead: Real) -> Real:
+        """From the tip to the root, in m."""
+        return jnp.hypot(self.height, ahead)
+
+    def angle(self, ahead: Real) -> Real:
+        """theta of the chord from the vertical in rad, > 0 with the root ahead."""
         return jnp.arctan2(ahead, self.height)
+
+    def _twist(self, ahead: Real) -> Real:
+        return self.stiffness * (self.angle(ahead) - self.rest_angle)
+
+    def _bent(self, ahead: Real) -> Elastica:
+        chord = self.chord(ahead)
+        return bent_between_hinges(self.bending_stiffness, self.length, chord)

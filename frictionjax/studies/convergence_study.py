@@ -84,6 +84,11 @@ def study(dataset: xr.Dataset) -> Study:
     not positive the system is not overdamped for eps -> 0: `overdamped` is 0 there, the
     attribute `inertia` says it in words, and errors need not vanish.
 
+    Of a scene with `effects.NapFlip` there are no laws either. Where its limit jumps, sup
+    errors do not vanish, but the distances of graphs do: columns with `graph_` and
+    `dissipation_graph_` in front are of these, and the attribute `turning` says it in
+    words. There is no strip, and so nothing of it.
+
     Cells that failed are left out, and a warning (`FailedCells`) names them. Each of
     several scenes is studied alone; `.spread` tells how they differ.
 
@@ -133,7 +138,7 @@ def _study_of_one(dataset: xr.Dataset) -> Study:
     columns: dict[str, np.ndarray] = {}
     curves: dict[str, np.ndarray] = {}
     for error in _ERRORS:
-        if error.name in dataset:
+        if error.name in dataset and "missing" not in dataset[error.name].attrs:
             fits = _fits(dataset, error, laws.get(error.name))
             columns |= _columns(error.prefix, fits, laws.get(error.name))
             curves[f"{error.name}_fitted"] = np.array([fit.fitted for fit in fits])
@@ -151,6 +156,8 @@ def _study_of_one(dataset: xr.Dataset) -> Study:
     )
     if "inertia_order" in orders:
         orders.attrs["inertia"] = _inertia_message(orders)
+    if "graph_error" in dataset:  # a scene with a rod that turns over
+        orders.attrs["turning"] = _turning_message(dataset)
     along = xr.Dataset(
         {name: (("gamma", "eps"), values) for name, values in curves.items()},
         coords={"gamma": gammas, "eps": dataset.eps.values},
@@ -170,6 +177,8 @@ _ERRORS = (
     _Error("sup_error", "", STATE),
     _Error("dissipation_error", "dissipation_", ENERGY),
     _Error("strip_excess", "strip_", STATE),
+    _Error("graph_error", "graph_", STATE),
+    _Error("dissipation_graph_error", "dissipation_graph_", ENERGY),
 )
 _FIELDS = {"low": "order_low", "high": "order_high", "seen": "order_seen"}
 
@@ -240,6 +249,18 @@ def _inertia_message(orders: xr.Dataset) -> str:
     return (
         f"gamma = {named}: the mass does not fall faster than eps^(1 + 2 gamma), so tips "
         "are not overdamped for eps -> 0; the limit need not be the play operator"
+    )
+
+
+def _turning_message(dataset: xr.Dataset) -> str:
+    """Of a scene whose rod turns over: which of its errors vanish."""
+    jumps, lost = int(dataset.jumps), float(dataset.jump_loss)
+    if jumps == 0:
+        return "the limit does not jump: sup errors vanish, and so do those of graphs"
+    times = "once" if jumps == 1 else f"{jumps} times"
+    return (
+        f"the limit jumps {times} and loses {lost:.6g} J in doing so: the wiggly system "
+        "gets over later, so sup errors do not vanish; orders are those of the graphs"
     )
 
 

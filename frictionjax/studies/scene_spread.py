@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
-_PREFIXES = ("", "dissipation_", "strip_")
+_PREFIXES = ("", "dissipation_", "strip_", "graph_", "dissipation_graph_")
 _NUMBERS = ("order", "order_seen", "order_predicted", "constant", "constant_predicted")
 _LEMMAS = ("C0", "C")
 

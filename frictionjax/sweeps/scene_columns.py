@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from .._checks import cells_of, viscosity_of
 from ..contact import largest_compression
-from ..effects import Inertia, inertia_among
+from ..effects import Inertia, NapFlip, inertia_among, nap_flip_among
 from ..limit import LimitSolution, solve_limit
 from ..model import Scene, coefficients_jit, strips_at, tabulated_scene
 from ..slide_laws import slide_data
@@ -41,12 +41,14 @@ class SceneColumns(NamedTuple):
     """Columns of one scene with their dims, what the laws need, and who has integrated.
 
     `compiled_for`: parts of it that lanes needed programs of their own for, in words.
+    `missing`: why variables are NaN, by name.
     """
 
     columns: Columns
-    laws: dict[str, np.ndarray]
+    laws: dict[str, Any]
     method: str
     compiled_for: str
+    missing: dict[str, str]
 
 
 def scene_columns(
@@ -55,12 +57,14 @@ def scene_columns(
     """Solve all cells of a scene; `report` is told each share that is done."""
     limit = solve_limit(scene, request.ts)
     values, method, own = None, request.method, ""
-    inertia = inertia_among(scene.effects)
+    inertia, turning = inertia_among(scene.effects), nap_flip_among(scene.effects)
     if request.solver is None:
-        if inertia is None:
-            values = _by_lanes(scene, request, report)
-        else:
+        if turning is not None:
+            values = _with_turning(scene, turning, request, report)
+        elif inertia is not None:
             values = _with_mass(scene, inertia, request, report)
+        else:
+            values = _by_lanes(scene, request, report)
         own = tabulated_scene(scene, request.eps).untabulated
     if values is None:
         values, method = _by_diffrax(scene, request, report)
@@ -72,17 +76,23 @@ def scene_columns(
         for name, value in values.items()
     }
     columns["viscosity"] = (DIMS[:2], viscosity_of(request.eps, request.gamma[:, None]))
-    columns |= {name: (DIMS[2:], v) for name, v in _limit_values(scene, limit).items()}
+    known = _limit_values(scene, turning, limit)
+    columns |= {name: (DIMS[2:][: v.ndim], v) for name, v in known.items()}
     reading = largest_compression(scene, request.eps, columns["z"][1])
     if reading is not None:
         columns["compression"] = DIMS[:2], reading.compression
         columns["buckling_share"] = DIMS[:2], reading.share
-    known = None
+    if turning is not None:
+        from .turning_columns import NOTHING_OF_IT, attributes  # nothing else needs it
+
+        facts = attributes(scene, turning)
+        return SceneColumns(columns, facts, method, own, NOTHING_OF_IT)
+    of_slides = None
     if request.suprema and inertia is None:  # laws are of overdamped slides
         found = coefficients_jit(scene.potential)
-        known = slide_data(scene, found, np.asarray(request.eps))
-    laws = {} if known is None else known.attributes()
-    return SceneColumns(columns, laws, method, own)
+        of_slides = slide_data(scene, found, np.asarray(request.eps))
+    laws = {} if of_slides is None else of_slides.attributes()
+    return SceneColumns(columns, laws, method, own, {})
 
 
 def _by_lanes(
@@ -149,6 +159,18 @@ def _with_mass(
     return values | {"residual": left, "dissipation_gap": left}
 
 
+def _with_turning(
+    scene: Scene,
+    effect: NapFlip,
+    request: SweepRequest,
+    report: Callable[[float], None],
+) -> dict[str, np.ndarray]:
+    """Values of all cells with a rod that turns over, by name."""
+    from .turning_columns import turning_values  # nothing else needs it
+
+    return turning_values(scene, effect, request, report)
+
+
 def _by_diffrax(
     scene: Scene, request: SweepRequest, report: Callable[[float], None]
 ) -> tuple[dict[str, np.ndarray], str]:
@@ -170,7 +192,13 @@ def _by_diffrax(
     return values, type(solver).__name__
 
 
-def _limit_values(scene: Scene, limit: LimitSolution) -> dict[str, np.ndarray]:
+def _limit_values(
+    scene: Scene, turning: NapFlip | None, limit: LimitSolution
+) -> dict[str, np.ndarray]:
+    if turning is not None:
+        from .turning_columns import limit_values  # nothing else needs it
+
+        return limit_values(scene, turning, limit)
     found = coefficients_jit(scene.potential)
     rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
     load, lower, upper = strips_at(scene, rho_plus, rho_minus, np.asarray(limit.ts))

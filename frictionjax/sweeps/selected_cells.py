@@ -9,8 +9,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _AXES = ("gamma", "eps")
-_OF_TIME = ("z_limit", "dissipation_limit", "load", "z_minus", "z_plus")
-_SERIES = ("z", "dissipation", "how", "bracket", *_OF_TIME)
+_OF_TIME = (
+    *("z_limit", "dissipation_limit", "load", "z_minus", "z_plus"),
+    *("root_limit", "mode_limit"),
+)
+_SERIES = ("z", "root", "mode", "dissipation", "how", "bracket", *_OF_TIME)
+_OF_SCENE = ("jumps", "jump_loss")
 
 
 def whole_grid(dataset: "xr.Dataset") -> "xr.Dataset":
@@ -44,7 +48,11 @@ def one_scene(dataset: "xr.Dataset") -> "xr.Dataset":
 
 def _with_axis(dataset: "xr.Dataset", name: str) -> "xr.Dataset":
     given = list(dataset.data_vars)
-    along = _SERIES if name == "time" else [v for v in given if v not in _OF_TIME]
+    along = (
+        _SERIES
+        if name == "time"
+        else [v for v in given if v not in (*_OF_TIME, *_OF_SCENE)]
+    )
     value = dataset[name]
     columns = {v: dataset[v] for v in given}
     bare = dataset.drop_vars([name, *given])

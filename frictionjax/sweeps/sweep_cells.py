@@ -61,6 +61,15 @@ def sweep(
     too, and their `parts` in words; they share the times. Each scene's values are those of
     its own sweep.
 
+    With `effects.NapFlip` also `root` and `mode` over time, of the limit too
+    (`root_limit`, `mode_limit`, and in all `jumps` and `jump_loss`; their times and losses
+    are attributes). Where the limit jumps, the wiggly system gets there later, so that
+    `sup_error` does not vanish: `graph_error` does, the distance of the graphs of z_eps and
+    z completed by vertical segments (`numerics.graph_distance`; a second is worth the
+    mean speed of the limit, the attribute `graph_speed`), and
+    `dissipation_graph_error` likewise (a second is worth `graph_power`). The strip is that
+    of the limit's mode; what does not exist is NaN and says why in its attribute `missing`.
+
     A cell that fails has its status and NaNs and does not disturb the others; one warning
     (`FailedCells`, a `UserWarning`) names such cells.
 
@@ -102,6 +111,9 @@ def sweep(
     # All variables at once: one by one they are aligned anew, 1 ms each.
     data = xr.Dataset(columns, coords=coords)
     data = describe(data, family.asked, request.accuracy, found[0].method)
+    for name, why in found[0].missing.items():
+        if name in data:
+            data[name].attrs["missing"] = why
     if family.labels is None:
         data.attrs |= found[0].laws
     own = dict.fromkeys(one.compiled_for for one in found if one.compiled_for)

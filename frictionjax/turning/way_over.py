@@ -12,15 +12,30 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import Chebyshev
 
+from .settings import SETTINGS
+
+
+class Leg(NamedTuple):
+    """From `ahead` to `last` (m), the load going from `load` to `until` (N), having `lost`
+    energy (J). A jump where the load stays."""
+
+    ahead: float
+    last: float
+    load: float
+    until: float
+    lost: float
+
 
 class Passage(NamedTuple):
     """Where a root has come to: `ahead` in m, at which `load` in N, having lost so much
-    energy in jumps (J); `out`: the end that it has left by, -1 or 1, or 0."""
+    energy in jumps (J); `out`: the end that it has left by, -1 or 1, or 0. `legs`: on what
+    way."""
 
     ahead: float
     load: float
     lost: float
     out: int
+    legs: tuple[Leg, ...]
 
 
 class WayOver(NamedTuple):
@@ -44,19 +59,44 @@ class WayOver(NamedTuple):
 
         `way`: -1 or 1, where the load falls or rises.
         """
-        level, lost, falls = before, 0.0, False
+        legs: list[Leg] = []
+        level, falls = before, False
         while True:
             if not falls and self._holds(ahead, way):
                 target = self._next_turn(ahead, way)
                 if way * (self.balance(target) - load) >= 0:
-                    return Passage(self._root(ahead, target, load), load, lost, 0)
-                ahead, level, falls = target, float(self.balance(target)), True
+                    there = self._root(ahead, target, load)
+                    legs.append(Leg(ahead, there, level, load, 0.0))
+                    return _passage(legs, 0)
+                top = float(self.balance(target))
+                legs.append(Leg(ahead, target, level, top, 0.0))
+                ahead, level, falls = target, top, True
             else:
                 target = self._landing(ahead, way, level)
-                lost += self._lost(ahead, target, level)
+                lost = self._lost(ahead, target, level)
+                legs.append(Leg(ahead, target, level, level, lost))
                 ahead, falls = target, False
             if ahead == self.balance.domain[(way + 1) // 2]:
-                return Passage(ahead, level, lost, way)
+                return _passage(legs, way)
+
+    def places(self, first: float, last: float, loads: np.ndarray) -> np.ndarray:
+        """Equilibria in m under loads in N, on a stable branch between two of them.
+
+        From a table whose places lie close where a branch ends, in a fold, by Newton's
+        method held between its neighbours there.
+        """
+        turned = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, SETTINGS.table))
+        places = min(first, last) + abs(last - first) * turned
+        levels = np.maximum.accumulate(self.balance(places))
+        low = np.clip(np.searchsorted(levels, loads) - 1, 0, places.size - 2)
+        found = np.interp(loads, levels, places)
+        slope = self.balance.deriv()
+        for _ in range(SETTINGS.newton):
+            steep = slope(found)
+            off = self.balance(found) - loads
+            step = np.divide(off, steep, out=np.zeros_like(off), where=steep > 0)
+            found = np.clip(found - step, places[low], places[low + 1])
+        return found
 
     def _holds(self, ahead: float, way: int) -> bool:
         """Whether equilibria are stable on the way on from here."""
@@ -92,3 +132,8 @@ class WayOver(NamedTuple):
     def _lost(self, first: float, last: float, load: float) -> float:
         gained = float(self.energy(last) - self.energy(first))
         return load * (last - first) - gained
+
+
+def _passage(legs: list[Leg], out: int) -> Passage:
+    last = legs[-1]
+    return Passage(last.last, last.until, sum(leg.lost for leg in legs), out, tuple(legs))

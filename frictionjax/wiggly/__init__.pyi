@@ -40,3 +40,5 @@ from .stepping import judge as judge
 from .stepping import step_of as step_of
 from .trajectory import Solution as Solution
 from .trajectory import solve as solve
+from .turning import MotionSteps as MotionSteps
+from .turning import integrate_turning as integrate_turning

@@ -69,8 +69,8 @@ class Solution(CodedResult, eqx.Module):
     how far in m runs at other tolerances are from it (where they end in different
     wells the status is SENSITIVE), and `beta` the number that decides whether mass matters.
 
-    With `effects.NapFlip` also `root` u in m and `mode` (n,): 1 as the rod stands at first,
-    -1 turned over, 0 in between; else they are None.
+    With `effects.NapFlip` also `root` u and `tip` p in m and `mode` (n,): 1 as the rod
+    stands at first, -1 turned over, 0 in between; else they are None.
     """
 
     ts: Float[Array, " n"]
@@ -83,6 +83,7 @@ class Solution(CodedResult, eqx.Module):
     velocity: Float[Array, " n"] | None = None
     root: Float[Array, " n"] | None = None
     mode: Int[Array, " n"] | None = None
+    tip: Float[Array, " n"] | None = None
     _outcomes = Status
 
     @property
@@ -391,6 +392,7 @@ def _with_turning(
         how="resolved, every slip, with a rod that turns over",
         root=jnp.asarray(found.root),
         mode=jnp.asarray(found.mode),
+        tip=jnp.asarray(found.tip),
     )
 
 
@@ -439,7 +441,8 @@ def solve(
     and residual are None, as `int eps^gamma z'^2` of a path with noise is infinite.
     With `effects.Inertia` the equation has `m_eps z''`, z0 is at rest, every slip is
     integrated at three tolerances, and there are no derivatives.
-    With `effects.NapFlip` every slip is integrated, and there are no derivatives.
+    With `effects.NapFlip` every slip is integrated, from mode to mode, and there are no
+    derivatives.
     `effects`: "all" of the scene's, or "auto": without those that this accuracy does not
     call for, as `explain` tells; `left_out` in `stats` says which, and the most that each
     changes z by in eps.

@@ -26,7 +26,9 @@ APART = {
 } | {frozenset({"Noise", other}) for other in ("AxialLoad", "CompliantArray")}
 APART |= {frozenset({"NapFlip", other}) for other in EFFECTS if other != "NapFlip"}
 APART |= {frozenset({"Inertia", other}) for other in ("Noise", "CompliantArray")}
-AT_REST = LimitSolution(*([np.zeros(2)] * 3))
+AT_REST = LimitSolution(
+    *([np.zeros(2)] * 3), root=np.ones(2), mode=np.ones(2, int), tip=np.zeros(2)
+)
 TS = np.linspace(0, 1, 4001)
 
 

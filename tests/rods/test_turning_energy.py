@@ -33,3 +33,10 @@ def test_it_begins_with_the_force_of_a_straight_rod_at_the_critical_load():
     across = 2.0 * (-LIMIT - 0.3) / 1.4
     force = across * np.cos(LIMIT) + critical * np.sin(LIMIT)
     assert float(ROD.force(-ROD.reach)) == pytest.approx(force, rel=1e-9)
+
+
+def test_what_its_tip_presses_with_is_the_derivative_by_its_height():
+    """Of a root that is let down: energy rises by what the surface holds."""
+    for ahead in np.linspace(-0.9, 0.9, 7) * REACH:
+        slope = float(jax.grad(lambda h, x: ROD._replace(height=h).energy(x))(0.9, ahead))
+        assert float(ROD.weight(ahead)) == pytest.approx(-slope, rel=1e-9)

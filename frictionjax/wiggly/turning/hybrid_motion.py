@@ -10,7 +10,8 @@ from ..._checks import quiet_where_extreme, viscosity_of
 from ..._compile import Program
 from ...effects import NapFlip
 from ...model import BristlePotential, Scene, tabulated_scene
-from ...turning import BentForce, FlippingRod, bent_force, flipping_rod
+from ...numerics import concatenated
+from ...turning import BentForce, FlippingRod, SceneParts, bent_force, flipping_rod
 from ..equation import (
     PullRange,
     Status,
@@ -20,25 +21,43 @@ from ..equation import (
     pull_between,
 )
 from ..stepping import Control
-from .phases import Begun, Ended, slide, turn
+from .phases import Begun, Ended, Steps, slide, turn
 from .settings import SETTINGS
-from .sides import SceneParts
+
+
+class MotionSteps(NamedTuple):
+    """All steps of a motion, (steps,): when each begins and ends (s), the states there
+    (m), slopes of a cubic between (m/s), the dissipation there (J), and the mode."""
+
+    begin: np.ndarray
+    end: np.ndarray
+    z0: np.ndarray
+    z1: np.ndarray
+    slope0: np.ndarray
+    slope1: np.ndarray
+    lost0: np.ndarray
+    lost1: np.ndarray
+    mode: np.ndarray
 
 
 class HybridMotion(NamedTuple):
-    """At the times asked for, (n,): `z` and the `root` u in m, `mode`, `dissipation` and
-    `residual` in J. `gap`: between two values of the dissipation at the end, in J."""
+    """At the times asked for, (n,): `z`, the `root` u and the `tip` p in m, `mode`,
+    `dissipation` and `residual` in J. At the end `gap`, between two values of the
+    dissipation, and `left`, the residual, in J. `made`: its steps, if asked for."""
 
     z: np.ndarray
     root: np.ndarray
+    tip: np.ndarray
     mode: np.ndarray
     dissipation: np.ndarray
     residual: np.ndarray
     gap: float
+    left: float
     status: int
     steps: int
     rejected: int
     tolerance: float
+    made: MotionSteps | None = None
 
 
 class _At(NamedTuple):
@@ -84,55 +103,72 @@ def integrate_turning(
     ts: Float[np.ndarray, " n"],
     accuracy: float,
     budget: int,
+    until: float | None = None,
+    noted: bool = False,
 ) -> HybridMotion:
     """Of a scene with known numbers, from z0 as the rod stands at first, to ts[-1].
 
-    `budget`: steps in all. Raises `ValueError` as `flipping_rod` does.
+    `until`: a later time in s to which it goes, at which `gap` is. `budget`: steps in all.
+    `noted`: whether steps are wanted. Raises `ValueError` as `flipping_rod` does.
     """
     course = _course(scene, effect, eps, gamma, accuracy, budget)
     turns = tabulated_scene(scene, eps).turning_points
     if np.any(np.isnan(turns)):
         return _nothing(ts.size, Status.TOO_MANY_TURNS)
-    stops = np.unique(np.concatenate([[0.0], ts, turns[turns < ts[-1]]]))
-    number, inside = course.parts.potential(jnp.ones(())).tip(scene.z0, eps)
-    at = _At(0.0, 1, float(number + inside))
+    end = ts[-1] if until is None else max(float(until), ts[-1])
+    stops = np.unique(np.concatenate([[0.0], ts, [end], turns[turns < end]]))
+    at = _At(0.0, 1, float(_start(course.parts, scene.z0, np.asarray(float(eps)))))
     rows = [_row(course, at)]
     sums = np.zeros(3)  # lost, viscous, residual
     lost = [sums]
     steps = rejected = code = 0
+    made: list[MotionSteps] = []
     for stop in stops[1:]:
         while code == 0 and at.time < stop:
-            ended = _phase(course, at, stop, steps)
+            ended, some = _phase(course, at, stop, steps)
+            if noted:
+                made.append(_made(course, at, some, float(sums[0])))
             sums = sums + np.array([ended.lost, ended.viscous, ended.residual])
             steps += int(ended.steps)
             rejected += int(ended.rejected)
             code = int(ended.code)
             at = _next(course, at, ended)
-        rows.append(_row(course, at) if code == 0 else (np.nan, 0))
+        rows.append(_row(course, at) if code == 0 else (np.nan, np.nan, 0))
         lost.append(sums if code == 0 else np.full(3, np.nan))
     asked = np.searchsorted(stops, ts)
-    z, mode = (np.array(column)[asked] for column in zip(*rows, strict=True))
-    spent, viscous, residual = np.array(lost)[asked].T
+    z, tip, mode = (np.array(column)[asked] for column in zip(*rows, strict=True))
+    spent, _, residual = np.array(lost)[asked].T
     slip = eps * (course.law.standing.rho_with + course.law.standing.rho_against)
-    if code == 0 and residual[-1] > SETTINGS.residual * (slip + viscous[-1]):
+    if code == 0 and sums[2] > SETTINGS.residual * (slip + sums[1]):
         code = int(Status.UNBALANCED)
     return HybridMotion(
         z=z,
         root=z + course.law.reach,
+        tip=tip,
         mode=mode,
         dissipation=spent,
         residual=residual,
-        gap=float(abs(spent[-1] - viscous[-1])),
+        gap=float(abs(sums[0] - sums[1])) if code == 0 else np.nan,
+        left=float(sums[2]) if code == 0 else np.nan,
         status=code,
         steps=steps,
         rejected=rejected,
         tolerance=float(course.plans[1].tolerance),
+        made=concatenated(made) if made else None,
     )
 
 
 def _nothing(count: int, status: Status) -> HybridMotion:
     none, modes = np.full(count, np.nan), np.zeros(count, int)
-    return HybridMotion(none, none, modes, none, none, np.nan, int(status), 0, 0, np.nan)
+    return HybridMotion(
+        *(none, none, none, modes, none, none),
+        gap=np.nan,
+        left=np.nan,
+        status=int(status),
+        steps=0,
+        rejected=0,
+        tolerance=np.nan,
+    )
 
 
 def _course(
@@ -173,7 +209,7 @@ def _planned(
     return plan_steps(stepped, eps, gamma, accuracy, pull)
 
 
-def _phase(course: _Course, at: _At, stop: float, steps: int) -> Ended:
+def _phase(course: _Course, at: _At, stop: float, steps: int) -> tuple[Ended, Steps]:
     control = course.control(at.mode)
     well = np.rint(at.place)
     begun = Begun(
@@ -187,13 +223,36 @@ def _phase(course: _Course, at: _At, stop: float, steps: int) -> Ended:
     )
     cell = course.parts, np.asarray(course.eps), np.asarray(course.viscosity)
     if at.mode:
-        found = slide(*cell, np.asarray(float(at.mode)), begun)
+        found, made = slide(*cell, np.asarray(float(at.mode)), begun)
     else:
-        found = turn(*cell, at.rod, np.asarray(at.above), begun)
+        found, made = turn(*cell, at.rod, np.asarray(at.above), begun)
     known = Ended(*(float(value) for value in found))
     # A stop that is reached is that time, to the last digit.
-    time = stop if known.out == 0 else at.time + known.time
-    return known._replace(time=time, place=known.place + well)
+    reached = known.out == 0 and known.time == float(begun.stop)
+    time = stop if reached else at.time + known.time
+    return known._replace(time=time, place=known.place + well), made
+
+
+def _made(course: _Course, at: _At, some: Steps, lost: float) -> MotionSteps:
+    """Steps of a phase as those of the state, with all that was lost before."""
+    count, mode = int(some.count), at.mode
+    side, shift = (mode, (1 - mode) * course.law.reach) if mode else (1, 0.0)
+    _, time, state, slope0, slope1, spent = (
+        np.atleast_1d(np.asarray(c))[:count] for c in some
+    )
+    first = _row(course, at)[0]
+    end, z1, lost1 = at.time + time, side * state - shift, lost + spent
+    return MotionSteps(
+        begin=np.append(at.time, end)[:-1],
+        end=end,
+        z0=np.append(first, z1)[:-1],
+        z1=z1,
+        slope0=side * slope0,
+        slope1=side * slope1,
+        lost0=np.append(lost, lost1)[:-1],
+        lost1=lost1,
+        mode=np.full(count, mode),
+    )
 
 
 def _next(course: _Course, at: _At, ended: Ended) -> _At:
@@ -228,7 +287,16 @@ def _stance(parts: SceneParts, side: Any, place: Any, eps: Any) -> tuple[Any, An
     return parts.held(side).place(state), eps * potential.profile(place)
 
 
-def _row(course: _Course, at: _At) -> tuple[float, int]:
+@Program
+def _start(parts: SceneParts, z0: Any, eps: Any) -> Any:
+    """Where the tip of the rod as it stands at first is, in periods."""
+    number, inside = parts.potential(jnp.ones_like(eps)).tip(z0, eps)
+    return number + inside
+
+
+def _row(course: _Course, at: _At) -> tuple[float, float, int]:
+    """State and tip in m, and the mode."""
     if at.mode == 0:
-        return course.eps * at.place, 0
-    return float(_stance(course.parts, *_numbers(course, at))[0]), at.mode
+        return course.eps * at.place, course.eps * at.foot, 0
+    z, _ = _stance(course.parts, *_numbers(course, at))
+    return float(z), course.eps * at.mode * at.place, at.mode

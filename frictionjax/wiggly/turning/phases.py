@@ -9,7 +9,7 @@ from jaxtyping import Array, Bool
 
 from ..._checks import Real
 from ..._compile import Program
-from ...turning import BentForce
+from ...turning import BentForce, SceneParts, compression
 from ..equation import (
     Balance,
     Point,
@@ -19,11 +19,11 @@ from ..equation import (
     arrival,
     at_rest,
     dissipated,
+    slopes_between,
 )
 from ..rosenbrock import Linearised, rolled_step
 from ..stepping import Control, ControlState, judge, step_of
 from .settings import SETTINGS
-from .sides import SceneParts, compression
 
 
 class Begun(NamedTuple):
@@ -54,6 +54,19 @@ class Ended(NamedTuple):
     steps: Any
     rejected: Any
     code: Any
+
+
+class Steps(NamedTuple):
+    """Steps that were made, (room,), the first `count` of them: when each ends, in s since
+    the start of its phase, where (m), with which slopes it begins and ends (m/s), and the
+    energy dissipated by then (J). Of its side's state."""
+
+    count: Any
+    time: Any
+    state: Any
+    slope0: Any
+    slope1: Any
+    lost: Any
 
 
 class TurningField(TipField):
@@ -110,11 +123,13 @@ class _March(NamedTuple):
 
 
 @Program
-def slide(parts: SceneParts, eps: Real, viscosity: Real, side: Real, begun: Begun) -> Ended:
+def slide(
+    parts: SceneParts, eps: Real, viscosity: Real, side: Real, begun: Begun
+) -> tuple[Ended, Steps]:
     """With the rod straight, `place` the tip's, until it has to turn over.
 
     That is where the compression has come to the critical load while the root moves
-    against the nap.
+    against the nap. It ends too where there is no room to note more steps.
     """
     potential = parts.potential(side)
     field = TipField(
@@ -142,7 +157,7 @@ def turn(
     rod: BentForce,
     above: Real,
     begun: Begun,
-) -> Ended:
+) -> tuple[Ended, Steps]:
     """With the rod bent over its pinned tip, `place` the state z in eps."""
     field = TurningField(
         parts.potential(jnp.ones_like(eps)),
@@ -163,7 +178,7 @@ def turn(
     return _through(field, ends, begun)
 
 
-def _through(field: TipField, ends: RangeEnds, begun: Begun) -> Ended:
+def _through(field: TipField, ends: RangeEnds, begun: Begun) -> tuple[Ended, Steps]:
     zero = jnp.zeros_like(begun.place)
     march = _March(
         time=zero,
@@ -177,27 +192,59 @@ def _through(field: TipField, ends: RangeEnds, begun: Begun) -> Ended:
         rejected=zero,
         code=zero,
     )
-    march = jax.lax.while_loop(
-        lambda m: (m.time < begun.stop) & (m.out == 0) & (m.code == 0),
-        lambda m: _stepped(field, ends, begun, m),
-        march,
-    )
-    march = jax.lax.cond(
+    none = jnp.zeros(SETTINGS.room)
+    room = Steps(jnp.zeros((), int), none, none, none, none, none)
+    before = field.energy(zero, begun.place)
+
+    def goes_on(carry: tuple[_March, Steps]) -> Bool[Array, ""]:
+        march, noted = carry
+        ended = (march.out != 0) | (march.code != 0)
+        # A place is left for the step on which the phase ends.
+        return (march.time < begun.stop) & ~ended & (noted.count < SETTINGS.room - 1)
+
+    def one_more(carry: tuple[_March, Steps]) -> tuple[_March, Steps]:
+        march, noted = carry
+        after = _stepped(field, ends, begun, march)
+        return after, _noted(field, before, noted, march, after)
+
+    march, noted = jax.lax.while_loop(goes_on, one_more, (march, room))
+    last = jax.lax.cond(
         march.out != 0, lambda m: _located(field, ends, m), lambda m: m, march
     )
-    before = field.energy(zero, begun.place)
-    lost = dissipated(field, march.sums, march.time, march.place, before)
-    return Ended(
-        time=march.time,
-        place=march.place,
-        out=march.out,
+    noted = _noted(field, before, noted, march, last)
+    lost = dissipated(field, last.sums, last.time, last.place, before)
+    ended = Ended(
+        time=last.time,
+        place=last.place,
+        out=last.out,
         lost=lost,
-        viscous=march.sums.viscous,
-        residual=march.sums.residual,
-        level=march.control.level,
-        steps=march.steps,
-        rejected=march.rejected,
-        code=march.code,
+        viscous=last.sums.viscous,
+        residual=last.sums.residual,
+        level=last.control.level,
+        steps=last.steps,
+        rejected=last.rejected,
+        code=last.code,
+    )
+    return ended, noted
+
+
+def _noted(
+    field: TipField, before: Real, noted: Steps, start: _March, end: _March
+) -> Steps:
+    """With the step from `start` to `end`; where there is none its place is still free."""
+    length, at = end.time - start.time, noted.count
+    whole = jnp.where(length > 0, length, 1.0)
+    way = end.place - start.place
+    slope0, slope1, _ = slopes_between(start.point, end.point, whole, way)
+    return Steps(
+        count=at + (length > 0),
+        time=noted.time.at[at].set(end.time),
+        state=noted.state.at[at].set(end.point.state),
+        slope0=noted.slope0.at[at].set(field.eps * start.point.stretch * slope0),
+        slope1=noted.slope1.at[at].set(field.eps * end.point.stretch * slope1),
+        lost=noted.lost.at[at].set(
+            dissipated(field, end.sums, end.time, end.place, before)
+        ),
     )
 
 

@@ -5,14 +5,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from .._checks import require
-from ..bristles import AngularSpring
-from ..contact import Nap, nap
-from ..model import friction
-from ..profiles import AbstractProfile
-from ..rods import hinged_load
-from ..turning import axial_force
-from .style import GUIDE, STRIP, colour, new_figure, styled
+from ..._checks import require
+from ...bristles import AngularSpring
+from ...contact import Nap, nap
+from ...model import friction
+from ...profiles import AbstractProfile
+from ...rods import hinged_load
+from ...turning import axial_force
+from ..style import GUIDE, STRIP, colour, new_figure, styled
 
 _NAMES = ("with the nap", "against it", "turned over, against it")
 _STYLES = ("-", "-", "--")

@@ -9,7 +9,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from .._checks import as_text, require
+from ..._checks import as_text, require
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,13 +7,13 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from ..._checks import Real
-from ...bristles import AbstractBristle, AngularSpring
-from ...loads import AbstractPull
-from ...model import BristlePotential
-from ...numerics import slope_of
-from ...profiles import AbstractProfile
-from ...supports import AbstractSupport
+from .._checks import Real
+from ..bristles import AbstractBristle, AngularSpring
+from ..loads import AbstractPull
+from ..model import BristlePotential
+from ..numerics import slope_of
+from ..profiles import AbstractProfile
+from ..supports import AbstractSupport
 
 
 class SidedProfile(AbstractProfile):
@@ -67,6 +67,16 @@ class SidedLoad(AbstractPull):
         return self.side * self.load.slope(t)
 
 
+def sided_potential(
+    profile: AbstractProfile, rod: AngularSpring, side: Real
+) -> BristlePotential:
+    """The wiggly potential of a side: the rest angle is on the other one in a mirror."""
+    turned: AbstractBristle = eqx.tree_at(
+        lambda one: one.rest_angle, rod, side * rod.rest_angle
+    )
+    return BristlePotential(SidedProfile(profile, side), turned)
+
+
 class SceneParts(eqx.Module):
     """What moves: all in tables but the rod. `reach` c in m, `critical` load in N."""
 
@@ -79,10 +89,7 @@ class SceneParts(eqx.Module):
 
     def potential(self, side: Real) -> BristlePotential:
         """The wiggly potential of a side."""
-        rod: AbstractBristle = eqx.tree_at(
-            lambda one: one.rest_angle, self.rod, side * self.rod.rest_angle
-        )
-        return BristlePotential(SidedProfile(self.profile, side), rod)
+        return sided_potential(self.profile, self.rod, side)
 
     def held(self, side: Real) -> SidedSupport:
         """The support of a side."""

@@ -1,0 +1,71 @@
+"""Friction loops of one bristle by either effect of its nap."""
+
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from ...contact import nap_loops
+from ...model import Scene
+from ..style import GUIDE, colour, new_figure, styled
+
+_TITLES = {
+    "geometric": "Geometric: the rod keeps its nap",
+    "energetic": "Energetic: the rod turns over",
+}
+_LEVELS = {
+    "geometric": (("rho_with", 1, "with"), ("rho_against", -1, "against")),
+    "energetic": (("rho_with", 1, "with"), ("rho_flipped", -1, "turned")),
+}
+
+
+@styled
+def draw_nap_loops(scene: Scene, ts: Any = None) -> Figure:
+    """Draw the limit's force on the root against z, of a stiff rod and of one that bends.
+
+    The scene has `effects.NapFlip`; on the left it is left out. Lines: friction of slides
+    one way and the other. Right: where the rod is bent over its tip the loop is dashed.
+
+    Raises `ValueError` as `contact.nap_loops` does.
+    """
+    data = nap_loops(scene, ts)
+    figure, grid = new_figure(1, 2, 10.4, 4.4)
+    for index, (axes, (name, title)) in enumerate(
+        zip(grid[0], _TITLES.items(), strict=True)
+    ):
+        one = data.sel(effect=name)
+        bent = one["mode"].values == 0
+        straight = one.force.where(~bent)
+        axes.plot(one.z, straight, color=colour(index), label="straight")
+        if bent.any():
+            # One more at both ends, or the line would have gaps there.
+            wide = bent.copy()
+            wide[1:] |= bent[:-1]
+            wide[:-1] |= bent[1:]
+            between = one.force.where(wide)
+            axes.plot(one.z, between, "--", color=colour(index), label="bent over its tip")
+            axes.legend(loc="best")
+        for level, side, word in _LEVELS[name]:
+            _level(axes, side * data.attrs[level], side, word)
+        lost = float(one.dissipation[-1])
+        axes.set(title=f"{title}, {lost:.4g} J lost", xlabel="z (m)")
+        axes.set_ylabel("friction force $\\ell - \\Phi'(z)$ (N)")
+        axes.margins(y=0.12)
+    low, high = zip(*(axes.get_ylim() for axes in grid[0]), strict=True)
+    for axes in grid[0]:
+        axes.set_ylim(min(low), max(high))
+    return figure
+
+
+def _level(axes: Any, value: float, side: int, word: str) -> None:
+    axes.axhline(value, color=GUIDE, linewidth=0.9, zorder=1)
+    sign = "" if side > 0 else "-"
+    axes.annotate(
+        f"${sign}\\rho_{{{word}}}$ = {value:.3g} N",
+        (0.5, value),
+        xycoords=axes.get_yaxis_transform(),
+        xytext=(0, 6 * side),
+        textcoords="offset points",
+        ha="center",
+        va="bottom" if side > 0 else "top",
+        color="#555555",
+    )

@@ -1,0 +1,14 @@
+from .look import COLOURS as COLOURS
+from .look import GUIDE as GUIDE
+from .look import LIMIT as LIMIT
+from .look import MARKERS as MARKERS
+from .look import STRIP as STRIP
+from .look import Picture as Picture
+from .look import choose_eps as choose_eps
+from .look import choose_gamma as choose_gamma
+from .look import colour as colour
+from .look import label_eps as label_eps
+from .look import marker as marker
+from .look import new_figure as new_figure
+from .look import shades as shades
+from .look import styled as styled
