@@ -35,7 +35,7 @@ def engine_of(method: Any) -> Engine:
 _E = Engine
 _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset({_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP}),
-    "Noise": frozenset({_E.RESOLVED, _E.ENSEMBLE, _E.FRICTION_CURVE}),
+    "Noise": frozenset({_E.RESOLVED, _E.SWEEP, _E.ENSEMBLE, _E.FRICTION_CURVE}),
     "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED}),
     "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
 }
@@ -54,7 +54,6 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
     ("AxialLoad", _E.ENSEMBLE): "mechanics or sweep, of a scene without noise",
     ("Noise", _E.WINDOWED): 'method="auto", and key',
     ("Noise", _E.PATH): 'method="auto", and key',
-    ("Noise", _E.SWEEP): "ensemble and friction_curve, at one eps after the other",
     (
         "Inertia",
         _E.WINDOWED,

@@ -2,8 +2,9 @@ from .angle_fit import draw_angle_fit as draw_angle_fit
 from .convergence import draw_convergence as draw_convergence
 from .design import draw_profile_fit as draw_profile_fit
 from .design_maps import draw_design_map as draw_design_map
-from .dissipation import draw_dissipation as draw_dissipation
 from .loop import draw_loop as draw_loop
+from .noise import draw_friction_curve as draw_friction_curve
+from .noise import draw_histogram as draw_histogram
 from .own_nap import draw_own_nap as draw_own_nap
 from .paper import draw_mu_angular as draw_mu_angular
 from .paper import draw_mu_slanted as draw_mu_slanted
@@ -11,5 +12,6 @@ from .paper import draw_nap as draw_nap
 from .scenes import draw_scenes as draw_scenes
 from .slide_profile import draw_slide_profile_fit as draw_slide_profile_fit
 from .trace_fit import draw_trace_fit as draw_trace_fit
+from .trajectories import draw_dissipation as draw_dissipation
 from .trajectories import draw_trajectories as draw_trajectories
 from .work_precision import draw_work_precision as draw_work_precision

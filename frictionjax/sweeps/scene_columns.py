@@ -4,11 +4,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, UInt32
 
 from .._checks import cells_of, viscosity_of
 from ..contact import largest_compression
-from ..effects import Inertia, inertia_among
+from ..effects import Inertia, Noise, inertia_among, noise_among
 from ..limit import LimitSolution, solve_limit
 from ..model import Scene, coefficients_jit, strips_at, tabulated_scene
 from ..slide_laws import slide_data
@@ -24,7 +24,8 @@ class SweepRequest(NamedTuple):
     """What is asked of every scene, checked.
 
     `eps` (m) falling, `gamma` rising, `ts` in s, `accuracy` in eps. `method`: of the lanes;
-    `solver`: of diffrax, instead, where one is asked for.
+    `solver`: of diffrax, instead, where one is asked for. `key`: of scenes with noise, its
+    two words.
     """
 
     eps: Float[np.ndarray, " e"]
@@ -35,6 +36,7 @@ class SweepRequest(NamedTuple):
     solver: Any
     balanced: bool
     suprema: bool
+    key: UInt32[np.ndarray, " 2"] | None
 
 
 class SceneColumns(NamedTuple):
@@ -55,8 +57,11 @@ def scene_columns(
     """Solve all cells of a scene; `report` is told each share that is done."""
     limit = solve_limit(scene, request.ts)
     values, method, own = None, request.method, ""
-    inertia = inertia_among(scene.effects)
-    if request.solver is None:
+    inertia, noise = inertia_among(scene.effects), noise_among(scene.effects)
+    apart: Columns = {}
+    if noise is not None:
+        values, apart = _with_noise(scene, noise, request, report)
+    elif request.solver is None:
         if inertia is None:
             values = _by_lanes(scene, request, report)
         else:
@@ -71,6 +76,7 @@ def scene_columns(
         name: (DIMS[: value.ndim + 1], value.reshape(*shape, *value.shape[1:]))
         for name, value in values.items()
     }
+    columns |= apart
     columns["viscosity"] = (DIMS[:2], viscosity_of(request.eps, request.gamma[:, None]))
     columns |= {name: (DIMS[2:], v) for name, v in _limit_values(scene, limit).items()}
     reading = largest_compression(scene, request.eps, columns["z"][1])
@@ -78,7 +84,8 @@ def scene_columns(
         columns["compression"] = DIMS[:2], reading.compression
         columns["buckling_share"] = DIMS[:2], reading.share
     known = None
-    if request.suprema and inertia is None:  # laws are of overdamped slides
+    if request.suprema and inertia is None and noise is None:
+        # Laws are of overdamped slides without noise.
         found = coefficients_jit(scene.potential)
         known = slide_data(scene, found, np.asarray(request.eps))
     laws = {} if known is None else known.attributes()
@@ -147,6 +154,33 @@ def _with_mass(
     if not request.balanced:
         return {k: v for k, v in values.items() if not k.startswith("dissipation")}
     return values | {"residual": left, "dissipation_gap": left}
+
+
+def _with_noise(
+    scene: Scene, noise: Noise, request: SweepRequest, report: Callable[[float], None]
+) -> tuple[dict[str, np.ndarray], Columns]:
+    """Values of all cells with noise, and what has dims of its own.
+
+    No energies: `int eps^gamma z'^2` of a path is infinite. No brackets, no samples.
+    """
+    from .noisy_cells import noisy_columns  # nothing else needs it
+
+    assert request.key is not None
+    found = noisy_columns(
+        scene,
+        noise,
+        request.eps,
+        request.gamma,
+        ts=np.asarray(request.ts),
+        key=request.key,
+        suprema=request.suprema,
+        report=report,
+    )
+    shape = request.gamma.size, request.eps.size
+    return found.values, {
+        "path_key": ((*DIMS[:2], "word"), found.keys.reshape(*shape, -1)),
+        "thermal_share": (DIMS[:2], found.share.reshape(shape)),
+    }
 
 
 def _by_diffrax(

@@ -4,10 +4,11 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from jaxtyping import UInt32
 
-from .._checks import as_real, grid_of, require_flags, with_nan
+from .._checks import as_real, grid_of, require, require_flags, with_nan
 from .._compile import progress_bar
-from ..effects import Engine, engine_of
+from ..effects import Engine, engine_of, noise_among
 from ..model import Scene
 from ..wiggly import is_ours, require_accuracy, warn_of_failed
 from .provenance import describe
@@ -17,6 +18,8 @@ from .scene_family import SceneFamily, columns_of_family, family_of, times_of
 if TYPE_CHECKING:
     import xarray as xr
 
+_ACCURACY = 1e-3  # by default
+
 
 @with_nan
 def sweep(
@@ -24,12 +27,13 @@ def sweep(
     eps: Any,
     gamma: Any,
     ts: Any = None,
-    accuracy: Any = 1e-3,
+    accuracy: Any = _ACCURACY,
     method: Any = "auto",
     progress: bool = False,
     *,
     dissipation: bool = True,
     suprema: bool = True,
+    key: Any = None,
 ) -> "xr.Dataset":
     """Solve all cells `eps` x `gamma` and compare each with the limit.
 
@@ -57,6 +61,14 @@ def sweep(
     too, and their `parts` in words; they share the times. Each scene's values are those of
     its own sweep.
 
+    Of a scene with `effects.Noise` each cell is one path, by fixed steps, independent of
+    all others: `key`, a seed or a key of `jax.random`, with the bits of the cell's eps and
+    gamma gives its own, so that a cell has the same bits alone and in any grid, and
+    `fx.solve(..., key=jnp.asarray(data.path_key.sel(...)))` is its path. `sup_error` and
+    `strip_excess` are those of that path, at `ts` and at 16 times or more in each well;
+    `thermal_share` is `T_eps/(eps (rho_plus - rho_minus))`. Energies, brackets and laws
+    there are none of, their variables are left out, and `accuracy` is refused.
+
     A cell that fails has its status and NaNs and does not disturb the others; one warning
     (`FailedCells`, a `UserWarning`) names such cells.
 
@@ -67,6 +79,8 @@ def sweep(
     require_accuracy(accuracy)
     require_flags(progress=progress, dissipation=dissipation, suprema=suprema)
     family = family_of(scene, eps, engines=(Engine.SWEEP, engine_of(method)))
+    noisy = [noise_among(scene.effects) is not None for scene in family.scenes]
+    words = _path_words(key, accuracy, any(noisy), all(noisy))
     request = SweepRequest(
         eps=eps,
         gamma=gamma,
@@ -76,6 +90,7 @@ def sweep(
         solver=None if is_ours(method) else _general(method),
         balanced=bool(dissipation),
         suprema=bool(suprema),
+        key=words,
     )
     found = _all_columns(family, request, progress)
     import xarray as xr  # 0.4 s, which another thread may spend while cells run
@@ -97,6 +112,21 @@ def sweep(
         data.attrs |= found[0].laws
     own = dict.fromkeys(one.compiled_for for one in found if one.compiled_for)
     return data.assign_attrs(compiled_for="; ".join(own)) if own else data
+
+
+def _path_words(
+    key: Any, accuracy: Any, some: bool, all_of_them: bool
+) -> UInt32[np.ndarray, " 2"] | None:
+    """The two words of a key where scenes have noise, which fixed steps are taken of."""
+    if not some:
+        require(key is None, "key", key, "None, or a scene with effects.Noise")
+        return None
+    from ..stochastic import key_words  # nothing else needs it
+
+    if all_of_them:
+        told = "its default: steps of a path with noise are fixed"
+        require(as_real(accuracy) == _ACCURACY, "accuracy", accuracy, told)
+    return key_words(key)
 
 
 def _all_columns(
