@@ -64,6 +64,7 @@ CALLS = {
     Engine.COST: lambda s: fx.predict_cost(s, [0.05], [1.0]),
     Engine.MECHANICS: lambda s: fx.mechanics(s, AT_REST),
     Engine.ENSEMBLE: lambda s: fx.ensemble(noisy(s), 0.05, 1.0, [0.5, 1.0], 2, 0),
+    Engine.SLIDE: lambda s: fx.steady_slide(s.profile, s.bristle, 0.05, effects=s.effects),
     Engine.FRICTION_CURVE: lambda s: fx.friction_curve(s, [0.1], 0.05),
 }
 
