@@ -96,9 +96,9 @@ def friction_curve(
     if temperatures is None:
         energies = np.asarray(float(noise.temperature_at(size)))
     else:
-        known = _temperatures(temperatures)
-        energies = known * float(noise.temperature_at(size)) / float(noise.temperature)
-        coords |= {"temperature": known, "thermal_energy": ("temperature", energies)}
+        rows = _temperatures(temperatures)
+        energies = rows * float(noise.temperature_at(size)) / float(noise.temperature)
+        coords |= {"temperature": rows, "thermal_energy": ("temperature", energies)}
         energies = energies[:, None]
     slides = _with_noise(scene, spring, energies, asked, size, power)
     return _data_set(slides, drag, coords, numbers)

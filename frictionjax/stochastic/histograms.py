@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float, Int
 from scipy import special
@@ -55,8 +56,9 @@ def histogram(
     the mean over each bin of `exp(-(Phi + V_eps - l z)/T_eps)/Z` at the load of that time,
     by quadrature; over `z_fine` that density itself. Attributes: `chi_square` of the counts
     against Boltzmann's, its `degrees` of freedom and its `p_value`, bins with fewer than 5
-    expected paths taken together. Paths have Boltzmann's density where the load has stood
-    still for long; else the difference tells how far they are from rest.
+    expected paths taken together (NaN where that leaves one). Paths have Boltzmann's
+    density where the load has stood still for long; else the difference tells how far they
+    are from rest.
 
     Raises `ValueError` for arguments out of range, a scene without noise, and a data set
     that `ensemble` has not made.
@@ -113,7 +115,7 @@ def _at_rest(scene: Scene, noise: Noise | None, time: float, numbers: dict) -> A
     return AtRest(
         potential=scene.potential,
         support=scene.support,
-        load=float(scene.load(np.asarray(time))),
+        load=float(scene.load(jnp.asarray(time))),
         eps=eps,
         temperature=float(noise.temperature_at(eps)),
     )

@@ -14,6 +14,7 @@ from ..limit import solve_limit
 from ..model import Scene, coefficients_jit, strips_at
 from ..stochastic import cell_keys, noisy_paths
 from ..wiggly import Status
+from .noiseless import without_noise
 
 _SAMPLES = 16  # of the way of one well, at which suprema are looked for
 _MOST_SAMPLES = 2**17
@@ -82,14 +83,14 @@ def _watched(
     if eps is None:
         none = np.full(ts.shape, np.nan)
         return _Watched(ts, none, none, none)
-    end = float(scene.duration)
-    coarse = np.asarray(solve_limit(scene, np.linspace(0.0, end, 2049)).z)
+    end, quiet = float(scene.duration), without_noise(scene)
+    coarse = np.asarray(solve_limit(quiet, np.linspace(0.0, end, 2049)).z)
     wells = np.sum(np.abs(np.diff(coarse))) / eps
     # A power of two: few programs of the limit.
     count = 2 ** int(np.ceil(np.log2(max(_SAMPLES * wells, 1024))))
     even = np.linspace(0.0, end, min(count, _MOST_SAMPLES))
     times = np.sort(np.concatenate([ts, even]))
-    z = np.asarray(solve_limit(scene, times).z)
+    z = np.asarray(solve_limit(quiet, times).z)
     _, lower, upper = strips_at(scene, *bounds, times)
     return _Watched(times, z, np.asarray(lower), np.asarray(upper))
 

@@ -13,6 +13,7 @@ from ..limit import LimitSolution, solve_limit
 from ..model import Scene, coefficients_jit, strips_at, tabulated_scene
 from ..slide_laws import slide_data
 from ..wiggly import Status, integrate_scene
+from .noiseless import without_noise
 
 DIMS = ("gamma", "eps", "time")
 SUPREMA = ("sup_error", "strip_excess", "survey_error")
@@ -55,7 +56,7 @@ def scene_columns(
     scene: Scene, request: SweepRequest, report: Callable[[float], None]
 ) -> SceneColumns:
     """Solve all cells of a scene; `report` is told each share that is done."""
-    limit = solve_limit(scene, request.ts)
+    limit = solve_limit(without_noise(scene), request.ts)
     values, method, own = None, request.method, ""
     inertia, noise = inertia_among(scene.effects), noise_among(scene.effects)
     apart: Columns = {}

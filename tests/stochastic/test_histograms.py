@@ -6,22 +6,22 @@ from scipy import stats
 import frictionjax as fx
 from frictionjax.stochastic.histograms import spread_of_counts
 
-PATHS = 200_000
-BINS = np.linspace(-0.022, 0.022, 17)
+PATHS = 150_000
+BINS = np.linspace(-0.02, 0.02, 13)
 
 
 def pinned(temperature=2e-4, load=0.0, *effects):
-    """A tip in its spring, k = 1, eps = rho = 0.1: 14 times of relaxation."""
+    """A tip in its spring, k = 1, eps = rho = 0.1: 6 times of relaxation."""
     noise = fx.effects.Noise(temperature / EPS)
     parts = COSINE.profile, COSINE.bristle, fx.supports.Spring(1.0)
     still = fx.loads.PiecewiseLinear([0.0, 1.0], [load, load])
-    return fx.Scene(*parts, still, 0.2, effects=(*effects, noise))
+    return fx.Scene(*parts, still, 0.08, effects=(*effects, noise))
 
 
 @pytest.fixture(scope="module")
 def found():
     scene = pinned()
-    paths = fx.ensemble(scene, EPS, 1.0, [0.1, 0.2], PATHS, 5)
+    paths = fx.ensemble(scene, EPS, 1.0, [0.04, 0.08], PATHS, 5)
     return scene, paths, fx.histogram(scene, paths, bins=BINS)
 
 
@@ -32,11 +32,11 @@ def test_pinned_tips_have_boltzmanns_density_and_not_that_of_2_percent_more(foun
     assert int(np.sum(held)) >= data.sizes["bin"] - 3
     for temperature in (1.96e-4, 2.04e-4):
         other = fx.histogram(pinned(temperature), paths, bins=BINS)
-        assert other.attrs["p_value"] < 1e-6
+        assert other.attrs["p_value"] < 1e-4
         assert np.array_equal(other["count"], data["count"])
     assert data.attrs["thermal_energy"] == pytest.approx(2e-4)
     assert data.attrs["paths"] == PATHS
-    assert data.attrs["time"] == 0.2
+    assert data.attrs["time"] == 0.08
 
 
 def test_counts_and_densities_agree(found):
@@ -59,7 +59,7 @@ def test_counts_and_densities_agree(found):
 
 def test_intervals_are_clopper_and_pearsons():
     scene = pinned()
-    paths = fx.ensemble(scene, EPS, 1.0, [0.2], 60, 1)
+    paths = fx.ensemble(scene, EPS, 1.0, [0.08], 60, 1)
     data = fx.histogram(scene, paths, bins=[-0.05, -0.005, 0.0, 0.001, 0.05, 0.06])
     width = (data.z_right - data.z_left).values
     assert int(data["count"][-1]) == 0
@@ -72,9 +72,9 @@ def test_intervals_are_clopper_and_pearsons():
 def test_paths_that_are_not_at_rest_are_told_apart():
     """At the start all stand in one place; at another load the spring pulls elsewhere."""
     scene = pinned()
-    paths = fx.ensemble(scene, EPS, 1.0, [0.0, 0.2], 500, 0)
-    start = fx.histogram(scene, paths, time=0.0)
-    assert float(start["count"].sum()) == 500
+    paths = fx.ensemble(scene, EPS, 1.0, [0.0, 0.08], 500, 0)
+    start = fx.histogram(scene, paths, time=0.0, bins=BINS)
+    assert float(start["count"].max()) == 500
     assert start.attrs["p_value"] < 1e-12
     pulled = fx.histogram(pinned(load=0.02), paths, bins=10)
     assert pulled.attrs["p_value"] < 1e-12
@@ -96,7 +96,7 @@ def test_rare_bins_are_counted_together():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"time": 0.15}, "time = 0.15: needs one of the 2 times of paths"),
+        ({"time": 0.05}, "time = 0.05: needs one of the 2 times of paths"),
         ({"bins": 0}, "bins = 0: needs how many"),
         ({"bins": [0.1, 0.0]}, "bins = .*needs how many.*rising"),
         ({"paths": None}, "paths = 'NoneType': needs a data set that ensemble has made"),
@@ -107,6 +107,6 @@ def test_rare_bins_are_counted_together():
     ],
 )
 def test_what_cannot_be_done_is_refused_by_name(change, message):
-    paths = fx.ensemble(pinned(), EPS, 1.0, [0.1, 0.2], 2, 0)
+    paths = fx.ensemble(pinned(), EPS, 1.0, [0.04, 0.08], 2, 0)
     with pytest.raises(ValueError, match=message):
         fx.histogram(**({"scene": pinned(), "paths": paths} | change))

@@ -244,13 +244,17 @@ def test_arrays_have_derivatives_in_their_places_and_parts():
             assert exact[i] == pytest.approx(known, rel=close), (quantity, i)
 
 
-def test_effects_that_slides_do_not_do_are_refused():
-    with pytest.raises(ValueError, match="does not do CompliantArray: needs one bristle"):
-        arrays = (fx.effects.CompliantArray([0.0, 0.1]),)
-        fx.steady_slide(SINE, SLANTED, 0.05, effects=arrays)
-    with pytest.raises(ValueError, match="effects: rho_plus = 0: needs tips whose forces"):
-        fx.steady_slide(
-            SINE, fx.bristles.Homothetic(1.0), 0.05, effects=array_of([0.0, 0.5])
-        )
-    with pytest.raises(ValueError, match="effects = .*needs effects of frictionjax"):
-        fx.steady_slide(SINE, SLANTED, 0.05, effects=fx.effects.LeadingOrder())
+@pytest.mark.parametrize(
+    ("effects", "message"),
+    [
+        (
+            (fx.effects.CompliantArray([0.0, 0.1]),),
+            "does not do CompliantArray: needs one bristle",
+        ),
+        (array_of([0.0, 0.5]), "effects: rho_plus = 0: needs tips whose forces"),
+        (fx.effects.LeadingOrder(), r"effects = .*needs effects of frictionjax"),
+    ],
+)
+def test_effects_that_slides_do_not_do_are_refused(effects, message):
+    with pytest.raises(ValueError, match=message):
+        fx.steady_slide(SINE, fx.bristles.Homothetic(1.0), 0.05, effects=effects)
