@@ -22,7 +22,7 @@ import frictionjax as fx
 from frictionjax.plot.style import COLOURS, GUIDE, LIMIT, styled
 
 GAMMA, SPEED = 1.0, 0.1
-EPS = np.geomspace(3e-2, 1e-3, 7)
+EPS = np.geomspace(3e-2, 1e-3, 6)
 REFERENCE = 0.01  # the eps at which all temperatures are the same
 SHARE = 0.01  # T_eps over eps rho there
 SCALES = {  # T_eps over its value at the reference
@@ -175,7 +175,7 @@ def picture(data: xr.Dataset) -> Figure:
             speeds.semilogx(data.speed, values, "o", color=colour, ms=3)
             fitted = np.exp(_law(np.log(fine), *known[:3]))
             speeds.semilogx(fine, fitted, color=colour, ls=style, label=label)
-    speeds.set(xlabel="speed in m/s", ylabel="what noise takes, over rho")
+    speeds.set(xlabel="speed in m/s", ylabel="what noise takes, over rho", ylim=(0, 1.3))
     speeds.set_title(f"(a log(v_c/v))^power at eps = {REFERENCE:g} m")
     speeds.legend(loc="best", fontsize=8)
     return figure

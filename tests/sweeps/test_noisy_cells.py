@@ -52,7 +52,7 @@ def test_suprema_are_those_of_the_path():
     data = fx.sweep(NOISY, [0.05], [1.0], TS, key=3).squeeze()
     ts = np.linspace(0.0, 2.0, 100_001)
     path = fx.solve(NOISY, 0.05, 1.0, ts, key=jnp.asarray(data.path_key.values))
-    limit = fx.solve_limit(NOISY, ts)
+    limit = fx.solve_limit(scene_with(), ts)
     sup = float(np.max(np.abs(path.z - limit.z)))
     assert sup * 0.97 <= float(data.sup_error) <= sup
     assert float(data.sup_error) >= float(np.max(np.abs(data.z - data.z_limit)))
