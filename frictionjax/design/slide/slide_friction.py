@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array
+from jaxtyping import Array, Float
 
 from ..._checks import (
     CodedResult,
@@ -32,6 +32,7 @@ from ...model import (
     potential,
     require_admissible,
     require_reach,
+    tabulated_potentials,
     with_effects,
 )
 from ...profiles import AbstractProfile
@@ -252,9 +253,26 @@ def steady_slide(
     require_reach(wiggle, eps)
     numbers = as_real(gamma), as_real(rate), support.stiffness
     several = jnp.atleast_1d(sizes)
-    count = several.shape[0]
-    more = padded_size(count, SETTINGS.lanes, 2) - count
-    padded = jnp.pad(several, (0, more), mode="edge")
-    found = _forces(wiggle, padded, *numbers)
-    wanted = slice(count) if sizes.ndim else 0
+    if effects and is_concrete(wiggle, several, numbers):
+        # Tables of each eps: one program for all effects, 40 s of compilation otherwise.
+        parts = [_forces_of(_table(wiggle, e), e[None], numbers) for e in several]
+        found = jax.tree_util.tree_map(lambda *one: jnp.concatenate(one), *parts)
+    else:
+        found = _forces_of(wiggle, several, numbers)
+    wanted = slice(None) if sizes.ndim else 0
     return _joined(sizes, jax.tree_util.tree_map(lambda leaf: leaf[wanted], found))
+
+
+def _table(wiggle: AbstractPotential, eps: Real) -> AbstractPotential:
+    return tabulated_potentials(wiggle, float(eps))[1]
+
+
+def _forces_of(
+    wiggle: AbstractPotential, eps: Float[Array, " n"], numbers: tuple[Real, Real, Real]
+) -> Sides:
+    """Of all eps (m), in rooms of a few sizes; `numbers`: gamma, rate, stiffness."""
+    count = eps.shape[0]
+    more = padded_size(count, SETTINGS.lanes, 2) - count
+    padded = jnp.pad(eps, (0, more), mode="edge")
+    found = _forces(wiggle, padded, *numbers)
+    return jax.tree_util.tree_map(lambda leaf: leaf[:count], found)

@@ -207,6 +207,7 @@ def array_of(offsets, weights=None):
     return (fx.effects.RigidArray(jnp.asarray(offsets), weights),)
 
 
+@pytest.mark.slow
 def test_slides_of_rigid_arrays_are_those_of_friction_curve():
     effects = array_of(PAIR, [1.0, 2.0])
     found = fx.steady_slide(WAVES, SLANTED, 0.05, 1.0, 0.3, effects=effects)
@@ -219,6 +220,7 @@ def test_slides_of_rigid_arrays_are_those_of_friction_curve():
     assert 1.5 * float(one.mean_plus) < both[0] < 3 * float(one.mean_plus)
 
 
+@pytest.mark.slow
 def test_arrays_have_derivatives_in_their_places_and_parts():
     """Of the slide and of the coefficients, against differences."""
 
