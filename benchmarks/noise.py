@@ -22,7 +22,7 @@ import frictionjax as fx
 from frictionjax.plot.style import COLOURS, GUIDE, LIMIT, styled
 
 GAMMA, SPEED = 1.0, 0.1
-EPS = np.geomspace(3e-2, 1e-3, 6)
+EPS = np.geomspace(3e-2, 1e-3, 7)
 REFERENCE = 0.01  # the eps at which all temperatures are the same
 SHARE = 0.01  # T_eps over eps rho there
 SCALES = {  # T_eps over its value at the reference
