@@ -60,7 +60,8 @@ def draw_friction_curve(data: "xr.Dataset") -> Figure:
             label = f"$T$ = {float(row.thermal_energy):.3g} J"
         _curve(grid[0, 0], row, shade, label)
     if len(rows) > 1:
-        grid[0, 0].legend(loc="best")
+        under: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 3}
+        grid[0, 0].legend(**under)
     if several:
         _map(figure, grid[0, 1], data)
     return figure
