@@ -36,6 +36,7 @@ from .model import friction as friction
 from .model import potential as potential
 from .rate_dependence import friction_curve as friction_curve
 from .stochastic import ensemble as ensemble
+from .stochastic import histogram as histogram
 from .studies import study as study
 from .sweeps import sweep as sweep
 from .wiggly import Status as Status

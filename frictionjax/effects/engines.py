@@ -22,6 +22,7 @@ class Engine(enum.Enum):
     TRACE = "fit_trace"
     ENSEMBLE = "ensemble"
     FRICTION_CURVE = "friction_curve"
+    SLIDE = "steady_slide"
 
 
 def engine_of(method: Any) -> Engine:
@@ -35,12 +36,12 @@ def engine_of(method: Any) -> Engine:
 _E = Engine
 _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset({_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP}),
-    "Noise": frozenset({_E.RESOLVED, _E.ENSEMBLE, _E.FRICTION_CURVE}),
+    "Noise": frozenset({_E.RESOLVED, _E.SWEEP, _E.ENSEMBLE, _E.FRICTION_CURVE}),
     "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
     "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
 }
 """Of effects that change what moves: the engines that do them."""
-_READS_NOT: dict[str, frozenset[Engine]] = {"AxialLoad": frozenset({_E.ENSEMBLE})}
+_READS_NOT: dict[str, frozenset[Engine]] = {"AxialLoad": frozenset({_E.ENSEMBLE, _E.SLIDE})}
 """Of effects that only read: the engines of scenes that do not hold them."""
 
 _MASSLESS = "a scene without it"
@@ -51,10 +52,13 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
     ("CompliantArray", _E.MECHANICS): _ALONE,
     ("CompliantArray", _E.ENSEMBLE): _ALONE,
     ("CompliantArray", _E.FRICTION_CURVE): _ALONE,
+    ("CompliantArray", _E.SLIDE): "one bristle: the array's mean force a bristle is its",
+    ("AxialLoad", _E.SLIDE): "mechanics or sweep, of a scene",
+    ("Noise", _E.SLIDE): "friction_curve, of a scene",
+    ("Inertia", _E.SLIDE): "sweep of a long ramp: its dissipation over its way",
     ("AxialLoad", _E.ENSEMBLE): "mechanics or sweep, of a scene without noise",
     ("Noise", _E.WINDOWED): 'method="auto", and key',
     ("Noise", _E.PATH): 'method="auto", and key',
-    ("Noise", _E.SWEEP): "ensemble and friction_curve, at one eps after the other",
     (
         "Inertia",
         _E.WINDOWED,

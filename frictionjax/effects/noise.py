@@ -16,8 +16,9 @@ class Noise(AbstractEffect):
 
     `temperature` in J per m^exponent, Boltzmann's constant included; `exponent`: a number.
     Wells are of the order of eps rho deep, so the exponent 1 keeps barrier over temperature
-    as eps falls: noise is then felt at every eps alike. Above 1 it vanishes, below 1 it
-    takes over.
+    as eps falls. What noise takes of the friction still grows then, like a logarithm, as
+    slips have ever more time to come early: it vanishes above 1 (faster than
+    eps/log(1/eps), to be exact), and takes over at 1 and below (`benchmarks/noise.py`).
 
     Raises `ValueError` for a temperature that is not positive and finite (without noise a
     scene has no such effect), or an exponent that is not finite.

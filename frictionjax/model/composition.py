@@ -1,5 +1,6 @@
 """What effects make of a scene, before anything is traced."""
 
+from collections.abc import Sequence
 from functools import singledispatch
 
 import jax.numpy as jnp
@@ -40,11 +41,18 @@ def composed(scene: Scene) -> Scene:
 
 
 def _with_changed_potential(scene: Scene) -> Scene:
-    potential = scene.potential
-    for effect in sorted(scene.effects, key=lambda effect: effect.stage):
-        potential = changed_potential(effect, potential)
+    potential = with_effects(scene.potential, scene.effects)
     rest = tuple(e for e in scene.effects if e.stage != Stage.POTENTIAL)
     return exchanged(scene, {"potential": potential, "effects": rest})
+
+
+def with_effects(
+    potential: AbstractPotential, effects: Sequence[AbstractEffect]
+) -> AbstractPotential:
+    """A potential with effects worked in, in their order."""
+    for effect in sorted(effects, key=lambda effect: effect.stage):
+        potential = changed_potential(effect, potential)
+    return potential
 
 
 @singledispatch

@@ -15,7 +15,7 @@ from .._checks import (
     with_nan,
 )
 from ..design import slides_at_speeds
-from ..effects import Engine, Noise, noise_among
+from ..effects import Engine, noise_among
 from ..model import Scene, require_reach, require_told_apart, scene_for
 from ..stochastic import SmoluchowskiStatus, smoluchowski_friction
 from ..supports import Spring
@@ -30,22 +30,27 @@ _MEANING = {
     "drag": ("N", "viscosity times speed"),
     "friction_force": ("N", "mean force less drag"),
     "peak_force": ("N", "largest force in the spring"),
+    "temperature": ("J/m^exponent", "temperature of effects.Noise"),
+    "thermal_energy": ("J", "temperature eps^exponent"),
     "error": ("N", "estimated error of the mean force"),
 }
 
 
 class _Slides(NamedTuple):
-    """Forces in N, each of shape (speeds,), and how they ended; `error` where estimated."""
+    """Forces in N, each of shape (speeds,) or (temperatures, speeds), and how they ended;
+    `error` where estimated."""
 
-    mean_force: Float[np.ndarray, " speeds"]
-    peak_force: Float[np.ndarray, " speeds"]
-    codes: Int[np.ndarray, " speeds"]
+    mean_force: Float[np.ndarray, "*slides"]
+    peak_force: Float[np.ndarray, "*slides"]
+    codes: Int[np.ndarray, "*slides"]
     outcomes: type[Outcome]
-    error: Float[np.ndarray, " speeds"] | None
+    error: Float[np.ndarray, "*slides"] | None
 
 
 @with_nan
-def friction_curve(scene: Scene, speeds: Any, eps: Any, gamma: Any = 1.0) -> "xr.Dataset":
+def friction_curve(
+    scene: Scene, speeds: Any, eps: Any, gamma: Any = 1.0, temperatures: Any = None
+) -> "xr.Dataset":
     """Friction of steady slides whose support moves at constant speed.
 
     `speeds`: in m/s, one or an array of shape (n,), negative to the left, not 0; `eps` in
@@ -58,6 +63,9 @@ def friction_curve(scene: Scene, speeds: Any, eps: Any, gamma: Any = 1.0) -> "xr
     negative to the left; `status` (flags in its attributes). With `effects.Noise` means are
     over noise too, by Smoluchowski's equation, with their estimated `error`; a largest
     force there is none then, and `peak_force` is NaN; a speed may be 0, and forces are.
+    `temperatures`: of the scene's `Noise`, in its place, one or shape (m,), in J per
+    m^exponent; variables are then over `temperature` and `speed`, and `thermal_energy` is
+    `T_eps` in J. `fx.plot.draw_friction_curve` draws them.
 
     Raises `ValueError` for arguments out of range, and supports that are no `Spring`. A
     slide that is not found has its status; so has one whose force may be off by more than
@@ -77,12 +85,32 @@ def friction_curve(scene: Scene, speeds: Any, eps: Any, gamma: Any = 1.0) -> "xr
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)
     size, power = float(eps), float(gamma)
-    if noise is None:
-        slides = _plain(scene, spring, asked, size, power)
-    else:
-        slides = _with_noise(scene, spring, noise, asked, size, power)
     drag = viscosity_of(size, power) * asked
-    return _data_set(slides, asked, drag, {"eps": size, "gamma": power})
+    numbers = {"eps": size, "gamma": power}
+    coords: dict[str, Any] = {"speed": asked}
+    if noise is None:
+        needs = "None, or a scene with effects.Noise"
+        require(temperatures is None, "temperatures", temperatures, needs)
+        slides = _plain(scene, spring, asked, size, power)
+        return _data_set(slides, drag, coords, numbers)
+    if temperatures is None:
+        energies = np.asarray(float(noise.temperature_at(size)))
+    else:
+        rows = _temperatures(temperatures)
+        energies = rows * float(noise.temperature_at(size)) / float(noise.temperature)
+        coords |= {"temperature": rows, "thermal_energy": ("temperature", energies)}
+        energies = energies[:, None]
+    slides = _with_noise(scene, spring, energies, asked, size, power)
+    return _data_set(slides, drag, coords, numbers)
+
+
+def _temperatures(given: Any) -> Float[np.ndarray, " temperatures"]:
+    needs = "temperatures > 0 in J per m^exponent"
+    require_numbers("temperatures", given, needs, lambda T: (T > 0) & np.isfinite(T))
+    known = np.atleast_1d(np.asarray(given, dtype=float))
+    fits = known.ndim == 1
+    require(fits, "temperatures", f"shape {known.shape}", "one, or shape (m,)")
+    return known
 
 
 def _spring_of(scene: Scene) -> Spring:
@@ -111,7 +139,7 @@ def _plain(
 def _with_noise(
     scene: Scene,
     spring: Spring,
-    noise: Noise,
+    energies: Float[np.ndarray, "*temperatures"],
     speeds: Float[np.ndarray, " speeds"],
     eps: float,
     gamma: float,
@@ -122,36 +150,37 @@ def _with_noise(
         speeds,
         eps=eps,
         viscosity=float(viscosity_of(eps, gamma)),
-        temperature=float(noise.temperature_at(eps)),
+        temperature=energies,
     )
-    none = np.full(speeds.shape, np.nan)
+    none = np.full(found.codes.shape, np.nan)
     kind = SmoluchowskiStatus
     return _Slides(found.mean_force, none, found.codes, kind, found.error)
 
 
 def _data_set(
     slides: _Slides,
-    speeds: Float[np.ndarray, " speeds"],
     drag: Float[np.ndarray, " speeds"],
+    coords: dict[str, Any],
     numbers: dict[str, float],
 ) -> "xr.Dataset":
     import xarray as xr
 
+    dims = ("temperature", "speed")[-slides.codes.ndim :]
     columns = {
         "mean_force": slides.mean_force,
-        "drag": drag,
         "friction_force": slides.mean_force - drag,
         "peak_force": slides.peak_force,
     }
     if slides.error is not None:
         columns["error"] = slides.error
     data = xr.Dataset(
-        {name: ("speed", values) for name, values in columns.items()},
-        coords={"speed": speeds},
+        {name: (dims, values) for name, values in columns.items()}
+        | {"drag": ("speed", drag)},
+        coords=coords,
     )
     for name in data.variables:
         units, meaning = _MEANING[str(name)]
         data[name].attrs = {"units": units, "long_name": meaning}
     told = {"long_name": "how a slide ended", **slides.outcomes.flags()}
-    data["status"] = "speed", slides.codes.astype(np.int8), told
+    data["status"] = dims, slides.codes.astype(np.int8), told
     return data.assign_attrs(title="Friction of steady slides against speed", **numbers)

@@ -1,6 +1,7 @@
 from .constant_force import diffusion_ratio as diffusion_ratio
 from .constant_force import mean_speed as mean_speed
 from .ensembles import ensemble as ensemble
+from .histograms import histogram as histogram
 from .paths import MeanInterval as MeanInterval
 from .paths import NoisyCell as NoisyCell
 from .paths import NoisyPaths as NoisyPaths
@@ -8,6 +9,7 @@ from .paths import PathStatus as PathStatus
 from .paths import mean_interval as mean_interval
 from .paths import noisy_paths as noisy_paths
 from .paths import run_paths as run_paths
+from .random_keys import cell_keys as cell_keys
 from .random_keys import key_words as key_words
 from .random_keys import path_keys as path_keys
 from .smoluchowski import SmoluchowskiFriction as SmoluchowskiFriction

@@ -71,40 +71,60 @@ def _fitted(rise: Float[Array, " faces"]) -> tuple[Array, Array]:
     return jnp.where(rise > 0, less, more), jnp.where(rise > 0, more, less)
 
 
-@Program
 def march_period(
-    density: Float[Array, " cells"],
-    rises: Float[Array, " cells_a_period"],
-    first: Real,
-    steps: Int[Array, " steps"],
+    density: Float[np.ndarray, " cells"],
+    rises: Float[np.ndarray, " cells_a_period"],
+    first: float,
+    steps: int,
     drive: Drive,
 ) -> PeriodEnd:
-    """The density one period later.
+    """The density one period later, in so many `steps`.
 
     Cell i stands at `z = eps (first + i/n)`, `first` a whole number; `rises` (n,):
-    differences of `V_eps` from each cell of a period to the next; `steps`: 0, 1, ...
+    differences of `V_eps` from each cell of a period to the next. Only the number of cells
+    is part of the compiled program: n and steps are numbers in it, else a map over
+    temperatures and speeds compiles each of their combinations.
     """
+    count = density.size
+    numbers = jax.tree_util.tree_map(lambda x: np.asarray(float(x)), drive)
+    return _march(
+        density,
+        np.resize(rises, count - 1),
+        np.asarray(float(first)),
+        np.asarray(rises.size),
+        np.asarray(steps),
+        numbers,
+    )
+
+
+@Program
+def _march(
+    density: Float[Array, " cells"],
+    rises: Float[Array, " faces"],
+    first: Real,
+    a_period: Int[Array, ""],
+    steps: Int[Array, ""],
+    drive: Drive,
+) -> PeriodEnd:
     eps, stiffness, viscosity, temperature, speed = drive
-    count, a_period = density.shape[0], rises.shape[0]
     width = eps / a_period
-    places = eps * (first + jnp.arange(count) / a_period)
+    places = eps * (first + jnp.arange(density.shape[0]) / a_period)
     faces = places[:-1] + 0.5 * width
-    wells = jnp.tile(rises, -(-count // a_period))[: count - 1]
-    step = eps / (speed * steps.shape[0])
+    step = eps / (speed * steps)
     share = _GAMMA * step * temperature / (viscosity * width**2)
     none = jnp.zeros(1)
 
     def implicit(known: Array, time: Real) -> Array:
         """`y` with `y - gamma step L(time) y = known`."""
         pull = stiffness * width * (faces - speed * time)
-        right, left = _fitted((wells + pull) / temperature)
+        right, left = _fitted((rises + pull) / temperature)
         right, left = share * right, share * left
         leaving = jnp.concatenate([right, none]) + jnp.concatenate([none, left])
         below, above = jnp.concatenate([none, -right]), jnp.concatenate([-left, none])
         solved = jax.lax.linalg.tridiagonal_solve(below, 1 + leaving, above, known[:, None])
         return solved[:, 0]
 
-    def advance(state: tuple, index: Array) -> tuple:
+    def advance(index: Array, state: tuple) -> tuple:
         density, total, leak = state
         start = index * step
         force = stiffness * (speed * start - jnp.sum(density * places))
@@ -115,11 +135,11 @@ def march_period(
             new = implicit(known, start + sum(row) * step)
             slopes.append((new - known) / _GAMMA)
         mass = jnp.sum(new)
-        return (new / mass, total + force, jnp.maximum(leak, jnp.abs(mass - 1))), None
+        return new / mass, total + force, jnp.maximum(leak, jnp.abs(mass - 1))
 
     state = density, jnp.zeros(()), jnp.zeros(())
-    (density, total, leak), _ = jax.lax.scan(advance, state, steps)
-    return PeriodEnd(density, total / steps.shape[0], leak)
+    density, total, leak = jax.lax.fori_loop(0, steps, advance, state)
+    return PeriodEnd(density, total / steps, leak)
 
 
 def moved_on(density: np.ndarray, a_period: int) -> tuple[np.ndarray, float]:

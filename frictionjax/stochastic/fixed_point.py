@@ -2,7 +2,6 @@
 
 from typing import NamedTuple
 
-import jax
 import numpy as np
 
 from .driven_period import Drive, PeriodEnd, march_period, moved_on
@@ -59,12 +58,10 @@ def periodic_density(
 
     Source: D. G. Anderson, J. ACM 12, 547 (1965).
     """
-    first, times = np.asarray(float(window.first)), np.arange(steps)
-    numbers = jax.tree_util.tree_map(np.asarray, drive)
     history: list[tuple[np.ndarray, np.ndarray]] = []
     density = start / np.sum(start)
     for _ in range(SETTINGS.most_periods):
-        end = march_period(density, rises, first, times, numbers)
+        end = march_period(density, rises, window.first, steps, drive)
         found = _compared(density, end, window)
         if not found.change > SETTINGS.periodic:  # or NaN
             break

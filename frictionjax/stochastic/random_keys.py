@@ -5,7 +5,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import UInt32
+from jaxtyping import Float, UInt32
 
 from .._checks import require, require_whole
 
@@ -36,15 +36,32 @@ def key_words(key: Any) -> UInt32[np.ndarray, " words"]:
 
 
 def path_keys(key: Any, paths: int) -> UInt32[np.ndarray, "paths words"]:
-    """Keys of the first paths of an ensemble, `fold_in(key, i)`: more paths change none.
-
-    Cells of a sweep get theirs in the same way, from the key of the sweep and their number.
-    """
+    """Keys of the first paths of an ensemble, `fold_in(key, i)`: more paths change none."""
     require_whole("paths", paths)
     words = jnp.asarray(key_words(key))
     whole = jax.random.wrap_key_data(words, impl="threefry2x32")
     keys = jax.vmap(lambda i: jax.random.fold_in(whole, i))(np.arange(paths))
     return np.asarray(jax.random.key_data(keys))
+
+
+def cell_keys(
+    key: UInt32[np.ndarray, " words"],
+    eps: Float[np.ndarray, " cells"],
+    gamma: Float[np.ndarray, " cells"],
+) -> UInt32[np.ndarray, "cells words"]:
+    """Keys of cells, by the bits of their eps and gamma: independent of each other, and the
+    same alone and in any grid."""
+    numbers = np.stack([eps, gamma], axis=1).astype(np.float64)
+    words = numbers.view(np.uint32).reshape(-1, 4)
+    whole = jax.random.wrap_key_data(jnp.asarray(key), impl="threefry2x32")
+
+    def folded(bits: Any) -> Any:
+        found = whole
+        for bit in bits:
+            found = jax.random.fold_in(found, bit)
+        return jax.random.key_data(found)
+
+    return np.asarray(jax.vmap(folded)(words))
 
 
 def _of_seed(seed: int) -> Any:

@@ -14,6 +14,13 @@ class Settings(NamedTuple):
     least_panels: int = 32
     most_panels: int = 2**15  # a second for a dozen forces
 
+    # At rest (`boltzmann.py`, `histograms.py`).
+    panels_a_well: int = 16
+    tail_at_rest: float = 1e-18  # of Boltzmann's weight
+    most_nodes_at_rest: int = 2**22  # a few seconds
+    least_expected: float = 5.0  # paths in a bin of chi^2: the usual rule
+    fine: int = 801  # places of the density's curve
+
     # Steady drive (`smoluchowski.py`, `driven_period.py`).
     accuracy: float = 1e-4  # of the largest force of the wells
     # Cells of a standard deviation in a well, on the coarsest grid. At 1.5, 3 and 6 the six

@@ -16,6 +16,7 @@ from .._checks import (
     require_x64,
     with_nan,
 )
+from .._compile import crew
 from ..model import AbstractPotential
 from ..supports import Spring
 from .driven_period import Drive
@@ -107,7 +108,7 @@ def smoluchowski_friction(
     *,
     eps: float,
     viscosity: float,
-    temperature: float,
+    temperature: Any,
     accuracy: float = SETTINGS.accuracy,
 ) -> SmoluchowskiFriction:
     """Mean friction of steady slides with noise, by Smoluchowski's equation.
@@ -115,11 +116,13 @@ def smoluchowski_friction(
     The far end of the spring moves at constant speed, `l = k v t`: the density of z that
     repeats from well to well is computed, nothing is sampled. `support`: a `Spring`, k in
     N/m; `speeds`: v in m/s, any shape, negative to the left; `viscosity` (eps^gamma) in
-    N s/m, `temperature` (T_eps) in J, eps in m; `accuracy`: wanted error of forces, of the
-    largest |V_eps'|. At speed 0 all forces are 0, as at small speeds.
+    N s/m, `temperature` (T_eps) in J, any shape that goes with that of `speeds`, as NumPy
+    has it; eps in m; `accuracy`: wanted error of forces, of the largest |V_eps'|. At speed
+    0 all forces are 0, as at small speeds.
 
     Grids are refined until two of them agree, and values are extrapolated from these two,
-    whose errors fall fourfold; `error` is what is left of the finer one's.
+    whose errors fall fourfold; `error` is what is left of the finer one's. Slides go one
+    after the other, two at once: rows of a compiled call would wait for their slowest.
 
     Raises `ValueError` for numbers out of range, and supports that are no spring: with
     others there is no steady slide.
@@ -130,21 +133,25 @@ def smoluchowski_friction(
     require_numbers("speeds", speeds, "finite numbers in m/s", lambda v: np.isfinite(v))
     require_real("eps", eps, "eps > 0 in m", lambda v: v > 0)
     require_real("viscosity", viscosity, "viscosity > 0 in N s/m", lambda v: v > 0)
-    require_real("temperature", temperature, "temperature > 0 in J", lambda v: v > 0)
+    warm = "temperatures > 0 in J"
+    require_numbers("temperature", temperature, warm, lambda v: (v > 0) & np.isfinite(v))
     require_real("accuracy", accuracy, "accuracy > 0", lambda v: v > 0)
-    asked = np.asarray(speeds, dtype=float)
+    asked, baths = np.broadcast_arrays(
+        np.asarray(speeds, dtype=float), np.asarray(temperature, dtype=float)
+    )
     stiffness = float(support.stiffness)
     wells = {s: _wells(potential, float(eps), s) for s in np.unique(np.sign(asked)) if s}
 
-    def slide(speed: float) -> _Slide:
+    def slide(speed: float, bath: float) -> _Slide:
         if speed == 0:
             return _Slide(0.0, 0.0, SmoluchowskiStatus.OK)
-        numbers = eps, stiffness, viscosity, temperature, abs(speed)
+        numbers = eps, stiffness, viscosity, bath, abs(speed)
         sign = np.sign(speed)
         found = _slide(wells[sign], Drive(*(float(n) for n in numbers)), accuracy)
         return found._replace(mean_force=sign * found.mean_force)
 
-    found = [slide(float(v)) for v in asked.ravel()]
+    cells = asked.ravel().tolist(), baths.ravel().tolist()
+    found = list(crew("densities").map(slide, *cells))
     mean_force, error = (
         np.reshape([getattr(s, name) for s in found], asked.shape)
         for name in ("mean_force", "error")

@@ -89,6 +89,11 @@ def study(dataset: xr.Dataset) -> Study:
     `dissipation_graph_` in front are of these, and the attribute `turning` says it in
     words. There is no strip, and so nothing of it.
 
+    Of a scene with `effects.Noise` errors are those of one path a cell, fitted freely, and
+    `noise_order` is the power of eps with which `T_eps/eps` falls, `exponent - 1`; where it
+    is not positive noise takes all friction as eps -> 0 (`benchmarks/noise.py` measures
+    how), and the attribute `noise` says so.
+
     Cells that failed are left out, and a warning (`FailedCells`) names them. Each of
     several scenes is studied alone; `.spread` tells how they differ.
 
@@ -146,6 +151,8 @@ def _study_of_one(dataset: xr.Dataset) -> Study:
                 curves[f"{error.name}_predicted"] = laws[error.name].errors
     if "beta" in dataset and np.isfinite(dataset.beta).any():  # a scene with inertia
         columns |= _inertia_columns(dataset)
+    if "thermal_share" in dataset and np.isfinite(dataset.thermal_share).any():
+        columns["noise_order"] = _powers(dataset, "thermal_share")
     columns["beta"] = np.minimum(1.0, gammas)
     columns["C0"] = np.array([_lemma_7(dataset.sel(gamma=g)) for g in gammas])
     columns["C"] = np.array([_lemma_9(dataset.sel(gamma=g)) for g in gammas])
@@ -158,6 +165,8 @@ def _study_of_one(dataset: xr.Dataset) -> Study:
         orders.attrs["inertia"] = _inertia_message(orders)
     if "graph_error" in dataset:  # a scene with a rod that turns over
         orders.attrs["turning"] = _turning_message(dataset)
+    if "noise_order" in orders:
+        orders.attrs["noise"] = _noise_message(orders)
     along = xr.Dataset(
         {name: (("gamma", "eps"), values) for name, values in curves.items()},
         coords={"gamma": gammas, "eps": dataset.eps.values},
@@ -227,13 +236,27 @@ def _columns(
 
 
 def _inertia_columns(dataset: xr.Dataset) -> dict[str, np.ndarray]:
-    """The power of eps that beta falls with, for each gamma: exact, as beta is one."""
-    beta = np.log(dataset.beta.transpose("gamma", "eps").values)
-    if dataset.eps.size < 2:
-        power = np.full(dataset.gamma.size, np.nan)
-    else:
-        power = np.round((beta[:, 0] - beta[:, -1]) / np.log(_ratio(dataset)), 9)
+    """The power of eps that beta falls with, for each gamma."""
+    power = _powers(dataset, "beta")
     return {"inertia_order": power, "overdamped": (power > 0).astype(np.int8)}
+
+
+def _powers(dataset: xr.Dataset, name: str) -> np.ndarray:
+    """With which a variable falls with eps, for each gamma: exact, as it is a power."""
+    if dataset.eps.size < 2:
+        return np.full(dataset.gamma.size, np.nan)
+    size = np.log(dataset[name].transpose("gamma", "eps").values)
+    return np.round((size[:, 0] - size[:, -1]) / np.log(_ratio(dataset)), 9)
+
+
+def _noise_message(orders: xr.Dataset) -> str:
+    """Of a scene with noise: whether its limit is dry friction."""
+    if np.all(orders.noise_order.values > 0):
+        return "the temperature falls faster than eps: dry friction for eps -> 0"
+    return (
+        "the temperature does not fall faster than eps: noise takes all friction as "
+        "eps -> 0, and the limit is not the play operator"
+    )
 
 
 def _ratio(dataset: xr.Dataset) -> float:
@@ -326,6 +349,7 @@ _MEANING = {
     "beta": ("1", "exponent min(1, gamma) of Lemmas 7 to 9"),
     "inertia_order": ("1", "power of eps with which m_eps max|W''|/eps^(1+2 gamma) falls"),
     "overdamped": (None, "1 where mass does not matter for eps -> 0"),
+    "noise_order": ("1", "power of eps with which T_eps/eps falls"),
     "C0": (None, "smallest C0 of Lemma 7 in these cells, in m^(1-beta)"),
     "C": (None, "smallest C of Lemma 9 in these cells"),
     "constant": (None, "error over eps^order for eps -> 0"),

@@ -4,15 +4,23 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, UInt32
 
 from .._checks import cells_of, viscosity_of
 from ..contact import largest_compression
-from ..effects import Inertia, NapFlip, inertia_among, nap_flip_among
+from ..effects import (
+    Inertia,
+    NapFlip,
+    Noise,
+    inertia_among,
+    nap_flip_among,
+    noise_among,
+)
 from ..limit import LimitSolution, solve_limit
 from ..model import Scene, coefficients_jit, strips_at, tabulated_scene
 from ..slide_laws import slide_data
 from ..wiggly import Status, integrate_scene
+from .noiseless import without_noise
 
 DIMS = ("gamma", "eps", "time")
 SUPREMA = ("sup_error", "strip_excess", "survey_error")
@@ -24,7 +32,8 @@ class SweepRequest(NamedTuple):
     """What is asked of every scene, checked.
 
     `eps` (m) falling, `gamma` rising, `ts` in s, `accuracy` in eps. `method`: of the lanes;
-    `solver`: of diffrax, instead, where one is asked for.
+    `solver`: of diffrax, instead, where one is asked for. `key`: of scenes with noise, its
+    two words.
     """
 
     eps: Float[np.ndarray, " e"]
@@ -35,6 +44,7 @@ class SweepRequest(NamedTuple):
     solver: Any
     balanced: bool
     suprema: bool
+    key: UInt32[np.ndarray, " 2"] | None
 
 
 class SceneColumns(NamedTuple):
@@ -55,10 +65,14 @@ def scene_columns(
     scene: Scene, request: SweepRequest, report: Callable[[float], None]
 ) -> SceneColumns:
     """Solve all cells of a scene; `report` is told each share that is done."""
-    limit = solve_limit(scene, request.ts)
+    limit = solve_limit(without_noise(scene), request.ts)
     values, method, own = None, request.method, ""
     inertia, turning = inertia_among(scene.effects), nap_flip_among(scene.effects)
-    if request.solver is None:
+    noise = noise_among(scene.effects)
+    apart: Columns = {}
+    if noise is not None:
+        values, apart = _with_noise(scene, noise, request, report)
+    elif request.solver is None:
         if turning is not None:
             values = _with_turning(scene, turning, request, report)
         elif inertia is not None:
@@ -75,6 +89,7 @@ def scene_columns(
         name: (DIMS[: value.ndim + 1], value.reshape(*shape, *value.shape[1:]))
         for name, value in values.items()
     }
+    columns |= apart
     columns["viscosity"] = (DIMS[:2], viscosity_of(request.eps, request.gamma[:, None]))
     known = _limit_values(scene, turning, limit)
     columns |= {name: (DIMS[2:][: v.ndim], v) for name, v in known.items()}
@@ -88,7 +103,8 @@ def scene_columns(
         facts = attributes(scene, turning)
         return SceneColumns(columns, facts, method, own, NOTHING_OF_IT)
     of_slides = None
-    if request.suprema and inertia is None:  # laws are of overdamped slides
+    if request.suprema and inertia is None and noise is None:
+        # Laws are of overdamped slides without noise.
         found = coefficients_jit(scene.potential)
         of_slides = slide_data(scene, found, np.asarray(request.eps))
     laws = {} if of_slides is None else of_slides.attributes()
@@ -169,6 +185,33 @@ def _with_turning(
     from .turning_columns import turning_values  # nothing else needs it
 
     return turning_values(scene, effect, request, report)
+
+
+def _with_noise(
+    scene: Scene, noise: Noise, request: SweepRequest, report: Callable[[float], None]
+) -> tuple[dict[str, np.ndarray], Columns]:
+    """Values of all cells with noise, and what has dims of its own.
+
+    No energies: `int eps^gamma z'^2` of a path is infinite. No brackets, no samples.
+    """
+    from .noisy_cells import noisy_columns  # nothing else needs it
+
+    assert request.key is not None
+    found = noisy_columns(
+        scene,
+        noise,
+        request.eps,
+        request.gamma,
+        ts=np.asarray(request.ts),
+        key=request.key,
+        suprema=request.suprema,
+        report=report,
+    )
+    shape = request.gamma.size, request.eps.size
+    return found.values, {
+        "path_key": ((*DIMS[:2], "word"), found.keys.reshape(*shape, -1)),
+        "thermal_share": (DIMS[:2], found.share.reshape(shape)),
+    }
 
 
 def _by_diffrax(

@@ -4,11 +4,12 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from jaxtyping import UInt32
 
-from .._checks import as_real, grid_of, require_flags, with_nan
+from .._checks import as_real, grid_of, require, require_flags, with_nan
 from .._compile import progress_bar
-from ..called_for import Simulated, simulated
-from ..effects import Engine, engine_of
+from ..called_for import ALL, Simulated, simulated
+from ..effects import Engine, engine_of, noise_among
 from ..model import Scene
 from ..wiggly import is_ours, require_accuracy, warn_of_failed
 from .provenance import describe
@@ -18,6 +19,8 @@ from .scene_family import SceneFamily, columns_of_family, family_of, times_of
 if TYPE_CHECKING:
     import xarray as xr
 
+_ACCURACY = 1e-3  # by default
+
 
 @with_nan
 def sweep(
@@ -25,13 +28,14 @@ def sweep(
     eps: Any,
     gamma: Any,
     ts: Any = None,
-    accuracy: Any = 1e-3,
+    accuracy: Any = _ACCURACY,
     method: Any = "auto",
     progress: bool = False,
     *,
     dissipation: bool = True,
     suprema: bool = True,
     effects: str = "all",
+    key: Any = None,
 ) -> "xr.Dataset":
     """Solve all cells `eps` x `gamma` and compare each with the limit.
 
@@ -70,6 +74,14 @@ def sweep(
     `dissipation_graph_error` likewise (a second is worth `graph_power`). The strip is that
     of the limit's mode; what does not exist is NaN and says why in its attribute `missing`.
 
+    Of a scene with `effects.Noise` each cell is one path, by fixed steps, independent of
+    all others: `key`, a seed or a key of `jax.random`, with the bits of the cell's eps and
+    gamma gives its own, so that a cell has the same bits alone and in any grid, and
+    `fx.solve(..., key=jnp.asarray(data.path_key.sel(...)))` is its path. `sup_error` and
+    `strip_excess` are those of that path, at `ts` and at 16 times or more in each well;
+    `thermal_share` is `T_eps/(eps (rho_plus - rho_minus))`. Energies, brackets and laws
+    there are none of, their variables are left out, and `accuracy` is refused.
+
     A cell that fails has its status and NaNs and does not disturb the others; one warning
     (`FailedCells`, a `UserWarning`) names such cells.
 
@@ -85,6 +97,10 @@ def sweep(
 
     engines = Engine.SWEEP, engine_of(method)
     family = family_of(scene, eps, engines, simulate)
+    noisy = [noise_among(scene.effects) is not None for scene in family.scenes]
+    unused = "Noise" in family.left_out and not any(noisy)
+    told = all(noisy) and effects == ALL  # what no path reads
+    words = _path_words(None if unused else key, accuracy, any(noisy), told)
     request = SweepRequest(
         eps=eps,
         gamma=gamma,
@@ -94,6 +110,7 @@ def sweep(
         solver=None if is_ours(method) else _general(method),
         balanced=bool(dissipation),
         suprema=bool(suprema),
+        key=words,
     )
     found = _all_columns(family, request, progress)
     import xarray as xr  # 0.4 s, which another thread may spend while cells run
@@ -122,6 +139,21 @@ def sweep(
     if family.left_out:
         data.attrs["left_out"] = family.left_out
     return data
+
+
+def _path_words(
+    key: Any, accuracy: Any, some: bool, all_of_them: bool
+) -> UInt32[np.ndarray, " 2"] | None:
+    """The two words of a key where scenes have noise, which fixed steps are taken of."""
+    if not some:
+        require(key is None, "key", key, "None, or a scene with effects.Noise")
+        return None
+    from ..stochastic import key_words  # nothing else needs it
+
+    if all_of_them:
+        told = "its default: steps of a path with noise are fixed"
+        require(as_real(accuracy) == _ACCURACY, "accuracy", accuracy, told)
+    return key_words(key)
 
 
 def _all_columns(

@@ -399,6 +399,8 @@ def _with_turning(
 def _called_for(found: Simulated, *numbers: Any, key: Any, **options: Any) -> Solution:
     """The solution of what is left of a scene, which says what was left out."""
     used = None if "Noise" in found.left_out else key  # of noise alone
+    if noise_among(found.scene.effects) is not None:
+        options |= {"accuracy": _ACCURACY}  # what a path with noise does not read
     solution = solve(found.scene, *numbers, key=used, **options)
     counts = solution.counts | {"left_out": found.left_out}
     how = solution.how + (f"; without {found.in_words}" if found.left_out else "")
@@ -458,7 +460,9 @@ def solve(
     if effects != "all":
         return _called_for(
             simulated(scene, effects, eps, gamma, accuracy),
-            *(eps, gamma, ts, accuracy, method),
+            *(eps, gamma, ts),
+            accuracy=accuracy,
+            method=method,
             dissipation=dissipation,
             max_steps=max_steps,
             adjoint=adjoint,

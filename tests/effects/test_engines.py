@@ -61,11 +61,12 @@ CALLS = {
     ),
     Engine.WINDOWED: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="windowed"),
     Engine.PATH: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="Kvaerno3"),
-    Engine.SWEEP: lambda s: fx.sweep(s, [0.05], [1.0], ts=[0.5, 1.0]),
+    Engine.SWEEP: lambda s: fx.sweep(s, [0.05], [1.0], ts=[0.5, 1.0], key=key_for(s)),
     Engine.CERTIFICATE: lambda s: fx.certify(s, 0.05, 1.0, TS, np.clip(TS - 0.1, 0, 1)),
     Engine.COST: lambda s: fx.predict_cost(s, [0.05], [1.0]),
     Engine.MECHANICS: lambda s: fx.mechanics(s, AT_REST),
     Engine.ENSEMBLE: lambda s: fx.ensemble(noisy(s), 0.05, 1.0, [0.5, 1.0], 2, 0),
+    Engine.SLIDE: lambda s: fx.steady_slide(s.profile, s.bristle, 0.05, effects=s.effects),
     Engine.FRICTION_CURVE: lambda s: fx.friction_curve(s, [0.1], 0.05),
 }
 

@@ -100,13 +100,65 @@ def test_friction_with_noise_is_the_known_one(temperature):
     assert np.all(found.error <= 1e-5)
     assert np.all(np.isnan(found.peak_force))
     assert np.all(found.status == 0)
-    box = {1e-5: (160, (-1.3, 1.2)), 1e-4: (64, (-1.9, 1.8))}[temperature]
+    box = BOXES[temperature]
     again = spectral_friction(
         1e-3, temperature, steps=96, rounds=3, cells=box[0], box=box[1]
     )
     assert friction[1] == pytest.approx(again, rel=1e-3)
     alone = fx.friction_curve(cosine_scene(noise), speeds[1] / EPS, EPS)
     assert np.array_equal(alone.mean_force, found.mean_force[[1]])
+
+
+BOXES = {1e-5: (160, (-1.3, 1.2)), 1e-4: (64, (-1.9, 1.8))}
+
+
+def test_a_map_is_the_known_one_and_its_rows_are_curves():
+    energies = np.array(list(KNOWN))
+    speeds = np.array([*SPEEDS, -1e-3])
+    scene = cosine_scene(fx.effects.Noise(1.0))
+    found = fx.friction_curve(scene, speeds / EPS, EPS, temperatures=energies / EPS)
+    assert found.friction_force.dims == ("temperature", "speed")
+    assert found.thermal_energy.values == pytest.approx(energies, rel=1e-12)
+    assert np.all(found.status == 0)
+    assert np.all(found.error <= 1e-5)
+    friction = found.friction_force.values
+    assert friction[:, :3] == pytest.approx(np.array(list(KNOWN.values())), abs=3e-5)
+    assert friction[:, 3] == pytest.approx(-friction[:, 1], rel=1e-12)
+    for row, T in enumerate(KNOWN):
+        noise = fx.effects.Noise(T / EPS)
+        alone = fx.friction_curve(cosine_scene(noise), speeds[:2] / EPS, EPS)
+        assert np.array_equal(alone.mean_force, found.mean_force[row, :2])
+        cells, box = BOXES[T]
+        again = spectral_friction(1e-2, T, steps=96, rounds=3, cells=cells, box=box)
+        assert friction[row, 2] == pytest.approx(again, rel=1e-3)
+
+
+def test_temperatures_are_those_of_the_scenes_exponent():
+    scene = cosine_scene(fx.effects.Noise(7.0, 0.5))
+    found = fx.friction_curve(scene, 0.1, EPS, temperatures=2e-4)
+    assert found.thermal_energy.values == pytest.approx([2e-4 * EPS**0.5])
+    same = cosine_scene(fx.effects.Noise(2e-4, 0.5))
+    alone = fx.friction_curve(same, 0.1, EPS)
+    assert found.mean_force.values[0] == pytest.approx(alone.mean_force.values, rel=1e-9)
+    assert all(found[name].attrs["long_name"] for name in found.variables)
+
+
+def test_maps_and_curves_are_drawn():
+    scene = cosine_scene(fx.effects.Noise(1.0))
+    speeds, warm = [0.01, 0.1, -0.1], [1e-3, 3e-3]
+    found = fx.friction_curve(scene, speeds, EPS, temperatures=warm)
+    found["status"][0, 0] = 1
+    lines, colours = fx.plot.draw_friction_curve(found).axes[:2]
+    right = [line for line in lines.lines if line.get_label().startswith("$T$")]
+    assert len(right) == 2
+    force = found.friction_force.values
+    assert right[1].get_ydata() == pytest.approx(force[1, :2])
+    assert np.isnan(right[0].get_ydata()[0])
+    shown = colours.collections[0].get_array()
+    assert np.ma.count(shown) == 3  # one has failed
+    assert colours.get_ylabel().endswith("(J)")
+    (plain,) = fx.plot.draw_friction_curve(fx.friction_curve(cosine_scene(), 0.1, EPS)).axes
+    assert plain.get_xlabel() == "speed (m/s)"
 
 
 def test_a_temperature_2_percent_off_is_seen():
@@ -150,6 +202,13 @@ NOISE = fx.effects.Noise(1e-3)
         (scene_with(NOISE), {"speeds": [np.nan]}, "speeds = .*needs speeds in m/s"),
         (scene_with(), {"speeds": [[0.1]]}, "speeds = .*needs one, or shape"),
         (scene_with(), {"eps": [0.1, 0.2]}, "eps = .*needs one number, eps > 0 in m"),
+        (
+            scene_with(),
+            {"temperatures": [1e-3]},
+            r"temperatures = .*needs None, or a scene with effects\.Noise",
+        ),
+        (scene_with(NOISE), {"temperatures": [0.0]}, "temperatures = .*temperatures > 0"),
+        (scene_with(NOISE), {"temperatures": [[1.0]]}, "temperatures = .*one, or shape"),
         (scene_with(), {"gamma": 0.0}, "gamma = 0: needs gamma > 0"),
         (
             scene_with(support=fx.supports.Convex(lambda z: z**2)),

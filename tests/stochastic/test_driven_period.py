@@ -13,7 +13,7 @@ def rises(count=COUNT):
 
 
 def drive(speed, temperature=1e-4):
-    return Drive(*(np.asarray(x) for x in (EPS, 1.0, 1.0, temperature, speed)))
+    return Drive(EPS, 1.0, 1.0, temperature, speed)
 
 
 def places(count=COUNT):
@@ -21,9 +21,7 @@ def places(count=COUNT):
 
 
 def after(density, speed, steps, count=COUNT, temperature=1e-4):
-    first = np.asarray(-2.0)
-    numbers = drive(speed, temperature)
-    return march_period(density, rises(count), first, np.arange(steps), numbers)
+    return march_period(density, rises(count), -2, steps, drive(speed, temperature))
 
 
 def test_a_density_under_a_slow_support_is_boltzmanns_on_any_grid():
@@ -54,8 +52,8 @@ def test_the_error_in_time_is_of_order_3():
 def test_a_free_spring_lags_by_its_drag():
     """Without wells the mean of z is Ornstein and Uhlenbeck's, at any temperature."""
     density = np.exp(-0.5 * (places() / 0.02) ** 2)
-    first, numbers = np.asarray(-2.0), drive(0.05, 1e-3)
-    end = march_period(density / density.sum(), 0 * rises(), first, np.arange(64), numbers)
+    start = density / density.sum()
+    end = march_period(start, 0 * rises(), -2, 64, drive(0.05, 1e-3))
     time = EPS / 0.05
     mean = 0.05 * time - 0.05 * (1 - np.exp(-time))
     assert np.sum(end.density * places()) == pytest.approx(mean, abs=1e-4)

@@ -1,12 +1,13 @@
 """The friction that a steady slide shows at a given eps, gamma and rate."""
 
 import dataclasses
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array
+from jaxtyping import Array, Float
 
 from ..._checks import (
     CodedResult,
@@ -14,6 +15,7 @@ from ..._checks import (
     as_real,
     as_text,
     checked,
+    is_concrete,
     require,
     require_numbers,
     require_real,
@@ -22,8 +24,17 @@ from ..._checks import (
 )
 from ..._compile import Program, padded_size
 from ...bristles import AbstractBristle
+from ...effects import AbstractEffect, Engine, require_done, require_together
 from ...io import CODES, LEAF, record
-from ...model import AbstractPotential, potential, require_admissible, require_reach
+from ...model import (
+    AbstractPotential,
+    coefficients_jit,
+    potential,
+    require_admissible,
+    require_reach,
+    tabulated_potentials,
+    with_effects,
+)
 from ...profiles import AbstractProfile
 from ...supports import Spring
 from ...wiggly import Status
@@ -176,6 +187,28 @@ def spring_of(support: Spring | None) -> Spring:
     return checked(support)
 
 
+def wiggle_of(
+    profile: AbstractProfile, bristle: AbstractBristle, effects: Any
+) -> AbstractPotential:
+    """The potential of a slide with these effects.
+
+    Raises `ValueError` for parts of another kind, and effects that slides do not do.
+    """
+    listed = isinstance(effects, list | tuple)
+    good = listed and all(isinstance(effect, AbstractEffect) for effect in effects)
+    require(good, "effects", effects, "effects of frictionjax.effects in a tuple")
+    known = [checked(effect) for effect in effects]
+    require_together(known)
+    require_done(known, Engine.SLIDE)
+    return with_effects(potential(profile, bristle), known)
+
+
+def _require_friction(wiggle: AbstractPotential) -> None:
+    if is_concrete(wiggle):
+        rho = float(coefficients_jit(wiggle).rho_plus)
+        require(rho > 0, "effects: rho_plus", rho, "tips whose forces do not cancel")
+
+
 @with_nan
 def steady_slide(
     profile: AbstractProfile,
@@ -184,12 +217,16 @@ def steady_slide(
     gamma: Any = 1.0,
     rate: Any = 1.0,
     support: Spring | None = None,
+    effects: Sequence[AbstractEffect] = (),
 ) -> SteadySlide:
     """Mean and peak force of a steady slide, in both directions.
 
     `eps` (m): a number or an array of shape (n,). `gamma`: exponent of the viscosity
     eps^gamma. `rate` (N/s, > 0): of the load, so that the tip moves at rate/k_h on
-    average. `support`: a `Spring`, of 1 N/m where none is given.
+    average. `support`: a `Spring`, of 1 N/m where none is given. `effects`: those that
+    change the potential, `effects.LeadingOrder` and `effects.RigidArray`, whose tips pull
+    at one spring together; of an `effects.CompliantArray` the mean force a bristle is that
+    of one.
 
     One period is integrated, to its fixed point: see `slide_period`. No transient and no
     number of slips enters, and derivatives (first ones, in every number of the parts and
@@ -199,24 +236,43 @@ def steady_slide(
     `STEP_TOO_SMALL`. Where the spring is so soft that errors are hardly forgotten in a
     period, and may add up to 3e-4 of the force, it is `OPEN_BRACKET`.
 
-    Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, and for
-    numbers that are not positive. A slide that is not found has its `status`.
+    Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, for
+    numbers that are not positive, for other effects, and for tips of an array whose forces
+    cancel. A slide that is not found has its `status`.
     """
     support = spring_of(support)
-    wiggle = potential(profile, bristle)
+    wiggle = wiggle_of(profile, bristle, effects)
     require_x64(wiggle, support)
     require_numbers("eps", eps, "eps > 0, one or an array of shape (n,)", lambda v: v > 0)
     require_real("gamma", gamma, "gamma > 0", lambda v: v > 0)
     require_real("rate", rate, "rate > 0", lambda v: v > 0)
-    require_admissible(wiggle)
+    require_admissible(potential(profile, bristle))
+    _require_friction(wiggle)
     sizes = jnp.asarray(eps, dtype=float)
     require(sizes.ndim < 2, "eps", f"shape {sizes.shape}", "a number or shape (n,)")
     require_reach(wiggle, eps)
     numbers = as_real(gamma), as_real(rate), support.stiffness
     several = jnp.atleast_1d(sizes)
-    count = several.shape[0]
-    more = padded_size(count, SETTINGS.lanes, 2) - count
-    padded = jnp.pad(several, (0, more), mode="edge")
-    found = _forces(wiggle, padded, *numbers)
-    wanted = slice(count) if sizes.ndim else 0
+    if effects and is_concrete(wiggle, several, numbers):
+        # Tables of each eps: one program for all effects, 40 s of compilation otherwise.
+        parts = [_forces_of(_table(wiggle, e), e[None], numbers) for e in several]
+        found = jax.tree_util.tree_map(lambda *one: jnp.concatenate(one), *parts)
+    else:
+        found = _forces_of(wiggle, several, numbers)
+    wanted = slice(None) if sizes.ndim else 0
     return _joined(sizes, jax.tree_util.tree_map(lambda leaf: leaf[wanted], found))
+
+
+def _table(wiggle: AbstractPotential, eps: Real) -> AbstractPotential:
+    return tabulated_potentials(wiggle, float(eps))[1]
+
+
+def _forces_of(
+    wiggle: AbstractPotential, eps: Float[Array, " n"], numbers: tuple[Real, Real, Real]
+) -> Sides:
+    """Of all eps (m), in rooms of a few sizes; `numbers`: gamma, rate, stiffness."""
+    count = eps.shape[0]
+    more = padded_size(count, SETTINGS.lanes, 2) - count
+    padded = jnp.pad(eps, (0, more), mode="edge")
+    found = _forces(wiggle, padded, *numbers)
+    return jax.tree_util.tree_map(lambda leaf: leaf[:count], found)

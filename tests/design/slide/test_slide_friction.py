@@ -198,3 +198,65 @@ def test_a_viscosity_that_floats_do_not_resolve_is_told():
     assert np.all(replaced.ok)
     limit = float(fx.friction(fx.profiles.Sine(0.1), usual).rho_plus)
     assert float(replaced.mean_plus[1]) == pytest.approx(limit, rel=1e-6)
+
+
+PAIR = [0.0, 0.15]
+
+
+def array_of(offsets, weights=None):
+    return (fx.effects.RigidArray(jnp.asarray(offsets), weights),)
+
+
+@pytest.mark.slow
+def test_slides_of_rigid_arrays_are_those_of_friction_curve():
+    effects = array_of(PAIR, [1.0, 2.0])
+    found = fx.steady_slide(WAVES, SLANTED, 0.05, 1.0, 0.3, effects=effects)
+    parts = fx.supports.Spring(1.0), fx.loads.Ramp(1.0), 1.0
+    scene = fx.Scene(WAVES, SLANTED, *parts, effects=effects)
+    curve = fx.friction_curve(scene, [0.3, -0.3], 0.05)
+    both = [float(found.mean_plus), float(found.mean_minus)]
+    assert both == pytest.approx(curve.mean_force.values, rel=1e-7)
+    one = fx.steady_slide(WAVES, SLANTED, 0.05, 1.0, 0.3)
+    assert 1.5 * float(one.mean_plus) < both[0] < 3 * float(one.mean_plus)
+
+
+@pytest.mark.slow
+def test_arrays_have_derivatives_in_their_places_and_parts():
+    """Of the slide and of the coefficients, against differences."""
+
+    def slide(numbers):
+        slope, place = numbers
+        profile = fx.profiles.Sine(slope)
+        effects = array_of(jnp.stack([0.0 * place, place]))
+        return fx.steady_slide(profile, SLANTED, 0.05, effects=effects).mean_plus
+
+    def rho(numbers):
+        slope, place = numbers
+        parts = fx.supports.Spring(1.0), fx.loads.Ramp(1.0), 1.0
+        effects = array_of(jnp.stack([0.0 * place, place]))
+        profile = fx.profiles.Sine(slope)
+        return fx.friction(fx.Scene(profile, SLANTED, *parts, effects=effects)).rho_plus
+
+    at, step = np.array([0.1, 0.15]), 1e-5
+    for quantity, close in ((slide, 1e-5), (rho, 1e-7)):
+        exact = np.asarray(jax.grad(quantity)(jnp.asarray(at)))
+        for i, moved in enumerate(step * np.eye(2)):
+            ends = [float(quantity(jnp.asarray(at + s * moved))) for s in (1, -1)]
+            known = (ends[0] - ends[1]) / (2 * step)
+            assert exact[i] == pytest.approx(known, rel=close), (quantity, i)
+
+
+@pytest.mark.parametrize(
+    ("effects", "message"),
+    [
+        (
+            (fx.effects.CompliantArray([0.0, 0.1]),),
+            "does not do CompliantArray: needs one bristle",
+        ),
+        (array_of([0.0, 0.5]), "effects: rho_plus = 0: needs tips whose forces"),
+        (fx.effects.LeadingOrder(), r"effects = .*needs effects of frictionjax"),
+    ],
+)
+def test_effects_that_slides_do_not_do_are_refused(effects, message):
+    with pytest.raises(ValueError, match=message):
+        fx.steady_slide(SINE, fx.bristles.Homothetic(1.0), 0.05, effects=effects)
