@@ -50,10 +50,12 @@ def _one_side(at: Setting, sign: float, barrier: float) -> tuple[float, float, b
     rho = turned[0]
     deficits = rho * _DEFICITS
     heights, widths = np.array([_hump(turned, around, f) for f in deficits]).T
-    index = int(np.searchsorted(at.eps * heights, barrier))
-    if index == deficits.size:
+    if at.eps * heights[-1] < barrier:
         return float(rho), 0.5, True
-    return float(deficits[index]), 0.5 * float(widths[index]), False
+    held = at.eps * np.append(0.0, heights)  # rises with the deficit
+    found = np.interp(barrier, held, np.append(0.0, deficits))
+    width = np.interp(barrier, held, np.append(0.0, widths))
+    return float(found), 0.5 * float(width), False
 
 
 def _hump(force: np.ndarray, steps: np.ndarray, deficit: float) -> tuple[float, float]:
