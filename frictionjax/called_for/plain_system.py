@@ -12,8 +12,8 @@ from .estimates import Estimate
 from .setting import Setting
 
 _PLACES = 512  # of a period, for forces of a well and their change
-_SLIP = 30.0  # times eps^(1 + gamma)/max|W''|: a slip, with its way over the fold
-_FELT = 3.0  # times eps: the most that tips move while a slip is late
+_SLIP = 130.0  # times eps^(1 + gamma)/max|W''|: a slip, with its way over the fold
+_FELT = 6.0  # times eps: the most that tips move while a slip is late
 
 
 @Program
