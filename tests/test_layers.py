@@ -41,7 +41,7 @@ FLOORS = {
     "wiggly": [
         {"stepping"},
         {"equation", "rosenbrock"},
-        {"sequential", "lanes", "limit_path", "settings", "turning"},
+        {"sequential", "lanes", "limit_path", "settings", "solution", "turning"},
         {"slip_map", "inertial"},
         {"enclosure"},
         {"sums", "ways"},

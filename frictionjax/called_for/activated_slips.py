@@ -13,7 +13,6 @@ import numpy as np
 from .setting import Setting
 
 _CHANCE = 0.01  # of a barrier above the one told to be passed even once
-_DEFICITS = np.linspace(0.0, 1.0, 1025)[1:] ** 2  # of rho, densest near the fold
 
 
 class ActivatedSlips(NamedTuple):
@@ -43,19 +42,21 @@ def activated_slips(at: Setting, heat: float) -> ActivatedSlips:
 
 def _one_side(at: Setting, sign: float, barrier: float) -> tuple[float, float, bool]:
     """Deficit in N, half the width of the hump, and whether the barrier (J) never holds."""
+    from scipy.optimize import brentq  # 0.2 s, and sweeps have to be quick
+
     phase, force = at.data.phase, sign * at.data.force
     top = int(np.argmax(force))
     turned = np.roll(force, -top)
     around = np.roll(np.diff(phase, append=phase[0] + 1.0), -top)
-    rho = turned[0]
-    deficits = rho * _DEFICITS
-    heights, widths = np.array([_hump(turned, around, f) for f in deficits]).T
-    if at.eps * heights[-1] < barrier:
-        return float(rho), 0.5, True
-    held = at.eps * np.append(0.0, heights)  # rises with the deficit
-    found = np.interp(barrier, held, np.append(0.0, deficits))
-    width = np.interp(barrier, held, np.append(0.0, widths))
-    return float(found), 0.5 * float(width), False
+    rho = float(turned[0])
+
+    def beyond(deficit: float) -> float:
+        return at.eps * _hump(turned, around, deficit)[0] - barrier
+
+    if beyond(rho) < 0:
+        return rho, 0.5, True
+    found = float(brentq(beyond, 0.0, rho, xtol=1e-9 * rho))
+    return found, 0.5 * _hump(turned, around, found)[1], False
 
 
 def _hump(force: np.ndarray, steps: np.ndarray, deficit: float) -> tuple[float, float]:

@@ -27,6 +27,10 @@ _EVENED = 0.5
 # Times sqrt(beta) over rho: least force that keeps a tip running. 4/pi for large beta; for
 # a sine all are caught at rho where beta < 0.70.
 _CAUGHT = 0.84
+# Up to 1.4 was seen of four paths, of T/(eps rho) from 1e-6 to 1.
+_SHAKEN = 2.0
+# Standard deviations of a free tip on its spring: one path in 16,000 leaves them.
+_SPREAD = 4.0
 
 
 class Estimate(NamedTuple):
@@ -82,14 +86,8 @@ def _(effect: Inertia, at: Setting) -> Estimate:
     """
     beta = float(inertia_numbers(at.scene.potential, effect, at.eps, at.gamma))
     viscosity = at.eps**at.gamma
-    late = (
-        _LATE
-        * at.fastest
-        * at.speed
-        * float(effect.mass_at(at.eps))
-        / viscosity
-        / (1 + beta)
-    )
+    delay = float(effect.mass_at(at.eps)) / viscosity / (1 + beta)
+    late = _LATE * at.fastest * at.speed * delay
     light = min(_LIGHT * min(beta, 1.0) * at.eps, late)
     carried = min(1.0, viscosity * at.speed / at.rho) ** 2
     even = at.rho * _EVENED * min(beta, 1.0) ** 2 * carried
@@ -115,9 +113,3 @@ def _(effect: Noise, at: Setting) -> Estimate:
     barrier = f"T/(eps rho) = {heat / (at.eps * at.rho):.3g}"
     source = f"{barrier}, barriers below {found.logarithm:.3g} T are passed"
     return Estimate(felt, found.force, np.nan, source)
-
-
-# Up to 1.4 was seen of four paths, of T/(eps rho) from 1e-6 to 1.
-_SHAKEN = 2.0
-# Standard deviations of a free tip on its spring: one path in 16,000 leaves them.
-_SPREAD = 4.0

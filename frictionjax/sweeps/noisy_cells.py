@@ -116,6 +116,6 @@ def _row(
         outside = np.maximum(watched.lower - z, z - watched.upper)
         row["sup_error"] = np.max(np.abs(z - watched.z_limit))
         row["strip_excess"] = np.maximum(np.max(outside), 0.0)
-    if not good:
-        row |= {name: np.asarray(np.nan) for name in ("sup_error", "strip_excess")}
+        if not good:
+            row |= {"sup_error": np.asarray(np.nan), "strip_excess": np.asarray(np.nan)}
     return jax.tree_util.tree_map(np.asarray, row)

@@ -34,7 +34,7 @@ _MEANING = {
     "dissipation_graph_error": ("J", "distance of the graphs of both dissipations"),
     "velocity": ("m s-1", "velocity of the wiggly system, z_eps'"),
     "beta": ("1", "m_eps max|W''| eps^(-1-2 gamma): overdamped far below 1"),
-    "thermal_share": ("1", "T_eps/(eps (rho_plus - rho_minus)): noise matters above 0.01"),
+    "thermal_share": ("1", "T_eps/(eps (rho_plus - rho_minus)), of the energy of a slip"),
     "path_key": (None, "key of the path with noise, for solve"),
     "spread": ("m", "largest distance of runs at other tolerances"),
     "compression": ("N", "largest compression along the rod at the times asked for"),

@@ -98,7 +98,7 @@ def sweep(
     engines = Engine.SWEEP, engine_of(method)
     family = family_of(scene, eps, engines, simulate)
     noisy = [noise_among(scene.effects) is not None for scene in family.scenes]
-    unused = "Noise" in family.left_out and not any(noisy)
+    unused = not any(noisy) and any(noise_among(one.effects) for one in family.asked)
     told = all(noisy) and effects == ALL  # what no path reads
     words = _path_words(None if unused else key, accuracy, any(noisy), told)
     request = SweepRequest(
@@ -128,7 +128,7 @@ def sweep(
     # All variables at once: one by one they are aligned anew, 1 ms each.
     data = xr.Dataset(columns, coords=coords)
     data = describe(data, family.asked, request.accuracy, found[0].method)
-    for name, why in found[0].missing.items():
+    for name, why in (pair for one in found for pair in one.missing.items()):
         if name in data:
             data[name].attrs["missing"] = why
     if family.labels is None:

@@ -34,11 +34,11 @@ from .sequential import field_of as field_of
 from .sequential import integrate as integrate
 from .sequential import is_ours as is_ours
 from .sequential import solver_of as solver_of
+from .solution import Solution as Solution
 from .stepping import Control as Control
 from .stepping import ControlState as ControlState
 from .stepping import judge as judge
 from .stepping import step_of as step_of
-from .trajectory import Solution as Solution
 from .trajectory import solve as solve
 from .turning import MotionSteps as MotionSteps
 from .turning import integrate_turning as integrate_turning

@@ -14,7 +14,7 @@ from frictionjax.design.slide.surface_fit import SlideProfileFit
 from frictionjax.design.surface.result import ProfileFit
 from frictionjax.design.trace.result import TraceFit
 from frictionjax.limit.play import LimitSolution
-from frictionjax.wiggly.trajectory import Solution
+from frictionjax.wiggly import Solution
 
 DESIGNS = [AngleFit, ProfileFit, SlideFit, SlideProfileFit, TraceFit]
 BATCHED = [Solution, LimitSolution, SteadySlide, DesignCheck, AngleFit]

@@ -16,8 +16,8 @@ from frictionjax.design.slide.check import DesignCheck
 from frictionjax.design.slide.slide_friction import SteadySlide
 from frictionjax.limit.play import LimitSolution, LimitStatus
 from frictionjax.model.friction_coefficients import Coefficients
+from frictionjax.wiggly import Solution
 from frictionjax.wiggly.equation.status import FailedCells, warn_of_failed
-from frictionjax.wiggly.trajectory import Solution
 
 SINE = fx.profiles.Sine(0.1)
 BAD = int(fx.Status.MAX_STEPS)

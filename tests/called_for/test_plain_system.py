@@ -1,4 +1,4 @@
-"""What explain tells of the scenes that ship, against an effect switched off."""
+"""What is told of the plain system, on scenes that ship, against an effect switched off."""
 
 import jax
 import numpy as np

@@ -1,0 +1,68 @@
+"""What a trajectory of the wiggly system is told as."""
+
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from .._checks import CodedResult
+from .equation import Status
+
+
+class Solution(CodedResult, eqx.Module):
+    """Trajectory of the wiggly system.
+
+    `ts` in s, `z` in m, shapes (n,). `dissipation`: `int_0^ts eps^gamma z'^2` in J.
+    `residual`: `int_0^ts (eps^gamma z' + D E)^2/(2 eps^gamma)` in J, of the
+    energy-dissipation balance; both are None where dissipation was not asked for. `ok`:
+    every number can be trusted. `stats`: steps, rejected steps, tolerance in periods, how
+    values were obtained, and `dissipation_gap`, the distance in J at the end between the
+    dissipation and an independent second value of it. From lanes also `how` (n,): 0 where
+    every slip since z0 is integrated, 1 where a bracket from below and above has closed, 2
+    where one has that set off from a slip map, as wide as the map's measured error;
+    `bracket` (n,): how closely, in eps; `sampled`: share of the way that is known from some
+    of its slips, NaN where only values at `ts` were wanted. Of a `CompliantArray` values
+    are means over its bristles, and `spread` (n,) is their standard deviation in m.
+    Of a path with noise `step` is the length of its steps in s.
+
+    With `effects.Inertia` also `velocity` (n,), z' in m/s; else it is None. `residual` is
+    then what is left of the balance of energies, kinetic energy among them, `spread` (n,)
+    how far in m runs at other tolerances are from it (where they end in different
+    wells the status is SENSITIVE), and `beta` the number that decides whether mass matters.
+
+    With `effects.NapFlip` also `root` u and `tip` p in m and `mode` (n,): 1 as the rod
+    stands at first, -1 turned over, 0 in between; else they are None.
+    """
+
+    ts: Float[Array, " n"]
+    z: Float[Array, " n"]
+    dissipation: Float[Array, " n"] | None
+    residual: Float[Array, " n"] | None
+    status_code: Int[Array, ""]
+    counts: dict[str, Any]
+    how: str = eqx.field(static=True)
+    velocity: Float[Array, " n"] | None = None
+    root: Float[Array, " n"] | None = None
+    mode: Int[Array, " n"] | None = None
+    tip: Float[Array, " n"] | None = None
+    _outcomes = Status
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        """Counts, and under "values" how the values were obtained."""
+        return {**self.counts, "values": self.how}
+
+    @property
+    def _codes(self) -> Any:
+        return self.status_code
+
+    def _in_words(self) -> str:
+        ended, steps = self._ended, np.asarray(self.stats["steps"])
+        if np.ndim(self.status_code):
+            parts = (
+                f"{np.shape(self.z)[-1]} times each, up to {np.max(steps, initial=0)} steps"
+            )
+            return f"Solution(batch {np.shape(self.status_code)}: {ended}; {parts})"
+        end = f"z({float(self.ts[-1]):.6g} s) = {float(self.z[-1]):.9g} m"
+        return f"Solution({ended}: {self.ts.size} times, {end}, {int(steps)} steps)"
