@@ -5,6 +5,8 @@ from .extrema import slope_of as slope_of
 from .extrema import smallest as smallest
 from .hermite import cubic as cubic
 from .hermite import cubic_slope as cubic_slope
+from .power_series import power_integral as power_integral
+from .power_series import power_sum as power_sum
 from .records import concatenated as concatenated
 from .records import rows_of as rows_of
 from .records import stacked as stacked

@@ -11,6 +11,7 @@ from jaxtyping import Array, Float
 from .._checks import ByIdentity, Real, exchanged
 from .._compile import Interpreted
 from ..bristles import AbstractBristle, Rod
+from ..numerics import power_integral
 from .settings import SETTINGS, size_for
 
 Numbers = Array | np.ndarray
@@ -41,18 +42,11 @@ class SeriesBristle(AbstractBristle):
     per_height: Float[Numbers, ""]
     rods: Float[Numbers, "2 terms"] | None = None
 
-    def _integral(self, terms: Numbers, eta: Real) -> Real:
-        x = eta * self.per_height
-        total = jnp.zeros_like(x)
-        for power in range(terms.shape[0] - 1, -1, -1):
-            total = total * x + terms[power] / (power + 1)
-        return eta * total
-
     def offset(self, eta: Real) -> Real:
-        return self._integral(self.ahead, eta)
+        return power_integral(self.ahead, self.per_height, eta)
 
     def energy(self, eta: Real) -> Real:
-        return self._integral(self.climb, eta)
+        return power_integral(self.climb, self.per_height, eta)
 
     def rod(self, eta: Real) -> Rod | None:
         """The rod that has to clear the surface ahead of a tip at height `eta` (m)."""

@@ -3,20 +3,15 @@
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int
+from jaxtyping import Float, Int
 
 from ..._checks import as_real, require_real
-from ..._compile import Program, padded_size
-from ...model import BristlePotential, tabulated_potentials
+from ...model import BristlePotential
 from ...supports import Spring
-from ...tables import SeriesBristle, SeriesProfile, with_harmonics, with_terms
 from ...wiggly import FLAGS, Status
-from .periodic_orbit import SlideScene, survey_ground
-from .settings import SETTINGS
-from .slide_friction import slide_at, spring_of
+from .slide_friction import spring_of
+from .slide_rows import find_slides, slide_rows, slide_table
 
 MEANINGS = {
     "mean_plus": "mean force of a steady slide to the right",
@@ -79,59 +74,15 @@ def slides_of_designs(
     count = len(designs)
     forces = {name: np.full(count, np.nan) for name in MEANINGS}
     status = np.full(count, int(Status.NOT_TRIED))
-    known = [place for place, design in enumerate(designs) if design is not None]
-    groups: dict[Any, list[tuple[int, Any]]] = {}
-    for place, table in zip(
-        known, _alike([designs[i] for i in known], numbers), strict=True
-    ):
-        leaves, structure = jax.tree_util.tree_flatten(table)
-        shapes = tuple(np.shape(leaf) for leaf in leaves)
-        groups.setdefault((structure, shapes), []).append((place, leaves))
-    for (structure, _), members in groups.items():
-        size = min(padded_size(len(members), SETTINGS.lanes, 4), SETTINGS.designs_at_once)
-        for at in range(0, len(members), size):
-            some = members[at : at + size]
-            filled = [leaves for _, leaves in some] + [some[-1][1]] * (size - len(some))
-            columns = [np.stack(rows) for rows in zip(*filled, strict=True)]
-            tables = jax.tree_util.tree_unflatten(structure, columns)
-            found, least = _slides(tables, *(np.asarray(v) for v in numbers))
-            places = np.array([place for place, _ in some])
-            follows = np.asarray(least)[: len(some)] > 0
-            kept = places[follows]
-            for name in MEANINGS:
-                forces[name][kept] = np.asarray(getattr(found, name))[: len(some)][follows]
-            codes = np.maximum(np.asarray(found.code_plus), np.asarray(found.code_minus))
-            status[kept] = codes[: len(some)][follows]
+    known = np.array([n for n, design in enumerate(designs) if design is not None], int)
+    tables = [slide_table(designs[n], numbers.eps) for n in known]
+    which, signs = np.repeat(np.arange(known.size), 2), np.tile([1.0, -1.0], known.size)
+    sides, least = find_slides(tables, slide_rows(which, *numbers, signs))
+    follows = least[::2] > 0
+    kept = known[follows]
+    status[kept] = sides.code.reshape(-1, 2).max(axis=1)[follows]
+    for name in MEANINGS:
+        force, side = name.split("_")
+        values = getattr(sides, force)[0 if side == "plus" else 1 :: 2]
+        forces[name][kept] = values[follows]
     return DesignSlides(forces, status)
-
-
-def _alike(designs: Sequence[Any], numbers: SlideNumbers) -> list[BristlePotential]:
-    """Tables of designs, series as long as the longest: one program for all of them.
-
-    (A program for each size of series took 116 s for a map of 15 designs, 20 s each.)
-    """
-    tables: list[Any] = [tabulated_potentials(d, numbers.eps)[1] for d in designs]
-    waves = [t.profile.cos.size for t in tables if isinstance(t.profile, SeriesProfile)]
-    terms = [t.bristle.ahead.size for t in tables if isinstance(t.bristle, SeriesBristle)]
-    return [
-        BristlePotential(
-            with_harmonics(table.profile, max(waves, default=1)),
-            with_terms(table.bristle, max(terms, default=1)),
-        )
-        for table in tables
-    ]
-
-
-@Program
-def _slides(
-    designs: BristlePotential, eps: Array, gamma: Array, rate: Array, stiffness: Array
-) -> Any:
-    """The slide of each design, and its smallest G."""
-
-    def one(design: BristlePotential) -> Any:
-        scene = SlideScene(
-            design, eps, jnp.ones(()), rate * eps ** (gamma + 1), stiffness * eps
-        )
-        return slide_at(design, eps, gamma, rate, stiffness), survey_ground(scene)[2]
-
-    return jax.vmap(one)(designs)

@@ -16,6 +16,7 @@ equation, times f), so `mean f = int_0^1 D G dy`: what a slip dissipates, over e
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -93,7 +94,7 @@ def least_pull(slide: SlideScene) -> tuple[SlideScene, Real]:
     A fold of curvature K is left late by `2.338 K^(-1/3) (c G)^(2/3)`, and away from
     wiggles a tip is dragged along with `c/(k_h eps)`.
     """
-    still = jax.lax.stop_gradient(slide)
+    still = _held(slide)
     start, steepest, _ = survey_ground(still)
     least = SETTINGS.least_pull * steepest**2
     resolved = jnp.maximum(still.pull, least)
@@ -102,6 +103,12 @@ def least_pull(slide: SlideScene) -> tuple[SlideScene, Real]:
     late, before = ((c * stretch) ** (2 / 3) for c in (resolved, still.pull))
     added = _FOLD * sharp * (late - before) + (resolved - still.pull) / still.give
     return slide._replace(pull=jnp.maximum(slide.pull, least)), added
+
+
+def _held(slide: SlideScene) -> SlideScene:
+    """The slide without derivatives; functions in its parts as they are."""
+    numbers, rest = eqx.partition(slide, eqx.is_array_like)
+    return eqx.combine(jax.lax.stop_gradient(numbers), rest)
 
 
 def survey_ground(slide: SlideScene) -> tuple[Real, Real, Real]:
@@ -253,7 +260,15 @@ def find_periodic_orbit(slide: SlideScene) -> PeriodicOrbit:
 
     rough = iterated(remeshed, SETTINGS.rough, SETTINGS.newton, begin)
     again = rough._replace(closed=far)
-    return iterated(lambda p: p, SETTINGS.closed, SETTINGS.newton_again, again)
+    fine = iterated(lambda p: p, SETTINGS.closed, SETTINGS.newton_again, again)
+    # Where c is at its least, steps of a landing may only replay from where they were made:
+    # then what is left open there counts as the force that it is.
+    height, _ = slide.ground(start)
+    left = rough.closed * jnp.exp(rough.level) / height
+    good = jnp.isfinite(fine.level) & (fine.closed <= SETTINGS.open)
+    return jax.tree_util.tree_map(
+        lambda a, b: jnp.where(good, a, b), fine, rough._replace(closed=left)
+    )
 
 
 def _newton(slide: SlideScene, period: PeriodicOrbit, limit: Real) -> PeriodicOrbit:
@@ -275,7 +290,7 @@ def slide_forces(slide: SlideScene) -> tuple[Real, Real, PeriodicOrbit]:
     Differentiable once: the start of the period by the implicit function theorem, the rest
     through its steps, which are kept.
     """
-    still = jax.lax.stop_gradient(slide)
+    still = _held(slide)
     period = jax.lax.stop_gradient(find_periodic_orbit(still))
 
     def totals(slide: SlideScene, level: Array) -> tuple[Array, Array, Array]:

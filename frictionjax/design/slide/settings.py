@@ -17,7 +17,11 @@ class Settings(NamedTuple):
 
     # Slides (`slide_friction.py`).
     lanes: int = 4  # eps at least that are solved at once: one program for a few of them
-    designs_at_once: int = 64  # slides of a call wait for the slowest (`design_slides.py`)
+    # Slides of known parts, rows of one program (`slide_rows.py`).
+    rows: int = 8
+    rows_at_once: int = 128  # which wait for the slowest
+    harmonics: tuple[int, ...] = (8, 16, 64)
+    terms: int = 9  # of the bristle's series: the most that there are
     open: float = 1e-7  # of log D over a period: mean forces right to that
     # Of the force: more than that by a viscosity that floats resolve is told.
     added: float = 1e-5

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ..._checks import (
@@ -28,24 +29,19 @@ from ...effects import AbstractEffect, Engine, require_done, require_together
 from ...io import CODES, LEAF, record
 from ...model import (
     AbstractPotential,
+    SummedPotential,
     coefficients_jit,
     potential,
     require_admissible,
     require_reach,
-    tabulated_potentials,
     with_effects,
 )
 from ...profiles import AbstractProfile
 from ...supports import Spring
 from ...wiggly import Status
-from .periodic_orbit import (
-    STEPS,
-    PeriodicOrbit,
-    SlideScene,
-    least_pull,
-    slide_forces,
-)
 from .settings import SETTINGS
+from .slide_rows import find_slides, slide_rows, slide_table
+from .slide_sides import Sides, one_side
 
 SLIDE_FORCES = ("mean", "peak")  # of a slide, that designs may ask for
 
@@ -93,34 +89,11 @@ SLIDE = record(
 """A slide in a document."""
 
 
-class Sides(NamedTuple):
-    """Mean and peak force in N, and a `Status` as an integer, of one or more slides.
-
-    `kept`: share of a disturbance that is left after a period.
-    """
-
-    mean: Real
-    peak: Real
-    code: Real
-    kept: Real
-
-
 class SlideForces(NamedTuple):
     """Forces of slides to the right and to the left."""
 
     rho_plus: Real
     rho_minus: Real
-
-
-def one_side(
-    potential, eps: Real, gamma: Real, rate: Real, stiffness: Real, sign: Real
-) -> Sides:
-    """The slide to the right or to the left, as `sign` is 1 or -1; traceable."""
-    slide = SlideScene(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
-    resolved, added = least_pull(slide)
-    mean, peak, period = slide_forces(resolved)
-    code = _code(period, mean, added)
-    return Sides(sign * mean, sign * peak, code, period.kept)
 
 
 def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> Sides:
@@ -163,19 +136,6 @@ def _forces(
     potential: AbstractPotential, eps: Array, gamma: Array, rate: Array, stiffness: Array
 ) -> Any:
     return jax.vmap(lambda e: _both_sides(potential, e, gamma, rate, stiffness))(eps)
-
-
-def _code(period: PeriodicOrbit, mean: Real, added: Real) -> Real:
-    closed = period.closed <= SETTINGS.open
-    known = jnp.where(
-        added <= SETTINGS.added * jnp.abs(mean), int(Status.OK), int(Status.STEP_TOO_SMALL)
-    )
-    code = jnp.where(closed, known, int(Status.SOLVER_FAILED))
-    code = jnp.where(~closed & (period.used >= STEPS), int(Status.MAX_STEPS), code)
-    # Errors of a period's steps add up until they are forgotten.
-    remembered = SETTINGS.step_errors > SETTINGS.amplified * (1 - period.kept)
-    code = jnp.where((code == int(Status.OK)) & remembered, int(Status.OPEN_BRACKET), code)
-    return jnp.where(jnp.isfinite(mean), code, int(Status.NOT_FINITE))
 
 
 def spring_of(support: Spring | None) -> Spring:
@@ -253,18 +213,31 @@ def steady_slide(
     require_reach(wiggle, eps)
     numbers = as_real(gamma), as_real(rate), support.stiffness
     several = jnp.atleast_1d(sizes)
-    if effects and is_concrete(wiggle, several, numbers):
-        # Tables of each eps: one program for all effects, 40 s of compilation otherwise.
-        parts = [_forces_of(_table(wiggle, e), e[None], numbers) for e in several]
-        found = jax.tree_util.tree_map(lambda *one: jnp.concatenate(one), *parts)
+    if is_concrete(wiggle, several, numbers):
+        found = _known_forces(wiggle, np.asarray(several), numbers)
     else:
         found = _forces_of(wiggle, several, numbers)
     wanted = slice(None) if sizes.ndim else 0
     return _joined(sizes, jax.tree_util.tree_map(lambda leaf: leaf[wanted], found))
 
 
-def _table(wiggle: AbstractPotential, eps: Real) -> AbstractPotential:
-    return tabulated_potentials(wiggle, float(eps))[1]
+def _known_forces(
+    wiggle: AbstractPotential,
+    eps: Float[np.ndarray, " n"],
+    numbers: tuple[Real, Real, Real],
+) -> Sides:
+    """Of known parts, by their tables: one program for all of them, arrays (n, 2)."""
+    if isinstance(wiggle, SummedPotential):
+        tables = [slide_table(wiggle, float(e)) for e in eps]
+        which = np.arange(eps.size)
+    else:
+        tables, which = [slide_table(wiggle, float(eps.max()))], np.zeros(eps.size, int)
+    signs = np.tile([1.0, -1.0], eps.size)
+    gamma, rate, stiffness = (float(number) for number in numbers)
+    which, both = np.repeat(which, 2), np.repeat(eps, 2)
+    rows = slide_rows(which, both, gamma, rate, stiffness, signs)
+    found = find_slides(tables, rows).sides
+    return Sides(*(jnp.asarray(column).reshape(-1, 2) for column in found))
 
 
 def _forces_of(

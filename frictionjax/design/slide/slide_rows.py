@@ -1,0 +1,115 @@
+"""Slides of known parts: rows of one compiled program, whatever the parts are."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from ..._compile import ARRAYS, Program, padded_size
+from ...model import AbstractPotential, BristlePotential, tabulated_potentials
+from ...tables import SeriesProfile, Waves, with_harmonics, with_terms
+from .periodic_orbit import SlideScene, survey_ground
+from .settings import SETTINGS
+from .slide_sides import Sides, one_side
+
+
+class SlideRows(NamedTuple):
+    """Slides that are asked for, shape (n,) each: `eps` in m, `rate` in N/s, `stiffness` in
+    N/m, `sign` 1 to the right and -1 to the left; `table`: which of some potentials."""
+
+    table: Int[np.ndarray, " n"]
+    eps: Float[np.ndarray, " n"]
+    gamma: Float[np.ndarray, " n"]
+    rate: Float[np.ndarray, " n"]
+    stiffness: Float[np.ndarray, " n"]
+    sign: Float[np.ndarray, " n"]
+
+
+class KnownSlides(NamedTuple):
+    """Slides, arrays (n,), and the smallest `G = dz/dp` on the way of each."""
+
+    sides: Sides
+    least: Float[np.ndarray, " n"]
+
+
+def slide_rows(table: Any, eps: Any, gamma: Any, rate: Any, stiffness: Any, sign: Any):
+    """Rows of numbers and arrays that broadcast to one axis."""
+    columns = np.broadcast_arrays(table, eps, gamma, rate, stiffness, sign)
+    return SlideRows(np.array(columns[0]), *(np.array(c, float) for c in columns[1:]))
+
+
+def slide_table(potential: AbstractPotential, highest: float) -> AbstractPotential:
+    """A known potential for eps up to `highest` (m), in one of a few sizes.
+
+    Of an array's sum: at that eps. A size takes 20 s to compile, and so does every kind of
+    parts as they are. With harmonics one after the other, as in lanes, 16 of them take 60 s
+    for 36, and a slide a third of the time.
+    """
+    _, table = tabulated_potentials(potential, highest)
+    if not isinstance(table, BristlePotential):
+        return table
+    profile = table.profile
+    if isinstance(profile, SeriesProfile):
+        least = profile.cos.size
+        waves = Waves(profile.mean, profile.cos, profile.sin)
+        profile = with_harmonics(waves, min(n for n in SETTINGS.harmonics if n >= least))
+    return BristlePotential(profile, with_terms(table.bristle, SETTINGS.terms))
+
+
+def find_slides(tables: Sequence[AbstractPotential], rows: SlideRows) -> KnownSlides:
+    """The slide of each row, about 10 ms each; rows of tables of a size go together."""
+    found: list[Any] = [
+        np.full(rows.eps.size, np.nan) for _ in range(len(Sides._fields) + 1)
+    ]
+    kinds: dict[Any, list[int]] = {}
+    for place, table in enumerate(tables):
+        kinds.setdefault(_kind(table), []).append(place)
+    for members in kinds.values():
+        chosen = np.flatnonzero(np.isin(rows.table, members))
+        size = padded_size(chosen.size, SETTINGS.rows)
+        size = min(size, SETTINGS.rows_at_once)
+        for at in range(0, chosen.size, size):
+            some = chosen[at : at + size]
+            filled = np.append(some, np.repeat(some[-1:], size - some.size))
+            numbers = [np.asarray(column)[filled] for column in rows[1:]]
+            part = _sides(_stacked([tables[i] for i in rows.table[filled]]), *numbers)
+            for column, values in zip(found, part, strict=True):
+                column[some] = np.asarray(values)[: some.size]
+    return KnownSlides(Sides(*found[:-1]), found[-1])
+
+
+def _kind(table: AbstractPotential) -> tuple:
+    leaves, structure = jax.tree_util.tree_flatten(table)
+    return structure, *(np.shape(x) if isinstance(x, ARRAYS) else x for x in leaves)
+
+
+def _stacked(tables: Sequence[AbstractPotential]) -> AbstractPotential:
+    """One potential whose arrays have a row for each; functions are those of the first."""
+
+    def column(*leaves: Any) -> Any:
+        return np.stack(leaves) if isinstance(leaves[0], ARRAYS) else leaves[0]
+
+    return jax.tree_util.tree_map(column, *tables)
+
+
+@Program
+def _sides(
+    potentials: AbstractPotential,
+    eps: Array,
+    gamma: Array,
+    rate: Array,
+    stiffness: Array,
+    sign: Array,
+) -> tuple:
+    def one(potential: AbstractPotential, eps, gamma, rate, stiffness, sign) -> tuple:
+        scene = SlideScene(
+            potential, eps, jnp.ones(()), rate * eps ** (gamma + 1), stiffness * eps
+        )
+        sides = one_side(potential, eps, gamma, rate, stiffness, sign)
+        return *sides, survey_ground(scene)[2]
+
+    return eqx.filter_vmap(one)(potentials, eps, gamma, rate, stiffness, sign)
