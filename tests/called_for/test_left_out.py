@@ -83,8 +83,11 @@ def test_noise_that_is_cold_is_left_out_with_its_key():
 
 @pytest.mark.parametrize(
     "effect",
-    [fx.effects.LeadingOrder(), fx.effects.RigidArray([0.0, 0.1])],
-    ids=["leading", "array"],
+    [
+        pytest.param(fx.effects.LeadingOrder(), id="leading"),
+        # A program of its own.
+        pytest.param(fx.effects.RigidArray([0.0, 0.1]), id="array", marks=pytest.mark.slow),
+    ],
 )
 def test_effects_of_the_potential_stay(effect):
     scene = LIGHT.replace(effects=(effect, *LIGHT.effects))

@@ -77,9 +77,22 @@ def test_every_effect_of_the_library_is_walked():
     assert kinds - abstract == EFFECTS.keys()
 
 
-@pytest.mark.parametrize("name", EFFECTS)
-@pytest.mark.parametrize("engine", CALLS, ids=lambda e: e.name)
-def test_an_engine_does_an_effect_or_refuses_it_by_name(name, engine):
+# A program each for what is done here, whose values tests of the effects hold.
+COMPILED = {Engine.PATH, Engine.RESOLVED, Engine.CERTIFICATE, Engine.FRICTION_CURVE}
+COMPILED |= {Engine.SLIDE, Engine.SWEEP}
+
+
+def cell_of(engine, name):
+    compiled = engine in COMPILED and does(engine, EFFECTS[name])
+    marks = pytest.mark.slow if compiled else ()
+    return pytest.param(engine, name, marks=marks, id=f"{engine.name}-{name}")
+
+
+CELLS = [cell_of(*pair) for pair in itertools.product(CALLS, EFFECTS)]
+
+
+@pytest.mark.parametrize(("engine", "name"), CELLS)
+def test_an_engine_does_an_effect_or_refuses_it_by_name(engine, name):
     scene = scene_of(EFFECTS[name])
     if does(engine, EFFECTS[name]):
         CALLS[engine](scene)

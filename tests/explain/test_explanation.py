@@ -19,6 +19,11 @@ def one_wave(Y):
     return jnp.sin(2 * jnp.pi * Y)
 
 
+# Each compiles programs of its own.
+FEW = [
+    "vertical",
+    *(pytest.param(b, marks=pytest.mark.slow) for b in ("slanted", "angular")),
+]
 LEADING = (fx.effects.LeadingOrder(),)
 
 
@@ -39,7 +44,7 @@ def friction_of_a_slide(scene, eps):
 
 
 @pytest.mark.parametrize("rate", [1.0, pytest.param(-1.0, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("bristle", BRISTLES)
+@pytest.mark.parametrize("bristle", FEW)
 def test_what_the_higher_order_does_to_friction_is_less_than_told(bristle, rate):
     eps = 1e-2
     whole = scene_of(bristle, load=fx.loads.Ramp(rate, 0.0))
@@ -51,7 +56,7 @@ def test_what_the_higher_order_does_to_friction_is_less_than_told(bristle, rate)
     assert rate < 0 or told <= 10 * seen
 
 
-@pytest.mark.parametrize("bristle", BRISTLES)
+@pytest.mark.parametrize("bristle", FEW)
 def test_what_the_higher_order_does_to_states_is_less_than_told(bristle):
     eps, base = 1e-2, np.linspace(0.01, 2.95, 150)
     whole = scene_of(bristle)
@@ -71,7 +76,7 @@ def test_what_the_higher_order_does_to_states_is_less_than_told(bristle):
 
 
 @pytest.mark.parametrize("gamma", [0.5, 1.0])
-@pytest.mark.parametrize("bristle", BRISTLES)
+@pytest.mark.parametrize("bristle", FEW)
 def test_what_finite_speed_does_is_what_is_seen(bristle, gamma):
     scene, eps = scene_of(bristle), 1e-2
     data = fx.sweep(scene, [eps], [gamma], ts=[0.0, 3.0])

@@ -1,5 +1,6 @@
 """Scenes as tables: what is compiled does not depend on who wrote the parts."""
 
+import itertools
 import re
 
 import jax
@@ -38,8 +39,16 @@ def scene_of(profile="sine", bristle="vertical", load="sine"):
     return fx.Scene(PROFILES[profile], BRISTLES[bristle], spring, LOADS[load], 2.0)
 
 
-@pytest.mark.parametrize("bristle", BRISTLES)
-@pytest.mark.parametrize("profile", PROFILES)
+# Each pair is a program of its own for the parts as they are.
+FEW = {("sine", "angular"), ("many waves", "slanted"), ("spline", "vertical")}
+FEW |= {("series", "vertical"), ("polyline", "angular")}
+PAIRS = [
+    pytest.param(*pair, marks=() if pair in FEW else pytest.mark.slow)
+    for pair in itertools.product(PROFILES, BRISTLES)
+]
+
+
+@pytest.mark.parametrize(("profile", "bristle"), PAIRS)
 def test_coefficients_are_those_of_the_parts(profile, bristle):
     potential = fx.potential(PROFILES[profile], BRISTLES[bristle])
     found, expected = coefficients_jit(potential), jax.jit(coefficients)(potential)
@@ -48,18 +57,19 @@ def test_coefficients_are_those_of_the_parts(profile, bristle):
             assert float(getattr(found, name)) == pytest.approx(float(value), rel=1e-12)
 
 
-@pytest.mark.parametrize("bristle", BRISTLES)
-@pytest.mark.parametrize("profile", PROFILES)
+@jax.jit
+def forces_at(potential, y, eps):
+    return jax.vmap(lambda place: potential.tip_force(place, eps))(y)
+
+
+@pytest.mark.parametrize(("profile", "bristle"), PAIRS)
 def test_forces_are_those_of_the_parts(profile, bristle):
     scene = scene_of(profile, bristle)
     tables = tabulated_scene(scene, [1e-3, 1e-2])
     y = np.linspace(-1, 1, 101)
     for potential in (tables.potential, tables.lane_potential):
         for eps in (1e-2, 1e-3, 1e-6):
-            both = [
-                jax.vmap(lambda place, p=p, e=eps: p.tip_force(place, e))(y)
-                for p in (potential, scene.potential)
-            ]
+            both = [forces_at(p, y, eps) for p in (potential, scene.potential)]
             for found, expected in zip(*both, strict=True):
                 size = float(np.abs(expected).max())
                 assert np.max(np.abs(np.asarray(found - expected))) < 1e-12 * size
@@ -86,13 +96,19 @@ def test_scenes_of_all_classes_run_the_same_programs(caplog):
         caplog.clear()
         return names
 
+    def own_program(x):
+        return x + 1.0
+
+    with jax.log_compiles(True):  # which is seen, or the rest shows nothing
+        own_program.__name__ = "run_queue"
+        jax.jit(own_program)(1.0)
+    assert compiled(caplog) == {"run_queue"}
+    caplog.clear()
     solved("sine", "vertical", "sine")
     solved("polyline", "angular", "points")
     assert solved("sine", "slanted", "triangle") == set()
     assert solved("sine", "vertical", "ramp") == set()
     assert solved("spline", "angular", "points") == set()
-    # A size of its own, which no other test can have compiled.
-    assert "run_queue" in solved("many waves")
 
 
 def test_what_no_table_holds_is_told():
@@ -104,11 +120,12 @@ def test_what_no_table_holds_is_told():
     )
     said = "support Convex, load Custom, profile Custom"
     assert tabulated_scene(own, 1e-2).untabulated == said
-    data = fx.sweep(own, [0.05], [1.0], [1.0])
+    values = {"dissipation": False}
+    data = fx.sweep(own, [0.05], [1.0], [1.0], suprema=False, **values)
     assert data.attrs["compiled_for"] == said
-    found = fx.solve(own, 0.05, 1.0, [1.0])
+    found = fx.solve(own, 0.05, 1.0, [1.0], **values)
     assert found.stats["values"].endswith(f"compiled for {said}")
-    assert "compiled_for" not in fx.sweep(scene_of(), [0.05], [1.0], [1.0]).attrs
+    assert "compiled_for" not in fx.sweep(scene_of(), [0.05], [1.0]).attrs
 
 
 def test_tables_are_kept_for_the_last_eps():

@@ -284,6 +284,13 @@ def _newton(slide: SlideScene, period: PeriodicOrbit, limit: Real) -> PeriodicOr
     return period._replace(level=level, kept=kept, closed=closed)
 
 
+def known_slide_forces(slide: SlideScene) -> tuple[Real, Real, PeriodicOrbit]:
+    """As `slide_forces` without derivatives: a quarter less to compile."""
+    period = find_periodic_orbit(slide)
+    _, means, peaks = replay(slide, period, period.level)
+    return jnp.sum(means), jnp.max(peaks), period
+
+
 def slide_forces(slide: SlideScene) -> tuple[Real, Real, PeriodicOrbit]:
     """Mean and peak force (N, positive) of a steady slide, and its period.
 

@@ -9,10 +9,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..._compile import ARRAYS, Program, padded_size
+from ..._compile import ARRAYS, Program
 from ...model import AbstractPotential, BristlePotential, tabulated_potentials
 from ...tables import SeriesProfile, Waves, with_harmonics, with_terms
-from .periodic_orbit import SlideScene, survey_ground
+from .periodic_orbit import SlideScene, known_slide_forces, survey_ground
 from .settings import SETTINGS
 from .slide_sides import Sides, one_side
 
@@ -70,8 +70,8 @@ def find_slides(tables: Sequence[AbstractPotential], rows: SlideRows) -> KnownSl
         kinds.setdefault(_kind(table), []).append(place)
     for members in kinds.values():
         chosen = np.flatnonzero(np.isin(rows.table, members))
-        size = padded_size(chosen.size, SETTINGS.rows)
-        size = min(size, SETTINGS.rows_at_once)
+        few = chosen.size <= SETTINGS.few_rows
+        size = SETTINGS.rows if few else SETTINGS.rows_at_once
         for at in range(0, chosen.size, size):
             some = chosen[at : at + size]
             filled = np.append(some, np.repeat(some[-1:], size - some.size))
@@ -109,7 +109,8 @@ def _sides(
         scene = SlideScene(
             potential, eps, jnp.ones(()), rate * eps ** (gamma + 1), stiffness * eps
         )
-        sides = one_side(potential, eps, gamma, rate, stiffness, sign)
+        numbers = eps, gamma, rate, stiffness, sign
+        sides = one_side(potential, *numbers, known_slide_forces)
         return *sides, survey_ground(scene)[2]
 
     return eqx.filter_vmap(one)(potentials, eps, gamma, rate, stiffness, sign)

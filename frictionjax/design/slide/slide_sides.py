@@ -1,5 +1,6 @@
 """A steady slide in one direction, and what its forces are worth."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import jax.numpy as jnp
@@ -23,12 +24,18 @@ class Sides(NamedTuple):
 
 
 def one_side(
-    potential, eps: Real, gamma: Real, rate: Real, stiffness: Real, sign: Real
+    potential,
+    eps: Real,
+    gamma: Real,
+    rate: Real,
+    stiffness: Real,
+    sign: Real,
+    forces_of: Callable = slide_forces,
 ) -> Sides:
     """The slide to the right or to the left, as `sign` is 1 or -1; traceable."""
     slide = SlideScene(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
     resolved, added = least_pull(slide)
-    mean, peak, period = slide_forces(resolved)
+    mean, peak, period = forces_of(resolved)
     code = _code(period, mean, added)
     return Sides(sign * mean, sign * peak, code, period.kept)
 

@@ -1,5 +1,6 @@
 """Passages of one well under steady pulls, at folds with a curvature and at flat ones."""
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -34,7 +35,7 @@ def plain_passage(potential, folds, beyond):
 @pytest.mark.parametrize("name", EVERY)
 def test_passages_are_resolved_under_every_pull(name):
     potential, one = EVERY[name].potential, np.ones(1)
-    folds = landscape(potential, jnp.asarray(EPS)).folds
+    folds = jax.jit(landscape)(potential, jnp.asarray(EPS)).folds
     place, force = float(folds.place_plus) * one, float(folds.force_plus) * one
     track = well_pull_of(
         potential, WellArc(EPS * one, place, one, one, force, SMALLEST * one)

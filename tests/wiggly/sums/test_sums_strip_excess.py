@@ -55,8 +55,12 @@ def largest_outside(scene, eps):
     return float(outside(scene, eps, near).max())
 
 
+# A support of one's own is a program of its own.
+OWN = [pytest.param(name, marks=pytest.mark.slow) for name in ("quartic", "turned at once")]
+
+
 @pytest.mark.parametrize("eps", [0.1, pytest.param(0.01, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", ["reloaded", "to the left", "at rest throughout", *OWN])
 def test_lanes_know_how_far_tips_leave_the_strip(name, eps):
     """Taken for the lag behind the limit, an eps of it was missed, or 0.2 too much."""
     scene = CASES[name]

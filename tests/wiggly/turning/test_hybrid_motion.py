@@ -106,7 +106,7 @@ class Independent:
             rate,
             (t, until),
             start,
-            "Radau",
+            "LSODA",
             events=events,
             rtol=1e-9,
             atol=1e-11,
