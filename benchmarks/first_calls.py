@@ -4,7 +4,8 @@
 library, turn by turn, and prints both. Each process is a new one; `no cache` has an empty
 folder for compiled programs, `kept` the folder that the same run has filled before. Random
 scenes have 1 to 16 harmonics, splines or polylines, four bristles, four loads and springs
-over three decades, in a process that has solved one other scene. Seconds are the wall's,
+over three decades, in a process that has solved one other scene; then steady slides of the
+first five, in one that has slid in another. Seconds are the wall's,
 CPU those of the process, compilers' threads included.
 """
 
@@ -20,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve()
+SLIDES = 5  # scenes whose steady slides are timed, half a minute each where parts compile
 COMMANDS = {
     "friction": ["friction"],
     "study": ["study"],
@@ -86,6 +88,12 @@ def solved(fx, scene, eps=1e-2):
     return time.perf_counter() - before[0], time.process_time() - before[1]
 
 
+def slid(fx, scene):
+    before = time.perf_counter()
+    float(fx.steady_slide(scene.profile, scene.bristle, 1e-2).mean_plus)
+    return time.perf_counter() - before
+
+
 def first_ever():
     """One scene, from the import on."""
     fx, started = library()
@@ -113,7 +121,8 @@ def never_seen(count, seed):
             rows.append((*solved(fx, scene), *solved(fx, scene)))
         except ValueError as refused:
             print(refused, file=sys.stderr)
-    return {"rows": rows[1:]}
+    slides = [(slid(fx, scene), slid(fx, scene)) for scene in scenes[: SLIDES + 1]]
+    return {"rows": rows[1:], "slides": slides[1:]}
 
 
 def called(checkout, cache, *arguments):
@@ -145,13 +154,20 @@ def measured(checkout, count, seed):
         for _ in ("filling", "kept"):
             worker = ["--worker", "scenes", "--count", str(count), "--seed", str(seed)]
             out, _ = called(checkout, cache, str(HERE), *worker)
-            rows = np.array(json.loads(out.splitlines()[-1])["rows"])
+            told = json.loads(out.splitlines()[-1])
+            rows = np.array(told["rows"])
+            slides = figures.setdefault("slides", [])
+            slides.append(np.array(told["slides"]))
         first, second = rows[:, 0], rows[:, 2]
         figures["scene never seen: first solve, median s"] = np.median(first)
         figures["scene never seen: first solve, largest s"] = first.max()
         figures["second solve, median s"] = np.median(second)
         figures["first over second, median"] = np.median(first / second)
         figures["scenes"] = len(rows)
+        for turn, times in zip(("no cache", "kept"), figures.pop("slides"), strict=True):
+            for name, column in zip(("first", "second"), times.T, strict=True):
+                of = f"steady slide of a scene never seen, {turn}, {name}, median s"
+                figures[of] = np.median(column)
     with tempfile.TemporaryDirectory() as cache:
         for turn in ("no cache", "kept"):
             for name, command in COMMANDS.items():
