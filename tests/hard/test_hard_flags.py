@@ -90,6 +90,7 @@ def require_ok(flags: str, isa: str, gammas: dict[str, str]) -> None:
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="its instruction sets")
+@pytest.mark.slow
 def test_the_smallest_eps_is_ok_without_the_instructions_of_this_machine():
     """It was UNBALANCED with AVX2: a tip rested where it was unstable."""
     require_ok(QUICK, "AVX2", {"turns on a fold": "1 2"})
