@@ -37,8 +37,11 @@ class Sensitivities(eqx.Module):
     profile: AbstractProfile
 
 
-def _one(free: FreeParameter, bristle, profile, value, which):
-    """Implicit function theorem: dv = (dtarget - dq(v; p) . dp) / (dq/dv)."""
+def _one(free: FreeParameter, bristle, profile, value, which, again: bool):
+    """Implicit function theorem: dv = (dtarget - dq(v; p) . dp) / (dq/dv).
+
+    `again`: what comes out may be differentiated too.
+    """
 
     numbers, rest = eqx.partition(bristle, eqx.is_inexact_array)
 
@@ -46,21 +49,21 @@ def _one(free: FreeParameter, bristle, profile, value, which):
         part = free.put(eqx.combine(numbers, rest), v)
         return quantity_of(on_slopes(part, slopes), which)
 
-    slopes, pull = jax.vjp(slopes_of, profile)
+    slopes, pull = jax.vjp(lambda one: slopes_of(one, again), profile)
     by = jax.grad(quantity, argnums=(0, 1, 2))(value, numbers, slopes)
     by_bristle, by_slopes = jax.tree_util.tree_map(lambda d: -d / by[0], by[1:])
     return 1 / by[0], *by_slopes, by_bristle, pull(by_slopes)[0]
 
 
 @Program
-def _derivatives(free: FreeParameter, bristle, profile, value, which):
-    return _one(free, bristle, profile, value, which)
+def _derivatives(free: FreeParameter, bristle, profile, value, which, again: bool):
+    return _one(free, bristle, profile, value, which, again)
 
 
 @Program
-def _batch(free: FreeParameter, bristles, profile, values, which):
+def _batch(free: FreeParameter, bristles, profile, values, which, again: bool):
     def one(bristle: Any, value: Real) -> Any:
-        return _one(free, bristle, profile, value, which)
+        return _one(free, bristle, profile, value, which, again)
 
     return eqx.filter_vmap(one, in_axes=(eqx.if_array(0), 0))(bristles, values)
 
@@ -68,9 +71,10 @@ def _batch(free: FreeParameter, bristles, profile, values, which):
 def sensitivities_of(fit: Any) -> Sensitivities:
     """Sensitivities of a fit, one target's or a batch's."""
     which = jnp.asarray(QUANTITIES.index(fit.quantity))
+    again = not is_concrete(fit.value, fit.bristle, fit.profile)
     if not is_concrete(fit.value) or fit.value.ndim == 0:
         free = free_parameter(fit.bristle, fit.free)
-        found = _derivatives(free, fit.bristle, fit.profile, fit.value, which)
+        found = _derivatives(free, fit.bristle, fit.profile, fit.value, which, again)
         return Sensitivities(*found)
     free = free_parameter(fit[0].bristle, fit.free)
     count = fit.value.shape[0]
@@ -82,5 +86,5 @@ def sensitivities_of(fit: Any) -> Sensitivities:
         return jnp.pad(leaf, [(0, more)] + [(0, 0)] * (leaf.ndim - 1), mode="edge")
 
     both = jax.tree_util.tree_map(padded, (fit.bristle, fit.value))
-    found = _batch(free, both[0], fit.profile, both[1], which)
+    found = _batch(free, both[0], fit.profile, both[1], which, again)
     return Sensitivities(*jax.tree_util.tree_map(lambda leaf: leaf[:count], found))

@@ -27,9 +27,12 @@ class Slopes(NamedTuple):
     minus: Real
 
 
-def slopes_of(profile: AbstractProfile) -> Slopes:
-    """`omega_plus`, `omega_minus` of a profile, traceable and differentiable."""
-    found = periodic_extrema(slope_of(profile), profile.points)
+def slopes_of(profile: AbstractProfile, twice: bool = True) -> Slopes:
+    """`omega_plus`, `omega_minus` of a profile, traceable and differentiable.
+
+    Not `twice`: once, which takes half as long to trace and compile.
+    """
+    found = periodic_extrema(slope_of(profile), profile.points, twice)
     return Slopes(found.max, found.min)
 
 
