@@ -6,8 +6,9 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, ArrayLike, Float
+
+from .zero_tangents import is_zero
 
 # Taylor series of sin(2 pi r) and cos(2 pi r): on |r| <= 1/8 the first terms left out
 # are 3e-19 and 3e-18.
@@ -147,20 +148,16 @@ def _fourier_sum_jvp(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
     total = fourier_sum(cos, sin, y)
     change = jnp.zeros_like(total)
     # Zero tangents leave no trace: without this, programs triple with every derivative.
-    if not _is_zero(y_dot):
+    if not is_zero(y_dot):
         turns = 2 * jnp.pi * jnp.arange(1, cos.shape[0] + 1)
         change = fourier_sum(turns * sin, -turns * cos, y) * y_dot
-    if not (_is_zero(cos_dot) and _is_zero(sin_dot)):
+    if not (is_zero(cos_dot) and is_zero(sin_dot)):
         change = change + fourier_sum(_filled(cos_dot), _filled(sin_dot), y)
     return total, change
 
 
-def _is_zero(tangent: Any) -> bool:
-    return isinstance(tangent, SymbolicZero)
-
-
 def _filled(tangent: Any) -> Array:
-    return jnp.zeros(tangent.shape) if _is_zero(tangent) else tangent
+    return jnp.zeros(tangent.shape) if is_zero(tangent) else tangent
 
 
 fourier_sum.defjvp(_fourier_sum_jvp, symbolic_zeros=True)

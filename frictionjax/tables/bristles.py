@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from .._checks import ByIdentity, Real, exchanged
 from .._compile import Interpreted
 from ..bristles import AbstractBristle, Rod
-from ..numerics import power_integral
+from ..numerics import power_integral, power_sum
 from .settings import SETTINGS, size_for
 
 Numbers = Array | np.ndarray
@@ -52,10 +52,8 @@ class SeriesBristle(AbstractBristle):
         """The rod that has to clear the surface ahead of a tip at height `eta` (m)."""
         if self.rods is None:
             return None
-        x, total = eta * self.per_height, jnp.zeros((2, *jnp.shape(eta)))
-        for power in range(self.rods.shape[1] - 1, -1, -1):
-            total = total * x + self.rods[:, power]
-        return Rod(total[0], total[1])
+        x = eta * self.per_height
+        return Rod(power_sum(self.rods[0], x), power_sum(self.rods[1], x))
 
 
 def with_terms(bristle: AbstractBristle, count: int) -> AbstractBristle:

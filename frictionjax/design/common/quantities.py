@@ -30,7 +30,7 @@ class Slopes(NamedTuple):
 def slopes_of(profile: AbstractProfile, twice: bool = True) -> Slopes:
     """`omega_plus`, `omega_minus` of a profile, traceable and differentiable.
 
-    Not `twice`: once, which takes half as long to trace and compile.
+    Not `twice`: once, with two derivatives less to trace.
     """
     found = periodic_extrema(slope_of(profile), profile.points, twice)
     return Slopes(found.max, found.min)

@@ -11,7 +11,7 @@ from ...model import BristlePotential
 from ...supports import Spring
 from ...wiggly import FLAGS, Status
 from .slide_friction import spring_of
-from .slide_rows import find_slides, slide_rows, slide_table
+from .slide_rows import find_both_ways, slide_table
 
 MEANINGS = {
     "mean_plus": "mean force of a steady slide to the right",
@@ -76,13 +76,14 @@ def slides_of_designs(
     status = np.full(count, int(Status.NOT_TRIED))
     known = np.array([n for n, design in enumerate(designs) if design is not None], int)
     tables = [slide_table(designs[n], numbers.eps) for n in known]
-    which, signs = np.repeat(np.arange(known.size), 2), np.tile([1.0, -1.0], known.size)
-    sides, least = find_slides(tables, slide_rows(which, *numbers, signs))
-    follows = least[::2] > 0
+    eps, *others = numbers
+    places, sizes = np.arange(known.size), np.full(known.size, eps)
+    sides, least = find_both_ways(tables, places, sizes, *others)
+    follows = least[:, 0] > 0
     kept = known[follows]
-    status[kept] = sides.code.reshape(-1, 2).max(axis=1)[follows]
+    status[kept] = sides.code.max(axis=1)[follows]
     for name in MEANINGS:
         force, side = name.split("_")
-        values = getattr(sides, force)[0 if side == "plus" else 1 :: 2]
+        values = getattr(sides, force)[:, 0 if side == "plus" else 1]
         forces[name][kept] = values[follows]
     return DesignSlides(forces, status)

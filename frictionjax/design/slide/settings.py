@@ -19,7 +19,7 @@ class Settings(NamedTuple):
     lanes: int = 4  # eps at least that are solved at once: one program for a few of them
     # Slides of known parts, rows of one program (`slide_rows.py`).
     rows: int = 8
-    few_rows: int = 40  # up to which they go by eights, 40 ms each: no program of its own
+    few_rows: int = 40  # up to which they go by eights, 70 ms each: no program of its own
     rows_at_once: int = 128  # which wait for the slowest
     harmonics: tuple[int, ...] = (8, 16, 64)
     terms: int = 9  # of the bristle's series: the most that there are

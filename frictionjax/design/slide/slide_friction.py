@@ -40,7 +40,7 @@ from ...profiles import AbstractProfile
 from ...supports import Spring
 from ...wiggly import Status
 from .settings import SETTINGS
-from .slide_rows import find_slides, slide_rows, slide_table
+from .slide_rows import find_both_ways, slide_table
 from .slide_sides import Sides, one_side
 
 SLIDE_FORCES = ("mean", "peak")  # of a slide, that designs may ask for
@@ -232,12 +232,9 @@ def _known_forces(
         which = np.arange(eps.size)
     else:
         tables, which = [slide_table(wiggle, float(eps.max()))], np.zeros(eps.size, int)
-    signs = np.tile([1.0, -1.0], eps.size)
     gamma, rate, stiffness = (float(number) for number in numbers)
-    which, both = np.repeat(which, 2), np.repeat(eps, 2)
-    rows = slide_rows(which, both, gamma, rate, stiffness, signs)
-    found = find_slides(tables, rows).sides
-    return Sides(*(jnp.asarray(column).reshape(-1, 2) for column in found))
+    found = find_both_ways(tables, which, eps, gamma, rate, stiffness).sides
+    return Sides(*(jnp.asarray(column) for column in found))
 
 
 def _forces_of(

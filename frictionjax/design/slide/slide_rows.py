@@ -5,16 +5,15 @@ from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..._compile import ARRAYS, Program
 from ...model import AbstractPotential, BristlePotential, tabulated_potentials
 from ...tables import SeriesProfile, Waves, with_harmonics, with_terms
-from .periodic_orbit import SlideScene, known_slide_forces, survey_ground
+from .periodic_orbit import known_slide_forces, survey_ground
 from .settings import SETTINGS
-from .slide_sides import Sides, one_side
+from .slide_sides import Sides, one_side, slide_scene
 
 
 class SlideRows(NamedTuple):
@@ -36,7 +35,9 @@ class KnownSlides(NamedTuple):
     least: Float[np.ndarray, " n"]
 
 
-def slide_rows(table: Any, eps: Any, gamma: Any, rate: Any, stiffness: Any, sign: Any):
+def rows_of_slides(
+    table: Any, eps: Any, gamma: Any, rate: Any, stiffness: Any, sign: Any
+) -> SlideRows:
     """Rows of numbers and arrays that broadcast to one axis."""
     columns = np.broadcast_arrays(table, eps, gamma, rate, stiffness, sign)
     return SlideRows(np.array(columns[0]), *(np.array(c, float) for c in columns[1:]))
@@ -46,8 +47,8 @@ def slide_table(potential: AbstractPotential, highest: float) -> AbstractPotenti
     """A known potential for eps up to `highest` (m), in one of a few sizes.
 
     Of an array's sum: at that eps. A size takes 20 s to compile, and so does every kind of
-    parts as they are. With harmonics one after the other, as in lanes, 16 of them take 60 s
-    for 36, and a slide a third of the time.
+    parts as they are. With harmonics one after the other 16 of them take 60 s for 27, and
+    a slide two thirds of the time.
     """
     _, table = tabulated_potentials(potential, highest)
     if not isinstance(table, BristlePotential):
@@ -82,6 +83,22 @@ def find_slides(tables: Sequence[AbstractPotential], rows: SlideRows) -> KnownSl
     return KnownSlides(Sides(*found[:-1]), found[-1])
 
 
+def find_both_ways(
+    tables: Sequence[AbstractPotential],
+    table: Int[np.ndarray, " n"],
+    eps: Float[np.ndarray, " n"],
+    gamma: float,
+    rate: float,
+    stiffness: float,
+) -> KnownSlides:
+    """To the right and to the left, arrays (n, 2); arguments as in `SlideRows`."""
+    which, both = np.repeat(table, 2), np.repeat(eps, 2)
+    signs = np.tile([1.0, -1.0], eps.size)
+    rows = rows_of_slides(which, both, gamma, rate, stiffness, signs)
+    sides, least = find_slides(tables, rows)
+    return KnownSlides(Sides(*(c.reshape(-1, 2) for c in sides)), least.reshape(-1, 2))
+
+
 def _kind(table: AbstractPotential) -> tuple:
     leaves, structure = jax.tree_util.tree_flatten(table)
     return structure, *(np.shape(x) if isinstance(x, ARRAYS) else x for x in leaves)
@@ -106,11 +123,8 @@ def _sides(
     sign: Array,
 ) -> tuple:
     def one(potential: AbstractPotential, eps, gamma, rate, stiffness, sign) -> tuple:
-        scene = SlideScene(
-            potential, eps, jnp.ones(()), rate * eps ** (gamma + 1), stiffness * eps
-        )
         numbers = eps, gamma, rate, stiffness, sign
         sides = one_side(potential, *numbers, known_slide_forces)
-        return *sides, survey_ground(scene)[2]
+        return *sides, survey_ground(slide_scene(potential, *numbers))[2]
 
     return eqx.filter_vmap(one)(potentials, eps, gamma, rate, stiffness, sign)

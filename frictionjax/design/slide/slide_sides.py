@@ -23,6 +23,13 @@ class Sides(NamedTuple):
     kept: Real
 
 
+def slide_scene(
+    potential, eps: Real, gamma: Real, rate: Real, stiffness: Real, sign: Real
+) -> SlideScene:
+    """What a period is made of, by the numbers that users give."""
+    return SlideScene(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
+
+
 def one_side(
     potential,
     eps: Real,
@@ -33,7 +40,7 @@ def one_side(
     forces_of: Callable = slide_forces,
 ) -> Sides:
     """The slide to the right or to the left, as `sign` is 1 or -1; traceable."""
-    slide = SlideScene(potential, eps, sign, rate * eps ** (gamma + 1), stiffness * eps)
+    slide = slide_scene(potential, eps, gamma, rate, stiffness, sign)
     resolved, added = least_pull(slide)
     mean, peak, period = forces_of(resolved)
     code = _code(period, mean, added)

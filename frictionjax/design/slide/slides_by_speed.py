@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ...model import AbstractPotential
-from .slide_rows import find_slides, slide_rows, slide_table
+from .slide_rows import find_slides, rows_of_slides, slide_table
 from .slide_sides import Sides
 
 
@@ -22,5 +22,5 @@ def slides_at_speeds(
     Where springs are so soft that errors are hardly forgotten the code is `OPEN_BRACKET`.
     """
     rates = stiffness * np.abs(speeds)
-    rows = slide_rows(0, eps, gamma, rates, stiffness, np.sign(speeds))
+    rows = rows_of_slides(0, eps, gamma, rates, stiffness, np.sign(speeds))
     return find_slides([slide_table(potential, eps)], rows).sides

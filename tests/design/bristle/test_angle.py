@@ -327,6 +327,19 @@ def test_sensitivities_of_a_batch_are_those_of_its_targets():
     assert many.target[0] != many.target[2]
 
 
+@pytest.mark.slow  # third derivatives of a profile, 20 s to compile
+def test_sensitivities_have_derivatives_where_they_are_traced():
+    part = fx.bristles.SlantedSpring(1.5, 2.4, 1.0, 0.6)
+
+    def slope(wave):
+        surface = fx.profiles.Fourier([0.01, 0.004], [0.02, wave])
+        found = fx.fit_angle(surface, part, ratio=1.4).sensitivities
+        return found.profile.sin[0]
+
+    expected = float(central(slope, -0.003, 1e-5))
+    assert float(jax.jit(jax.grad(slope))(-0.003)) == pytest.approx(expected, rel=1e-6)
+
+
 def test_a_batch_of_bristles():
     """`vmap` over bristles, and derivatives inside of it, as one after the other."""
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.design.slide.slide_rows import find_slides, slide_rows, slide_table
+from frictionjax.design.slide.slide_rows import find_slides, rows_of_slides, slide_table
 from frictionjax.wiggly import Status
 
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
@@ -25,7 +25,7 @@ def test_slides_of_the_least_viscosity_are_found():
     profiles, eps = list(surfaces(24)), 1e-7
     tables = [slide_table(fx.potential(one, SLANTED), eps) for one in profiles]
     which = np.repeat(np.arange(24), 2)
-    rows = slide_rows(which, eps, 2.0, 1.0, 1.0, np.tile(BOTH, 24))
+    rows = rows_of_slides(which, eps, 2.0, 1.0, 1.0, np.tile(BOTH, 24))
     sides = find_slides(tables, rows).sides
     good = sides.code == int(Status.OK)
     assert np.mean(good) > 0.95
@@ -58,10 +58,10 @@ def test_a_row_is_what_it_is_alone_whatever_stands_beside_it():
     ]
     eps = np.array([1e-2, 1e-3, 5e-3, 1e-4, 1e-2])
     which, sign = np.array([0, 1, 2, 1, 0]), np.array([1.0, 1.0, -1.0, -1.0, -1.0])
-    rows = slide_rows(which, eps, 1.0, 2.0, 0.5, sign)
+    rows = rows_of_slides(which, eps, 1.0, 2.0, 0.5, sign)
     found = find_slides(tables, rows)
     for n in range(5):
-        one = slide_rows(0, eps[n : n + 1], 1.0, 2.0, 0.5, sign[n])
+        one = rows_of_slides(0, eps[n : n + 1], 1.0, 2.0, 0.5, sign[n])
         alone = find_slides([tables[which[n]]], one)
         assert found.sides.mean[n] == pytest.approx(alone.sides.mean[0], rel=1e-13)
         assert found.sides.peak[n] == pytest.approx(alone.sides.peak[0], rel=1e-13)
@@ -72,7 +72,7 @@ def test_what_no_table_holds_goes_as_it_is():
     own = fx.profiles.Custom(lambda y: 0.02 * jax.numpy.abs(jax.numpy.sin(np.pi * y)) ** 5)
     potential = fx.potential(own, SLANTED)
     table = slide_table(potential, 1e-2)
-    sides = find_slides([table], slide_rows(0, 1e-2, 1.0, 1.0, 1.0, BOTH)).sides
+    sides = find_slides([table], rows_of_slides(0, 1e-2, 1.0, 1.0, 1.0, BOTH)).sides
     slide = fx.steady_slide(own, SLANTED, 1e-2)
     assert float(slide.mean_plus) == pytest.approx(sides.mean[0], rel=1e-12)
     assert np.all(sides.code == int(Status.OK))

@@ -35,7 +35,7 @@ def chained(stepper, start, stop, times):
 @pytest.fixture(scope="module")
 def point():
     stepper = stepper_of()
-    return stepper, start_of(stepper), jnp.asarray(0.015)
+    return stepper, start_of(stepper), jnp.asarray(0.03)
 
 
 def test_values_are_those_of_the_steps(point):
@@ -57,7 +57,7 @@ def test_derivatives_are_those_of_the_steps_made_once_more(point):
     stepper, start, stop = point
     now, log = stepped(stepper, jnp.asarray(0.0), stop, room=ROOM)
     times = [jnp.asarray(t) for t in np.asarray(log.t)[: int(now.accepted)]]
-    assert 3 < len(times) < 30
+    assert 5 < len(times) < 30
 
     def parts(ends):
         return eqx.filter_grad(lambda e: energies(e[0], e[1], e[2])[0])(ends)
