@@ -7,7 +7,7 @@ import numpy as np
 from ..model import Coefficients, Scene, coefficients_jit, composed, require_reach
 from ..slide_laws import SlideData, slide_data
 
-_AWAY = 0.005  # of the time that a well takes
+AWAY = 0.005  # of the time that a well takes
 _FASTEST = 10.0  # 0.05 eps in that time
 _BESIDE = 12  # places about a fold, that tell how it bends
 
@@ -55,8 +55,8 @@ class Setting(NamedTuple):
             bend = min(bend, float(np.median(2 * fall / away[near] ** 2)))
         if not bend > 0:
             return _FASTEST
-        resting = np.sqrt(self.eps * self.stiffest / (2 * _AWAY * bend))
-        held_up = 2 * self.eps**self.gamma * self.speed / (_AWAY**2 * bend)
+        resting = np.sqrt(self.eps * self.stiffest / (2 * AWAY * bend))
+        held_up = 2 * self.eps**self.gamma * self.speed / (AWAY**2 * bend)
         return float(np.clip(max(resting, held_up), 1.0, _FASTEST))
 
     @property

@@ -1,8 +1,8 @@
 """What is told of the plain system, on scenes that ship, against an effect switched off."""
 
-import jax
 import numpy as np
 import pytest
+from outside_slips import states_outside_slips, times_about
 
 import frictionjax as fx
 from frictionjax.io.example_scenes import example_text
@@ -10,30 +10,16 @@ from frictionjax.io.scene_files import parse_scene
 
 EPS = 5e-3
 LEADING = (fx.effects.LeadingOrder(),)
-SCENES = ("vertical-spring", "slanted-spring", "angular-spring", "leading-order")
+SCENES = (
+    *("vertical-spring", "slanted-spring", "angular-spring", "leading-order"),
+    *("nap", "measured-groove"),
+)
 SLOW = pytest.mark.slow
 CASES = [
     pytest.param(name, gamma, marks=() if (name, gamma) == (SCENES[0], 1.0) else SLOW)
     for name in SCENES
     for gamma in (0.5, 1.0, 2.0)
 ]
-
-
-def times_about(scene, eps):
-    """Times, and those half a percent of a well's time before and after."""
-    duration = float(scene.duration)
-    middle = np.linspace(0.003, 0.995, 4000) * duration
-    pull = np.abs(jax.vmap(jax.grad(scene.load))(middle))
-    away = np.minimum(0.005 * eps / np.maximum(pull, 1e-3 * pull.max()), duration / 600)
-    return np.maximum(middle - away, 0.0), middle, middle + away
-
-
-def states_outside_slips(scene, gamma, eps, times):
-    """States at the times in between, and where they are outside of slips."""
-    ts = np.sort(np.concatenate(times))
-    found = fx.solve(scene, eps, gamma, ts, 1e-6, dissipation=False)
-    before, z, after = (np.asarray(found.z)[np.searchsorted(ts, t)] for t in times)
-    return z, np.maximum(np.abs(z - before), np.abs(after - z)) < 0.05 * eps
 
 
 @pytest.mark.parametrize(("name", "gamma"), CASES)

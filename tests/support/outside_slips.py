@@ -1,0 +1,23 @@
+"""States of tips where they do not slip, to see what an effect changes."""
+
+import jax
+import numpy as np
+
+import frictionjax as fx
+
+
+def times_about(scene, eps):
+    """Times, and those half a percent of a well's time before and after."""
+    duration = float(scene.duration)
+    middle = np.linspace(0.003, 0.995, 4000) * duration
+    pull = np.abs(jax.vmap(jax.grad(scene.load))(middle))
+    away = np.minimum(0.005 * eps / np.maximum(pull, 1e-3 * pull.max()), duration / 600)
+    return np.maximum(middle - away, 0.0), middle, middle + away
+
+
+def states_outside_slips(scene, gamma, eps, times, accuracy=1e-6, **options):
+    """States at the times in between, and where they are outside of slips."""
+    ts = np.sort(np.concatenate(times))
+    found = fx.solve(scene, eps, gamma, ts, accuracy, dissipation=False, **options)
+    before, z, after = (np.asarray(found.z)[np.searchsorted(ts, t)] for t in times)
+    return z, np.maximum(np.abs(z - before), np.abs(after - z)) < 0.05 * eps
