@@ -11,6 +11,7 @@ import equinox as eqx
 import jax
 
 from .arguments import in_64_bits, is_concrete, is_known, require
+from .shown_parts import part_text
 
 _PartT = TypeVar("_PartT", bound="Part")
 
@@ -71,6 +72,9 @@ class Part(eqx.Module):
 
     def __replace__(self, **changes: Any) -> Self:
         return self.replace(**changes)
+
+    def __repr__(self) -> str:
+        return part_text(self, asked_names(type(self), {}))
 
 
 def asked_names(kind: type, changes: dict[str, Any]) -> list[str]:

@@ -1,4 +1,6 @@
 from .encoding import decoded as decoded
+from .result_table import ResultTable as ResultTable
+from .result_table import in_columns as in_columns
 from .tables import Table as Table
 from .tables import place_of as place_of
 from .tables import read_table as read_table

@@ -6,6 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import as_real, is_concrete, require, require_real, with_nan
+from .._text import ResultTable
 from ..bristles import AbstractBristle, AngularSpring, Stance
 from ..model import Coefficients, friction
 from ..profiles import AbstractProfile
@@ -62,16 +63,23 @@ class Nap(NamedTuple):
         loads, own = self.window, self.critical_load
         return bool(loads and own and loads.least < own < loads.greatest)
 
-    def __repr__(self) -> str:
+    def table(self) -> ResultTable:
+        """Friction and axial force of slides with the nap, against it and turned over."""
         rows = [
             ("with the nap", self.rho_with, self.axial_with),
             ("against it", self.rho_against, self.axial_against),
         ]
         if self.flipped is not None:
             rows.append(("turned over", self.rho_flipped, self.axial_flipped))
-        lines = [f"{'moved':<14}{'friction, N':>14}{'axial force, N':>16}"]
-        lines += [f"{name:<14}{rho:>14.6g}{axial:>16.6g}" for name, rho, axial in rows]
-        return "\n".join([*lines, f"against/with = {self.ratio:.6g}", self.message])
+        cells = tuple((name, f"{rho:.6g}", f"{axial:.6g}") for name, rho, axial in rows)
+        note = f"against/with = {self.ratio:.6g}\n{self.message}"
+        return ResultTable(("moved", "friction, N", "axial force, N"), cells, 1, note)
+
+    def __repr__(self) -> str:
+        return repr(self.table())
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
 
 
 @with_nan

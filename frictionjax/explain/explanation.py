@@ -1,11 +1,13 @@
 """What a scene simulates at one eps, gamma and accuracy, and what that calls for."""
 
+import html
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from .._checks import as_real, require_numbers, with_nan
+from .._text import ResultTable
 from ..called_for import (
     Estimate,
     Setting,
@@ -35,23 +37,23 @@ class Explanation(NamedTuple):
     equation: str
     effects: xr.Dataset
 
-    def __repr__(self) -> str:
-        names = [str(name) for name in self.effects.effect.values]
-        rows: list[tuple[str, ...]] = [
-            ("effect", "in z, m", "in force, N", "called for", "in scene", "cost", "")
-        ]
-        for name in names:
+    def table(self) -> ResultTable:
+        """A line for each effect: what it changes, whether it is called for, its cost."""
+        header = ("effect", "in z, m", "in force, N", "called for", "in scene", "cost", "")
+        rows = []
+        for name in [str(name) for name in self.effects.effect.values]:
             row = self.effects.sel(effect=name)
             numbers = [_number(row[key]) for key in ("in_z", "in_force")]
             words = [("no", "yes")[bool(row[key])] for key in ("called_for", "asked")]
             cost = _number(row.cost)
             rows.append((name, *numbers, *words, cost, str(row.source.values)))
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        lines = [
-            "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip()
-            for row in rows
-        ]
-        return "\n".join([self.equation, "", *lines])
+        return ResultTable(header, tuple(rows), left=len(header))
+
+    def __repr__(self) -> str:
+        return f"{self.equation}\n\n{self.table()}"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self.equation)}</pre>{self.table()._repr_html_()}"
 
 
 def _number(value: Any) -> str:

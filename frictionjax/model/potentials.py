@@ -17,6 +17,7 @@ from .._checks import (
     Real,
     as_plain,
     checked,
+    part_text,
     require,
     require_function,
     require_whole,
@@ -255,6 +256,10 @@ class GivenPotential(AbstractPotential):
             require_function("potential.Q", partial(Q, jnp.asarray(1e-3)), what)
         require_whole("potential.points", self.points, 16)
         require_smooth("potential.W", self._leading_inside, self.points)
+
+    def __repr__(self) -> str:
+        without = ("Q",) if self.Q_fn is _nothing else ()
+        return part_text(self, [n for n in ("W", "Q", "points") if n not in without])
 
     def _leading_inside(self, Y: Real) -> Real:
         return jnp.asarray(self.W_fn(Y))

@@ -25,6 +25,7 @@ from .._checks import (
     mark_checked,
     no_less,
     no_more,
+    part_text,
     require,
     require_real,
     require_x64,
@@ -125,7 +126,12 @@ class Scene(eqx.Module):
     def __repr__(self) -> str:
         alpha = _ALPHA.get(self)
         pulls = "" if alpha is None else pulling_text(alpha)
-        return f"{super().__repr__()}{f': {pulls}' if pulls else ''}"
+        names = asked_names(Scene, {})
+        if self.profile is None:
+            names = ["potential", *(n for n in names if n not in ("profile", "bristle"))]
+        else:
+            names.remove("potential")
+        return f"{part_text(self, names)}{f': {pulls}' if pulls else ''}"
 
     @property
     def profile(self) -> AbstractProfile | None:

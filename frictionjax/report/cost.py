@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from .._text import in_columns
 from ..cost import MEASURED_ACCURACIES, METHODS, slips_of, work_precision
 from ..io import scene_document
 from ..model import Scene
 from ..plot import draw_work_precision
+from ..studies import flag_names, formatted
 from .folder import write_figures, write_record
 from .job import Job, joined
-from .tables import flag_names, formatted, table
 
 # Slips of the cells that are measured where none are named: at the last, general solvers
 # are lost already.
@@ -163,7 +164,7 @@ def cost_table(cell: xr.Dataset) -> str:
         for solver in cell.solver.values
         for accuracy in cell.accuracy.values
     ]
-    return table(_HEADER, rows, left=1)
+    return in_columns(_HEADER, rows, left=1)
 
 
 def _row(run: xr.Dataset, names: dict[int, str]) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import plot
 from .._checks import as_text, require, write_whole
+from .._text import in_columns
 from ..bristles import AbstractBristle
 from ..design import (
     AngleFit,
@@ -26,7 +27,7 @@ from ..profiles import AbstractProfile
 from ..supports import Spring
 from .folder import write_figures
 from .job import Job, joined, with_surface
-from .tables import coefficient_table, table
+from .tables import coefficient_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,7 +129,7 @@ def angle_table(fit: AngleFit) -> str:
         (f"d {fit.free}/d omega_minus", as_text(moved.omega_minus)),
         ("status", fit.status.message),
     ]
-    return table(("", ""), rows, left=2).lstrip("\n")
+    return in_columns(("", ""), rows, left=2).lstrip("\n")
 
 
 def _bristle_pictures(fit: AngleFit) -> "Iterator[tuple[str, Figure]]":

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from .._text import in_columns
 from ..cost import OrderCost, order_cost
 from .job import Job, joined
-from .tables import table
 
 
 def run_order_cost(job: Job, within: float) -> str:
@@ -40,4 +40,4 @@ def _grid_table(found: OrderCost) -> str:
     ]
     if not rows:
         return "none"
-    return table(("eps from", "to", "eps", "order", "interval", "of", "s"), rows)
+    return in_columns(("eps from", "to", "eps", "order", "interval", "of", "s"), rows)

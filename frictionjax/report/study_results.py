@@ -6,18 +6,17 @@ import xarray as xr
 
 from ..io import scene_document
 from ..model import friction
-from ..studies import study
-from .folder import write_study
-from .job import Job, joined
-from .tables import (
-    coefficient_table,
+from ..studies import (
     failed_table,
     lemma_table,
     order_table,
-    row_table,
     spread_table,
+    study,
     sweep_table,
 )
+from .folder import write_study
+from .job import Job, joined
+from .tables import coefficient_table, row_table
 
 _COVERS = (
     "Intervals are for eps -> 0. With a law: of the ratio of the errors to those that the\n"
@@ -43,12 +42,14 @@ def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
     if job.rows is not None:
         sections.append(("Friction over the rows of the map", row_table(job.rows)))
     if found.spread is not None:
-        sections.append(("Orders over the rows of the map", spread_table(found.spread)))
+        sections.append(
+            ("Orders over the rows of the map", str(spread_table(found.spread)))
+        )
     else:
         sections += [
-            ("Cells", sweep_table(data)),
+            ("Cells", str(sweep_table(data))),
             ("Orders of convergence", f"{order_table(found.orders)}\n{_COVERS}"),
-            ("Lemmas 7 to 9", lemma_table(found.orders)),
+            ("Lemmas 7 to 9", str(lemma_table(found.orders))),
         ]
     if "inertia" in found.orders.attrs:
         sections.append(("Inertia", found.orders.attrs["inertia"]))

@@ -2,3 +2,10 @@
 
 from .convergence_study import Study as Study
 from .convergence_study import study as study
+from .study_tables import failed_table as failed_table
+from .study_tables import flag_names as flag_names
+from .study_tables import formatted as formatted
+from .study_tables import lemma_table as lemma_table
+from .study_tables import order_table as order_table
+from .study_tables import spread_table as spread_table
+from .study_tables import sweep_table as sweep_table

@@ -1,11 +1,13 @@
 """A convergence study: orders, constants and failures of a sweep."""
 
+import html
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from .._checks import require
+from .._text import ResultTable
 from ..convergence import (
     ENERGY,
     STATE,
@@ -20,6 +22,7 @@ from ..slide_laws import NO_LAW, Prediction, SlideData, predict_errors
 from ..sweeps import one_scene, whole_grid
 from ..wiggly import Status, status_of, warn_of_failed
 from .scene_spread import spread_over_scenes
+from .study_tables import failed_table, order_table, spread_table
 
 _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
 
@@ -40,6 +43,22 @@ class Study(NamedTuple):
     dataset: xr.Dataset
     curves: xr.Dataset
     spread: xr.Dataset | None = None
+
+    def table(self) -> ResultTable:
+        """Orders and constants for eps -> 0, a line for each error and gamma.
+
+        Of several scenes how they spread.
+        """
+        if self.spread is not None:
+            return spread_table(self.spread)
+        return order_table(self.orders)
+
+    def __repr__(self) -> str:
+        return f"{self.table()}\n{failed_table(self.failed)}"
+
+    def _repr_html_(self) -> str:
+        failed = html.escape(failed_table(self.failed))
+        return f"{self.table()._repr_html_()}<pre>{failed}</pre>"
 
     def plot(self) -> Any:
         """Errors against eps with the fitted orders, as a matplotlib Figure.

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from sweep_like import EPS, sweep_like
 
 import frictionjax as fx
 from frictionjax.measured import RowCoefficients
@@ -13,20 +12,10 @@ from frictionjax.report.tables import (
     coefficient_table,
     coefficients_by_name,
     errors_by_name,
-    failed_table,
-    lemma_table,
-    order_table,
     row_table,
-    sweep_table,
-    table,
 )
 
 LAW = fx.friction(fx.profiles.Sine(0.1), fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0))
-
-
-def test_columns_line_up():
-    text = table(("name", "x"), [("a", "1.5"), ("long", "-20")], left=1)
-    assert text.splitlines() == ["name    x", "a     1.5", "long  -20"]
 
 
 def test_coefficients():
@@ -53,58 +42,6 @@ def test_coefficients_with_errors():
 def test_the_abstract_setting_has_two_coefficients():
     bare = coefficients_by_name(type(LAW)(rho_plus=LAW.rho_plus, rho_minus=LAW.rho_minus))
     assert list(bare) == ["rho_plus", "rho_minus", "ratio"]
-
-
-def test_sweep_table_has_every_cell():
-    lines = [line.split() for line in sweep_table(sweep_like()).splitlines()[1:]]
-    assert len(lines) == 12
-    first, failed = lines[0], lines[-1]
-    assert [float(v) for v in first[:3]] == pytest.approx(
-        [0.5, EPS[0], EPS[0] ** 0.5], 1e-2
-    )
-    assert float(first[3]) == pytest.approx(EPS[0] ** -0.5, rel=1e-2)
-    assert first[-2:] == ["1234", "ok"]
-    assert failed[2] == "-"
-    assert failed[-1] == "max_steps"
-
-
-def test_without_dissipation_its_columns_are_empty():
-    text = sweep_table(sweep_like(dissipation=False))
-    assert text.splitlines()[1].split()[4:6] == ["-", "-"]
-
-
-@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.equation.status.FailedCells")
-def test_order_table():
-    orders = fx.study(sweep_like()).orders
-    lines = order_table(orders).splitlines()
-    assert [line.split()[0] for line in lines[1:]] == [
-        *("state", "state", "dissipation", "dissipation", "from", "from")
-    ]
-    assert lines[1].split()[1:3] == ["0.5", "0.500"]
-    assert lines[1].split()[5:7] == ["-", "free"]  # nothing is known of its wells
-    assert lines[1].split()[7:11] == ["0.500", "1", "[1,", "1]"]  # seen, constant
-    assert lines[1].endswith("converges")
-    assert "0.01 to 0.1" in lines[1]
-
-
-def test_lemma_table():
-    lines = lemma_table(fx.study(sweep_like(failed=False)).orders).splitlines()
-    assert [line.split()[:2] for line in lines[1:]] == [["0.5", "0.5"], ["1", "1"]]
-
-
-def test_an_order_from_too_few_points_is_a_dash():
-    orders = fx.study(sweep_like().isel(eps=[0, 1])).orders
-    line = order_table(orders).splitlines()[1]
-    assert line.split()[2] == "-"
-    assert line.endswith("too few points")
-
-
-@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.equation.status.FailedCells")
-def test_failed_cells_are_listed():
-    text = failed_table(fx.study(sweep_like()).failed)
-    assert text.splitlines()[1].split()[:3] == ["1", "0.01", "max_steps"]
-    assert "raise max_steps" in text
-    assert failed_table([]) == "no cell failed"
 
 
 def test_rows_of_a_map():

@@ -1,0 +1,77 @@
+"""Results as tables: under each other in a shell, as HTML in a notebook, in files."""
+
+import csv
+import html
+import io
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+
+def in_columns(header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 0) -> str:
+    """Columns under a header, set flush right but for the first `left` and the last text.
+
+    Lines carry no trailing blanks.
+    """
+    cells = [list(header), *(list(row) for row in rows)]
+    widths = [max(len(row[i]) for row in cells) for i in range(len(header))]
+    lines = []
+    for row in cells:
+        texts = [
+            text.ljust(width) if i < left else text.rjust(width)
+            for i, (text, width) in enumerate(zip(row, widths, strict=True))
+        ]
+        lines.append("  ".join(texts).rstrip())
+    return "\n".join(lines)
+
+
+class ResultTable(NamedTuple):
+    """Rows of texts under a header, the first `left` columns flush left, and a note.
+
+    Prints itself in a shell and shows itself in a notebook; `.to_csv()`, `.to_latex()`.
+    """
+
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    left: int = 1
+    note: str = ""
+
+    def __repr__(self) -> str:
+        text = in_columns(self.header, self.rows, self.left)
+        return f"{text}\n{self.note}" if self.note else text
+
+    def _repr_html_(self) -> str:
+        lines = [self._line("th", self.header)]
+        lines += [self._line("td", row) for row in self.rows]
+        note = f"<p>{html.escape(self.note)}</p>" if self.note else ""
+        return f"<table>{''.join(lines)}</table>{note}"
+
+    def _line(self, tag: str, cells: Sequence[str]) -> str:
+        shown = [
+            f'<{tag} style="text-align: {"left" if i < self.left else "right"}">'
+            f"{html.escape(cell)}</{tag}>"
+            for i, cell in enumerate(cells)
+        ]
+        return f"<tr>{''.join(shown)}</tr>"
+
+    def to_csv(self) -> str:
+        """The cells, comma separated, as `csv` of Python's library reads them."""
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows([self.header, *self.rows])
+        return text.getvalue()
+
+    def to_latex(self) -> str:
+        """A `tabular` without packages."""
+        columns = "l" * self.left + "r" * (len(self.header) - self.left)
+        head, *body = (" & ".join(map(_in_latex, row)) for row in (self.header, *self.rows))
+        rules = [rf"{row} \\" for row in body]
+        lines = [rf"\begin{{tabular}}{{{columns}}}", rf"{head} \\", r"\hline", *rules]
+        return "\n".join([*lines, r"\end{tabular}"])
+
+
+_LATEX = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
+_LATEX |= {sign: f"\\{sign}" for sign in "&%$#_{}"}
+_LATEX |= {sign: f"${sign}$" for sign in "<>"}
+
+
+def _in_latex(text: str) -> str:
+    return "".join(_LATEX.get(sign, sign) for sign in text)

@@ -1,0 +1,63 @@
+"""Parts show the call that makes them."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import frictionjax as fx
+
+PROFILE = fx.profiles.Sine(0.1)
+SCENE = fx.Scene(
+    PROFILE, fx.bristles.Homothetic(0.5), fx.supports.Spring(2.0), fx.loads.Ramp(1.0), 3.0
+)
+PARTS = [
+    PROFILE,
+    fx.profiles.Fourier([0.0, 0.01], [0.02, 0.0]),
+    fx.bristles.SlantedSpring(1.0, 2.21257, 1.0, -0.5),
+    fx.loads.PiecewiseLinear([0.0, 1.0, 2.5], [0.0, 1.5, -1.0]),
+    fx.effects.Inertia(0.3, 3.0),
+    fx.effects.RigidArray([0.0, 0.25]),
+]
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: type(part).__name__)
+def test_the_text_is_the_call(part):
+    places = fx.loads, fx.profiles, fx.bristles, fx.effects  # Sine is a profile
+    again = eval(repr(part), {kind: getattr(m, kind) for m in places for kind in dir(m)})
+    same = jax.tree_util.tree_map(np.array_equal, again, part)
+    assert all(jax.tree_util.tree_leaves(same))
+    assert type(again) is type(part)
+
+
+def test_a_scene_has_a_line_for_each_part():
+    assert repr(SCENE.replace(effects=(fx.effects.LeadingOrder(),))).splitlines() == [
+        "Scene(",
+        "  profile=Sine(slope=0.1),",
+        "  bristle=Homothetic(alpha=0.5),",
+        "  support=Spring(stiffness=2),",
+        "  load=Ramp(rate=1),",
+        "  duration=3,",
+        "  effects=(LeadingOrder(),)",
+        ")",
+    ]
+
+
+def test_a_given_potential_is_named_by_its_functions():
+    def waves(Y):
+        return 0.02 * jnp.sin(2 * jnp.pi * Y)
+
+    assert repr(fx.GivenPotential(W=waves)) == "GivenPotential(W=waves)"
+
+
+def test_long_arrays_are_told_by_their_range():
+    many = fx.profiles.Fourier(np.zeros(7), 1e-3 * np.arange(7))
+    assert repr(many) == "Fourier(cos=<7 values, 0 to 0>, sin=<7 values, 0 to 0.006>)"
+
+
+def test_traced_numbers_have_a_shape_only():
+    seen = []
+    jax.eval_shape(lambda a: seen.append(repr(fx.profiles.Sine(a))), 0.1)
+    assert "f64[]" in seen[0]
+    batch = jax.vmap(fx.bristles.Homothetic)(jnp.array([0.5, 1.0]))
+    assert repr(batch) == "Homothetic(alpha=[0.5, 1])"
