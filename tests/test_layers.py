@@ -60,9 +60,9 @@ FLOORS = {
     ],
     "design.surface": [
         {"barrier", "settings", "status"},
-        {"starts", "open_directions", "reachable", "history"},
-        {"multistart"},
-        {"least_bent", "result"},
+        {"starts", "seen_slopes", "least_distance", "reachable", "history"},
+        {"multistart", "open_directions", "seen_family"},
+        {"least_bent", "array_surface", "result"},
         {"report"},
         {"fit"},
     ],

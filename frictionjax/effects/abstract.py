@@ -27,9 +27,9 @@ class AbstractEffect(Part):
        potential, in Python, before anything is traced; all that is built on potentials
        follows. `STATE`: what moves is another system, which engines have to know of.
        `READING`: it changes no trajectory, and is read off one.
-    4. Effects of the stages `POTENTIAL` and `READING` are done by all engines, the latter
-       but for those that `effects/engines.py` excepts. Of those of `STATE` each lists there
-       what it does, and refuses others by name.
+    4. Effects of the stages `POTENTIAL` and `READING` are done by all engines but those
+       that `effects/engines.py` excepts: designs go by formulas, of effects that they know.
+       Of those of `STATE` each lists there what it does, and refuses others by name.
     5. A scene without it runs the programs that it would run if the class did not exist.
     6. `of_bristle` names the class of bristles that it is about, where it is about one.
     """

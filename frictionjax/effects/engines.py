@@ -23,6 +23,8 @@ class Engine(enum.Enum):
     ENSEMBLE = "ensemble"
     FRICTION_CURVE = "friction_curve"
     SLIDE = "steady_slide"
+    DESIGN = "a design (fit_profile, fit_angle)"
+    DESIGN_MAP = "a map of designs (design_map, tolerance)"
 
 
 def engine_of(method: Any) -> Engine:
@@ -43,6 +45,12 @@ _DOES: dict[str, frozenset[Engine]] = {
 """Of effects that change what moves: the engines that do them."""
 _READS_NOT: dict[str, frozenset[Engine]] = {"AxialLoad": frozenset({_E.ENSEMBLE, _E.SLIDE})}
 """Of effects that only read: the engines of scenes that do not hold them."""
+_ALIKE = frozenset({"LeadingOrder", "RigidArray", "CompliantArray"})
+_FORMULAS: dict[Engine, frozenset[str]] = {
+    _E.DESIGN: _ALIKE | {"NapFlip"},
+    _E.DESIGN_MAP: _ALIKE,
+}
+"""Of engines that go by formulas of the coefficients: the effects that these are for."""
 
 _MASSLESS = "a scene without it"
 _ALONE = "a bristle at a time: a scene without it"
@@ -70,8 +78,19 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
     ("Inertia", _E.ENSEMBLE): _MASSLESS,
     ("Inertia", _E.FRICTION_CURVE): "sweep of a long ramp: its dissipation over its way",
     ("Noise", _E.MECHANICS): "a scene without it: power along its paths is infinite",
+    ("NapFlip", _E.DESIGN_MAP): "nap, of one design at a time",
 }
 """What to do where an engine does not do an effect, after "needs"."""
+
+_INSTEAD |= {
+    (name, engine): f"a design without it, and {call} of a scene with that"
+    for engine in _FORMULAS
+    for name, call in (
+        ("Noise", "friction_curve"),
+        ("Inertia", "sweep"),
+        ("AxialLoad", "mechanics"),
+    )
+}
 
 _STANDS = "a scene without it, of a rod that keeps its nap"
 _INSTEAD |= {
@@ -108,6 +127,8 @@ _APART |= {
 
 def does(engine: Engine, effect: AbstractEffect) -> bool:
     """Whether an engine does an effect."""
+    if engine in _FORMULAS:
+        return _name(effect) in _FORMULAS[engine]
     if effect.stage in (Stage.POTENTIAL, Stage.READING):
         return engine not in _READS_NOT.get(_name(effect), ())
     return engine in _DOES.get(_name(effect), ())

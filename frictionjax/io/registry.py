@@ -43,7 +43,8 @@ EFFECTS = _by_name(
     effects.Inertia,
 )
 """Kinds of the tables [[effects]], of which a scene has any number."""
-_WITHOUT_SCENE = PARTS["profile"] | PARTS["bristle"]  # what documents of results hold
+# What documents of results hold.
+_WITHOUT_SCENE = PARTS["profile"] | PARTS["bristle"] | EFFECTS
 
 
 def numbers_of_part(part: Any) -> dict[str, Any]:
@@ -53,9 +54,9 @@ def numbers_of_part(part: Any) -> dict[str, Any]:
 
 
 def part_entry(part: Any) -> dict[str, Any]:
-    """Kind and numbers of a profile or a bristle; the kind alone of one made of functions.
+    """Kind and numbers of a profile, a bristle or an effect.
 
-    Of a batch of bristles each number is a list.
+    The kind alone of one made of functions. Of a batch of bristles each number is a list.
     """
     kind = type(part).__name__
     if _WITHOUT_SCENE.get(kind) is not type(part):
@@ -70,11 +71,11 @@ def part_entry(part: Any) -> dict[str, Any]:
 def part_of(entry: dict[str, Any]) -> Any:
     """The part again; None for one made of functions."""
     numbers = {name: value for name, value in entry.items() if name != "kind"}
-    if not numbers:
+    if not numbers and entry["kind"] not in EFFECTS:
         return None
     kind = _WITHOUT_SCENE[entry["kind"]]
-    one = np.ndim(next(iter(numbers.values()))) == 0
-    if issubclass(kind, profiles.AbstractProfile) or one:
+    one = all(np.ndim(value) == 0 for value in numbers.values())
+    if not issubclass(kind, bristles.AbstractBristle) or one:
         return kind(**numbers)
     first = kind(**{name: rows[0] for name, rows in numbers.items()})
     # The constructor takes one bristle.

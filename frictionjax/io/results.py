@@ -32,7 +32,7 @@ class Form(NamedTuple):
     def or_else(self, absent: Callable[[dict[str, Any]], Any]) -> "Form":
         """The same, with a value where the entry is not there.
 
-        None, where that is the value, is not written.
+        None and (), where that is the value, are not written.
         """
         return self._replace(absent=absent)
 
@@ -119,7 +119,8 @@ class Document(NamedTuple):
         known: dict[str, Any] = {"kind": self.kind}
         for name, form in self.forms.items():
             value = getattr(result, name)
-            if value is not None or form.absent is None:
+            missing = value is None or (isinstance(value, tuple) and not value)
+            if not (missing and form.absent):
                 known[name] = form.write(value)
         return plain(known, self.infinite)
 

@@ -63,7 +63,12 @@ def _slopes(axes: Any, fit: Any, others: list[Fourier]) -> None:
         axes.plot(*drawn_series(other, 1), **_FAMILY_LOOK)
     y, slopes = drawn_series(fit.profile, 1)
     axes.plot(y, slopes, color=colour(0), linewidth=2)
+    axes.set(xlabel="y (periods)", ylabel="slope w' (1)")
+    axes.margins(x=0, y=0.12)
     found = fit.coefficients[0]
+    if found.omega_plus is None:
+        axes.set_title("Slopes: tips on one root see a sum of them")
+        return
     ends = [("$\\omega_+$", found.omega_plus), ("$\\omega_-$", found.omega_minus)]
     for name, value in ends:
         axes.axhline(float(value), color=LIMIT, linestyle="--", linewidth=1)
@@ -75,9 +80,7 @@ def _slopes(axes: Any, fit: Any, others: list[Fourier]) -> None:
             ha="right",
             va="bottom" if value > 0 else "top",
         )
-    axes.set(xlabel="y (periods)", ylabel="slope w' (1)")
     axes.set_title("Slopes: the coefficients see the dashed lines only")
-    axes.margins(x=0, y=0.12)
 
 
 def _waterfall(axes: Any, fit: Any) -> None:

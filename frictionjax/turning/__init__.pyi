@@ -16,6 +16,7 @@ from .turned_rod import NO_TURNING as NO_TURNING
 from .turned_rod import NapSlides as NapSlides
 from .turned_rod import TurningWindow as TurningWindow
 from .turned_rod import axial_force as axial_force
+from .turned_rod import nap_is_left as nap_is_left
 from .turned_rod import nap_slides as nap_slides
 from .turned_rod import stiffnesses as stiffnesses
 from .turned_rod import turned_over as turned_over

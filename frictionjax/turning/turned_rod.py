@@ -46,13 +46,21 @@ def axial_force(normal: Any, rho: Any, angle: Any) -> Any:
     return rho * np.sin(angle) - normal * np.cos(angle)
 
 
+def nap_is_left(angle: Any) -> Any:
+    """Whether a bristle at `angle` (rad) moves with its nap to the left, else to the right.
+
+    With the nap the tip is behind the root (Section 3.4): p < u where the angle is > 0.
+    """
+    return angle < 0
+
+
 def nap_slides(law: Coefficients, angle: float) -> NapSlides:
-    """Of a bristle at `angle` (rad); negative, it leans so that its nap is to the left."""
+    """Of a bristle at `angle` (rad)."""
     right, left = float(law.rho_plus), float(law.rho_minus)
     axial_right = float(axial_force(float(law.normal_plus), right, angle))
     axial_left = float(axial_force(float(law.normal_minus), left, angle))
     alpha = float(law.alpha)
-    if angle < 0:
+    if nap_is_left(angle):
         return NapSlides(alpha, -left, right, axial_left, axial_right)
     return NapSlides(alpha, right, -left, axial_right, axial_left)
 

@@ -29,6 +29,7 @@ APART |= {frozenset({"Inertia", other}) for other in ("Noise", "CompliantArray")
 AT_REST = LimitSolution(
     *([np.zeros(2)] * 3), root=np.ones(2), mode=np.ones(2, int), tip=np.zeros(2)
 )
+HEIGHTS, STIFFNESSES = ("height", [0.9, 1.0]), ("stiffness", [1.0, 2.0])
 TS = np.linspace(0, 1, 4001)
 
 
@@ -67,6 +68,12 @@ CALLS = {
     Engine.MECHANICS: lambda s: fx.mechanics(s, AT_REST),
     Engine.ENSEMBLE: lambda s: fx.ensemble(noisy(s), 0.05, 1.0, [0.5, 1.0], 2, 0),
     Engine.SLIDE: lambda s: fx.steady_slide(s.profile, s.bristle, 0.05, effects=s.effects),
+    Engine.DESIGN: lambda s: fx.fit_profile(
+        fx.Target(s.bristle, 0.05, -0.04), effects=s.effects
+    ),
+    Engine.DESIGN_MAP: lambda s: fx.design_map(
+        s.bristle, HEIGHTS, STIFFNESSES, profile=s.profile, effects=s.effects
+    ),
     Engine.FRICTION_CURVE: lambda s: fx.friction_curve(s, [0.1], 0.05),
 }
 

@@ -1,5 +1,6 @@
 """Inverse design of a bristle: the angle, or another number, for a wanted friction."""
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import jax
@@ -20,6 +21,7 @@ from ..._checks import (
 )
 from ..._compile import Program, padded_size
 from ...bristles import AbstractBristle, swapped_text
+from ...effects import AbstractEffect, Engine
 from ...model import coefficients_jit, potential
 from ...profiles import AbstractProfile
 from ..common import (
@@ -27,6 +29,7 @@ from ..common import (
     QUANTITIES,
     FreeParameter,
     Slopes,
+    effects_of_scene,
     free_parameter,
     require_bounds,
     with_arrays,
@@ -108,6 +111,7 @@ def fit_angle(
     free: str = "angle",
     bounds: Any = None,
     pulling: bool = False,
+    effects: Sequence[AbstractEffect] = (),
 ) -> AngleFit:
     """The bristle on a surface that has a wanted friction, one number of it free.
 
@@ -141,14 +145,15 @@ def fit_angle(
     """
     require_flags(pulling=pulling)
     require_x64(potential(profile, bristle))  # which checks the kinds of the parts
-    name, target = _asked((rho_plus, rho_minus, ratio, difference))
+    name, wanted = _asked((rho_plus, rho_minus, ratio, difference))
     bristle = with_arrays(bristle)
     chosen = free_parameter(bristle, free)
     require_bounds(chosen, bristle, bounds)
-    law = coefficients_jit(potential(profile, bristle))
+    scene = effects_of_scene(effects, Engine.DESIGN, [bristle])
+    law = coefficients_jit(potential(scene.surface(profile), bristle))
     slopes = Slopes(law.omega_plus, law.omega_minus)
     _require_slopes(slopes)
-    which = np.asarray(QUANTITIES.index(name))
+    which, target = np.asarray(QUANTITIES.index(name)), scene.of_one(wanted, name)
     limits = _NO_BOUNDS if bounds is None else jnp.asarray(bounds, dtype=float)
     # Stopped here, not in the program: differentiated programs are compiled once more.
     still = jax.lax.stop_gradient((bristle, slopes))
@@ -163,19 +168,20 @@ def fit_angle(
     fit = AngleFit(
         found.bristle,
         found.value,
-        found.achieved,
-        found.alpha,
-        target,
+        scene.of_all(found.achieved, name),
+        scene.of_all(found.alpha),
+        wanted,
         found.roots,
         allowed.admissible,
-        allowed.reachable,
+        scene.of_all(allowed.reachable, name),
         code,
-        pulled,
+        pulled._replace(alpha=scene.of_all(pulled.alpha)),
         slopes,
         profile,
         free,
         name,
         bool(pulling),
+        scene,
     )
     known = is_concrete(code, slopes, allowed)
     if known and np.isnan(np.asarray(allowed.admissible)).all():

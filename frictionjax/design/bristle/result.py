@@ -10,13 +10,17 @@ import numpy as np
 from ..._checks import CodedResult, Real, as_text, is_concrete, is_known, require_whole
 from ..._compile import Program
 from ...bristles import AbstractBristle, pulling_text
+from ...effects import AbstractEffect, Engine
 from ...io import AS_IS, CODES, LEAF, PART, TOLD, Document, record
 from ...profiles import AbstractProfile
 from ..common import (
+    EFFECT_FORM,
     QUANTITIES,
     DesignResult,
     FreeParameter,
+    SceneEffects,
     Slopes,
+    effects_of_scene,
     free_parameter,
     on_slopes,
     quantity_of,
@@ -31,6 +35,13 @@ def _unknown(entries: dict[str, Any]) -> Real:
     return jnp.full(np.shape(entries["target"]), jnp.nan)
 
 
+def _in_scene(entries: list) -> SceneEffects:
+    return effects_of_scene(EFFECT_FORM.read(entries), Engine.DESIGN, ())
+
+
+_EFFECTS = EFFECT_FORM._replace(
+    read=_in_scene, absent=lambda entries: SceneEffects(), argument="scene"
+)
 _PULLED = record(PulledParts, PulledParts._fields, LEAF)
 
 
@@ -45,7 +56,9 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
     intervals of the number in which every bristle is admissible; alpha = 0 and the angles
     at which a tip jumps are their ends, which are not among them. `reachable` (pieces, 2):
     least and largest quantity over each. `code`: a `FitStatus` as an integer. `pulled`:
-    where that is `PULLS`, the bristle that was not allowed.
+    where that is `PULLS`, the bristle that was not allowed. `slopes`: extreme ones of the
+    surface, of the one that stands for it where tips of a rigid array are at different
+    phases; `scene`: what the `effects` of the scene make of forces.
     """
 
     bristle: AbstractBristle
@@ -63,6 +76,7 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
     free: str = eqx.field(static=True)
     quantity: str = eqx.field(static=True)
     pulling: bool = eqx.field(static=True, default=False)
+    scene: SceneEffects = SceneEffects()
 
     _outcomes, _good = FitStatus, GOOD
     document = Document(
@@ -76,6 +90,7 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
             "code": CODES,
             "alpha": LEAF.or_else(_unknown),
             "pulling": AS_IS.or_else(lambda entries: True),
+            "effects": _EFFECTS,
             "pulled": _PULLED.or_else(
                 lambda entries: PulledParts(*[_unknown(entries)] * 2)
             ),
@@ -84,6 +99,11 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
             "slopes": record(Slopes, Slopes._fields, LEAF),
         },
     )
+
+    @property
+    def effects(self) -> tuple[AbstractEffect, ...]:
+        """Effects of the scene that it is for."""
+        return self.scene.effects
 
     @property
     def solutions(self) -> Real:
@@ -123,6 +143,7 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
             self.free,
             self.quantity,
             self.pulling,
+            self.scene,
         )
 
     def curve(self, points: int = 400) -> tuple[Real, Real]:
@@ -133,7 +154,8 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
         part = self.bristle if self.code.ndim == 0 else self[0].bristle
         which = np.asarray(QUANTITIES.index(self.quantity))
         free = free_parameter(part, self.free)
-        return values, _curve(free, part, self.slopes, which, values)
+        found = _curve(free, part, self.slopes, which, values)
+        return values, self.scene.of_all(found, self.quantity)
 
     @property
     def sensitivities(self) -> Sensitivities:

@@ -1,5 +1,6 @@
 """How a designed number moves with the target and with every other number."""
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -72,10 +73,11 @@ def sensitivities_of(fit: Any) -> Sensitivities:
     """Sensitivities of a fit, one target's or a batch's."""
     which = jnp.asarray(QUANTITIES.index(fit.quantity))
     again = not is_concrete(fit.value, fit.bristle, fit.profile)
+    surface = fit.scene.surface(fit.profile)
     if not is_concrete(fit.value) or fit.value.ndim == 0:
         free = free_parameter(fit.bristle, fit.free)
-        found = _derivatives(free, fit.bristle, fit.profile, fit.value, which, again)
-        return Sensitivities(*found)
+        found = _derivatives(free, fit.bristle, surface, fit.value, which, again)
+        return _of_scene(fit, Sensitivities(*found))
     free = free_parameter(fit[0].bristle, fit.free)
     count = fit.value.shape[0]
     more = padded_size(count, *SETTINGS.room) - count
@@ -86,5 +88,13 @@ def sensitivities_of(fit: Any) -> Sensitivities:
         return jnp.pad(leaf, [(0, more)] + [(0, 0)] * (leaf.ndim - 1), mode="edge")
 
     both = jax.tree_util.tree_map(padded, (fit.bristle, fit.value))
-    found = _batch(free, both[0], fit.profile, both[1], which, again)
-    return Sensitivities(*jax.tree_util.tree_map(lambda leaf: leaf[:count], found))
+    found = _batch(free, both[0], surface, both[1], which, again)
+    found = jax.tree_util.tree_map(lambda leaf: leaf[:count], found)
+    return _of_scene(fit, Sensitivities(*found))
+
+
+def _of_scene(fit: Any, found: Sensitivities) -> Sensitivities:
+    """By the quantity of all bristles of the scene, and by the profile's own numbers."""
+    target = fit.scene.of_one(found.target, fit.quantity)
+    own = fit.scene.own_part(found.profile)
+    return dataclasses.replace(found, target=target, profile=own)

@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..._checks import Real
 from ...bristles import AbstractBristle
 from .free_numbers import FreeParameter
 from .targets import Geometry, coefficients_of, geometry
@@ -45,7 +46,7 @@ class FreeLaw(AbstractLaw):
     """Bristles with free numbers.
 
     `which`: the bristle of each target; `free`: the numbers with their bristle; `low`,
-    `high`: their bounds.
+    `high`: their bounds. `times`: how many of each pull together; None: one.
     """
 
     bristles: tuple[AbstractBristle, ...]
@@ -53,6 +54,7 @@ class FreeLaw(AbstractLaw):
     free: tuple[tuple[int, FreeParameter], ...] = eqx.field(static=True)
     low: Float[Array, " free"]
     high: Float[Array, " free"]
+    times: Real | None = None
 
     def values(self, free: Float[Array, " free"]) -> Float[Array, " free"]:
         """The numbers themselves, in their own units."""
@@ -72,5 +74,6 @@ class FreeLaw(AbstractLaw):
 
     def at(self, free: Float[Array, " free"]) -> Geometry:
         known = [geometry(bristle) for bristle in self.bristles_at(free)]
+        known = [one.of_several(self.times) for one in known]
         rows = [known[index] for index in self.which]
         return jax.tree_util.tree_map(lambda *one: jnp.stack(one), *rows)

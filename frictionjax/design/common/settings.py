@@ -16,6 +16,9 @@ class Settings(NamedTuple):
     # Coefficients on given slopes (`quantities.py`).
     no_force: float = 4 * _ULP  # of F''(0) times the height: alpha's own rounding
 
+    # Effects (`scene_effects.py`).
+    one_phase: float = 1e-9  # period: less changes the sum of forces by its square
+
     # Free numbers (`free_numbers.py`).
     # Where nothing bounds a number it is looked for up to this many times its own size.
     decades: float = 1e4

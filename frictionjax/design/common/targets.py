@@ -49,6 +49,10 @@ class Geometry(NamedTuple):
     lower: Any
     upper: Any
 
+    def of_several(self, times: Any) -> "Geometry":
+        """Of as many bristles that pull together; itself where `times` is None."""
+        return self if times is None else self._replace(alpha=times * self.alpha)
+
 
 def geometry(bristle: AbstractBristle) -> Geometry:
     """Of one bristle, traceable. `1 + a omega > 0` is part of the slopes allowed."""

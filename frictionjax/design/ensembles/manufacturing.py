@@ -1,6 +1,6 @@
 """Manufacturing tolerance: how friction spreads when parts do."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import jax
@@ -12,6 +12,7 @@ from jaxtyping import Array, Bool, Float
 from ..._checks import as_text, known_numbers, require, require_whole, require_x64, with_nan
 from ..._compile import Program
 from ...bristles import AbstractBristle, pulling_text
+from ...effects import AbstractEffect, Engine, RigidArray
 from ...model import BristlePotential, friction, potential
 from ...profiles import AbstractProfile
 from ...supports import Spring
@@ -19,13 +20,16 @@ from ...wiggly import FLAGS, Status
 from ..common import (
     QUANTITIES,
     FreeParameter,
+    SceneEffects,
     aligned,
+    effects_of_scene,
     entries_of,
     free_parameter,
     on_slopes,
     quantity_of,
     side_of,
     slopes_of,
+    surface_for,
     with_arrays,
 )
 from ..slide import MEANINGS, SlideNumbers, slide_numbers, slides_of_designs
@@ -49,15 +53,16 @@ def _sampled(
     of_profile: tuple,
     bristle: AbstractBristle,
     profile: AbstractProfile,
+    apart: RigidArray | None,
     values: Float[Array, "n m"],
 ) -> tuple[Float[Array, "n 4"], Float[Array, " n"]]:
     """The four quantities (n, 4) at values (n, m) of the numbers, and alpha's side (n,)."""
     grounds = any(of_profile)
-    still = None if grounds else slopes_of(profile)
+    still = None if grounds else slopes_of(surface_for(apart, profile))
 
     def one(row: Array) -> tuple[Array, Array]:
         part, surface = _changed(numbers, of_profile, bristle, profile, row)
-        slopes = slopes_of(surface) if still is None else still
+        slopes = slopes_of(surface_for(apart, surface)) if still is None else still
         found = on_slopes(part, slopes)
         side = jnp.where(slopes.minus < 0, side_of(part, found), 0.0)
         side = jnp.where((slopes.plus > 0) & _in_range(numbers, row), side, 0.0)
@@ -72,13 +77,14 @@ def _jacobian(
     of_profile: tuple,
     bristle: AbstractBristle,
     profile: AbstractProfile,
+    apart: RigidArray | None,
     values: Float[Array, " m"],
 ) -> Float[Array, "4 m"]:
     """Derivatives (4, m) of the quantities by the numbers."""
 
     def one(row: Array) -> Array:
         part, surface = _changed(numbers, of_profile, bristle, profile, row)
-        found = on_slopes(part, slopes_of(surface))
+        found = on_slopes(part, slopes_of(surface_for(apart, surface)))
         return jnp.stack([quantity_of(found, i) for i in range(4)])
 
     return jax.jacrev(one)(values)
@@ -177,6 +183,7 @@ def tolerance(
     gamma: Any = 1.0,
     rate: Any = 1.0,
     support: Spring | None = None,
+    effects: Sequence[AbstractEffect] = (),
 ) -> Tolerance:
     """Friction of parts whose numbers spread normally and independently.
 
@@ -198,6 +205,8 @@ def tolerance(
     spreads that are negative or not finite, and counts below 2.
     """
     require_x64(potential(profile, bristle))
+    scene = effects_of_scene(effects, Engine.DESIGN_MAP, [bristle])
+    scene.surface(profile)  # raises where it leaves no friction
     bristle, profile = with_arrays(bristle), with_arrays(profile)
     spread = _spreads(bristle, profile, spreads)
     require_whole("samples", samples, 2)
@@ -206,13 +215,21 @@ def tolerance(
     good = levels.ndim == 1 and np.all((levels >= 0) & (levels <= 1))
     require(good, "quantiles", quantiles, "numbers in [0, 1], shape (n,)")
     law = friction(profile, bristle)  # raises where the nominal parts are inadmissible
-    asked = None if eps is None else slide_numbers(eps, gamma, rate, support)
-    found = _dataset(profile, bristle, spread, samples, seed, levels, asked)
-    return Tolerance(found.assign_attrs(alpha=float(law.alpha)))
+    slide = eps, gamma, rate, support, scene.effects
+    asked = None if eps is None else slide_numbers(*slide)
+    found = _dataset(profile, bristle, spread, samples, seed, levels, asked, scene)
+    return Tolerance(found.assign_attrs(alpha=float(scene.of_all(law.alpha))))
 
 
 def _dataset(
-    profile, bristle, spread, samples, seed, levels, asked: SlideNumbers | None
+    profile,
+    bristle,
+    spread,
+    samples,
+    seed,
+    levels,
+    asked: SlideNumbers | None,
+    scene: SceneEffects,
 ) -> xr.Dataset:
     where = tuple(s.of_profile for s in spread)
     numbers = tuple(s.number for s in spread)
@@ -223,12 +240,14 @@ def _dataset(
     size = min(SETTINGS.chunk, samples)
     short = np.pad(values, ((0, -len(values) % size), (0, 0)), mode="edge")
     parts = [
-        _sampled(numbers, where, bristle, profile, short[at : at + size])
+        _sampled(numbers, where, bristle, profile, scene.apart, short[at : at + size])
         for at in range(0, len(short), size)
     ]
-    found = np.concatenate([np.asarray(p[0]) for p in parts])[: samples + 1]
+    share = np.array([scene.of_all(1.0, name) for name in QUANTITIES])
+    found = share * np.concatenate([np.asarray(p[0]) for p in parts])[: samples + 1]
     side = np.concatenate([np.asarray(p[1]) for p in parts])[: samples + 1]
-    slopes = _jacobian(numbers, where, bristle, profile, values[0])
+    slopes = _jacobian(numbers, where, bristle, profile, scene.apart, values[0])
+    slopes = share[:, None] * np.asarray(slopes)
     drawn = np.where(side[1:, None] != 0, found[1:], np.nan)
     known = drawn[side[1:] != 0]
     few = len(known) < 2
@@ -238,8 +257,8 @@ def _dataset(
         "nominal": ("quantity", found[0]),
         "mean": ("quantity", blank if few else known.mean(axis=0)),
         "std": ("quantity", blank if few else known.std(axis=0, ddof=1)),
-        "first_order": ("quantity", np.sqrt(np.asarray(slopes) ** 2 @ stds**2)),
-        "by_number": (("quantity", "number"), np.abs(np.asarray(slopes)) * stds),
+        "first_order": ("quantity", np.sqrt(slopes**2 @ stds**2)),
+        "by_number": (("quantity", "number"), np.abs(slopes) * stds),
         "quantiles": (("quantile", "quantity"), cuts),
         "samples": (("sample", "quantity"), drawn),
         "inadmissible": ((), float(np.mean(side[1:] == 0))),
@@ -259,7 +278,7 @@ def _dataset(
         _as_design(numbers, where, bristle, profile, row) if good else None
         for row, good in zip(values, side != 0, strict=True)
     ]
-    return data.assign(_slide_columns(designs, asked, levels)).assign_attrs(
+    return data.assign(_slide_columns(designs, asked, scene.effects, levels)).assign_attrs(
         asked.attributes()
     )
 
@@ -270,10 +289,10 @@ def _as_design(numbers, where, bristle, profile, row) -> BristlePotential:
 
 
 def _slide_columns(
-    designs: list, asked: SlideNumbers, levels: Float[np.ndarray, " q"]
+    designs: list, asked: SlideNumbers, effects: Any, levels: Float[np.ndarray, " q"]
 ) -> dict[str, tuple]:
     """How the slides of designs spread, the nominal one first."""
-    slides = slides_of_designs(designs, asked)
+    slides = slides_of_designs(designs, asked, effects)
     forces = np.stack([slides.forces[name] for name in MEANINGS], axis=1)
     drawn = np.where((slides.status == int(Status.OK))[:, None], forces, np.nan)
     known = drawn[1:][np.isfinite(drawn[1:, 0])]

@@ -20,12 +20,15 @@ from ..._checks import (
 )
 from ..._compile import Program
 from ...bristles import AbstractBristle
+from ...effects import AbstractEffect, Engine
 from ...model import BristlePotential, coefficients_jit, potential
 from ...profiles import AbstractProfile, Fourier
 from ...supports import Spring
 from ..common import (
     FreeParameter,
+    SceneEffects,
     Slopes,
+    effects_of_scene,
     free_parameter,
     on_slopes,
     quantity_of,
@@ -95,6 +98,7 @@ def design_map(
     gamma: Any = 1.0,
     rate: Any = 1.0,
     support: Spring | None = None,
+    effects: Sequence[AbstractEffect] = (),
 ) -> xr.Dataset:
     """Friction over two numbers of a design, all in one compiled call.
 
@@ -126,7 +130,10 @@ def design_map(
     axes = [_axis(bristle, label, given) for label, given in (("x", x), ("y", y))]
     names = [axis[0] for axis in axes]
     require(names[0] != names[1], "y", names[1], "another name than x")
-    slopes = _base(bristle, names, profile, steepness)
+    scene = effects_of_scene(effects, Engine.DESIGN_MAP, [bristle])
+    slide = eps, gamma, rate, support, scene.effects
+    asked = None if eps is None else slide_numbers(*slide)
+    slopes = _base(bristle, names, profile, steepness, scene)
     frees = tuple(axis[2] for axis in axes)
     across, up = (axis[1] for axis in axes)
     flat = np.tile(across, up.size), np.repeat(up, across.size)
@@ -135,16 +142,16 @@ def design_map(
     shape = up.size, across.size
     dims = names[1], names[0]
     columns = {
-        name: (dims, np.asarray(values).reshape(shape)) for name, values in found.items()
+        name: (dims, np.asarray(_of_all(scene, name, values)).reshape(shape))
+        for name, values in found.items()
     }
-    asked = None if eps is None else slide_numbers(eps, gamma, rate, support)
     if asked is not None:
         good = np.asarray(found["admissible"])
         designs = [
             _design(bristle, profile, frees, surface, slopes, values) if there else None
             for there, *values in zip(good, *flat, strict=True)
         ]
-        columns |= slides_of_designs(designs, asked).columns(dims, shape)
+        columns |= slides_of_designs(designs, asked, scene.effects).columns(dims, shape)
     data = xr.Dataset(columns, {names[0]: across, names[1]: up})
     for name, (units, meaning) in _MEANING.items():
         data[name].attrs = {"long_name": meaning} | ({"units": units} if units else {})
@@ -155,6 +162,11 @@ def design_map(
         **({} if asked is None else asked.attributes()),
     }
     return data
+
+
+def _of_all(scene: SceneEffects, name: str, values: Any) -> Any:
+    """A column, of all bristles where it is a force."""
+    return scene.of_all(values) if _MEANING[name][0] == "N" else values
 
 
 def _design(
@@ -200,15 +212,17 @@ def _axis(bristle, label: str, given: Any) -> tuple[str, np.ndarray, FreeParamet
     return name, array, free
 
 
-def _base(bristle, names, profile, steepness) -> np.ndarray:
+def _base(bristle, names, profile, steepness, scene: SceneEffects) -> np.ndarray:
     """Steepness and asymmetry before the axes change them."""
     own = [name for name in names if name in SURFACE]
     if own or profile is None:
         require(own, "profile", None, "a surface, or asymmetry or steepness as an axis")
         require(profile is None, "profile", type(profile).__name__, f"none beside {own[0]}")
+        needs = f"tips of effects.RigidArray at one phase beside {own[0]}, or a profile"
+        require(scene.apart is None, "effects", "RigidArray", needs)
         require_real("steepness", steepness, "steepness > 0", lambda v: v > 0)
         return np.array([float(steepness), 1.0])
-    law = coefficients_jit(potential(profile, bristle))
+    law = coefficients_jit(potential(scene.surface(profile), bristle))
     plus, minus = float(law.omega_plus), float(law.omega_minus)
     require(minus < 0 < plus, "profile", (minus, plus), "omega_plus > 0 > omega_minus")
     return np.array([0.5 * (plus - minus), -plus / minus])

@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float, Int
 
-from ..._checks import as_real, require_real
-from ...model import BristlePotential
+from ..._checks import as_real, require, require_real
+from ...effects import AbstractEffect, LeadingOrder
+from ...model import BristlePotential, with_effects
 from ...supports import Spring
 from ...wiggly import FLAGS, Status
 from .slide_friction import spring_of
@@ -55,8 +56,21 @@ class DesignSlides(NamedTuple):
         return found
 
 
-def slide_numbers(eps: Any, gamma: Any, rate: Any, support: Spring | None) -> SlideNumbers:
-    """The numbers, checked; raises `ValueError` as `steady_slide` does."""
+def slide_numbers(
+    eps: Any,
+    gamma: Any,
+    rate: Any,
+    support: Spring | None,
+    effects: Sequence[AbstractEffect] = (),
+) -> SlideNumbers:
+    """The numbers, checked.
+
+    Raises `ValueError` as `steady_slide` does, and for effects but `LeadingOrder`.
+    """
+    for effect in effects:
+        alone = isinstance(effect, LeadingOrder)
+        needs = "LeadingOrder alone where eps is given: steady_slide, of one design"
+        require(alone, "effects", type(effect).__name__, needs)
     for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
         require_real(name, value, f"{name} > 0", lambda v: v > 0)
     return SlideNumbers(
@@ -68,14 +82,17 @@ def slide_numbers(eps: Any, gamma: Any, rate: Any, support: Spring | None) -> Sl
 
 
 def slides_of_designs(
-    designs: Sequence[BristlePotential | None], numbers: SlideNumbers
+    designs: Sequence[BristlePotential | None],
+    numbers: SlideNumbers,
+    effects: Sequence[AbstractEffect] = (),
 ) -> DesignSlides:
     """The steady slides of all designs, about 20 ms each; None: no design, no slide."""
     count = len(designs)
     forces = {name: np.full(count, np.nan) for name in MEANINGS}
     status = np.full(count, int(Status.NOT_TRIED))
     known = np.array([n for n, design in enumerate(designs) if design is not None], int)
-    tables = [slide_table(designs[n], numbers.eps) for n in known]
+    wiggles = [with_effects(designs[n], effects) for n in known]
+    tables = [slide_table(wiggle, numbers.eps) for wiggle in wiggles]
     eps, *others = numbers
     places, sizes = np.arange(known.size), np.full(known.size, eps)
     sides, least = find_both_ways(tables, places, sizes, *others)

@@ -9,19 +9,23 @@ import numpy as np
 
 from ..._checks import require, require_flags, require_real, require_whole, with_nan
 from ..._compile import padded_size
+from ...effects import AbstractEffect, Engine
 from ...numerics import stacked
 from ..common import (
     AbstractLaw,
     FixedLaw,
     FreeLaw,
     Geometry,
+    SceneEffects,
     Target,
+    effects_of_scene,
     extreme_slopes,
     free_parameter,
     require_bounds,
     require_targets,
     with_arrays,
 )
+from .array_surface import fit_to_array
 from .barrier import FitShape, FitTask, free_energy
 from .least_bent import least_bent
 from .multistart import StartRuns, descended
@@ -34,7 +38,8 @@ from .starts import places
 class SurfaceProblem(NamedTuple):
     """A fit, checked: what was asked for and the task of the program.
 
-    `scale`: of the residuals that the program takes, so that the largest weighs 1.
+    `scale`: of the residuals that the program takes, so that the largest weighs 1. `asked`:
+    effects of the scene.
     """
 
     targets: list[Target]
@@ -43,6 +48,7 @@ class SurfaceProblem(NamedTuple):
     task: FitTask
     scale: float
     bounds: dict[str, float | None]
+    asked: SceneEffects
 
 
 @with_nan
@@ -57,6 +63,7 @@ def fit_profile(
     seed: int = 0,
     max_steps: int = 1000,
     pulling: bool = False,
+    effects: Sequence[AbstractEffect] = (),
 ) -> ProfileFit:
     """The least bent surface whose friction coefficients are the targets.
 
@@ -87,11 +94,14 @@ def fit_profile(
     for name, value in counts:
         require_whole(name, value)
     require_whole("seed", seed, 0)
-    problem = surface_problem(
-        targets, harmonics, free, bounds, smallest_radius, largest_amplitude, pulling
-    )
+    given = smallest_radius, largest_amplitude, pulling, effects
+    problem = surface_problem(targets, harmonics, free, bounds, *given)
     apart: Any = np.array(places(problem.layout, starts))
-    runs = least_bent(problem.layout, problem.task, starts)
+    array = problem.asked.apart
+    if array is None:
+        runs = least_bent(problem.layout, problem.task, starts)
+    else:
+        runs = fit_to_array(problem.layout, problem.task, array, starts)
     if runs is None:
         runs = _descended(problem, apart, seed, max_steps)
     return report_fit(problem, runs, apart)
@@ -117,13 +127,19 @@ def surface_problem(
     radius: float | None = None,
     amplitude: float | None = None,
     pulling: bool = False,
+    effects: Sequence[AbstractEffect] = (),
 ) -> SurfaceProblem:
     """The problem, checked, in the units of its targets; see `fit_profile`."""
     asked, known = require_targets(targets, pulling)
+    together = effects_of_scene(
+        effects, Engine.DESIGN, [target.bristle for target in asked]
+    )
+    if together.apart is not None:
+        _require_plain(free, radius, amplitude)
     for name, value in (("smallest_radius", radius), ("largest_amplitude", amplitude)):
         if value is not None:
             require_real(name, value, f"{name} > 0 in periods", lambda v: v > 0)
-    law = _law(asked, known, free, bounds)
+    law = _law(asked, known, free, bounds, together.times)
     count = len(law.free) if isinstance(law, FreeLaw) else 0
     layout = FitShape(int(harmonics), radius is not None, amplitude is not None, count)
     wanted = np.array([[float(t.rho_plus), float(t.rho_minus)] for t in asked])
@@ -155,7 +171,7 @@ def surface_problem(
         "smallest_radius": None if radius is None else float(radius),
         "largest_amplitude": None if amplitude is None else float(amplitude),
     }
-    return SurfaceProblem(asked, law, layout, task, scale, given)
+    return SurfaceProblem(asked, law, layout, task, scale, given, together)
 
 
 def _expected(wanted: np.ndarray, known: Geometry) -> tuple[float, float]:
@@ -177,6 +193,7 @@ def _law(
     known: list[Geometry],
     free: Sequence[str],
     bounds: Mapping[str, Any] | None,
+    times: Any,
 ) -> FixedLaw | FreeLaw:
     names = _names_of(free)
     meant = "a mapping from names to pairs (low, high)"
@@ -185,7 +202,7 @@ def _law(
     for name in given:
         require(name in names, "bounds", name, f"names in free = {names}")
     if not names:
-        return FixedLaw(stacked(known))
+        return FixedLaw(stacked([one.of_several(times) for one in known]))
     distinct: list[Any] = []
     which = [_index_of(target.bristle, distinct) for target in targets]
     bristles = tuple(with_arrays(bristle) for bristle in distinct)
@@ -198,11 +215,18 @@ def _law(
             numbers.append((index, number))
             lows.append(low)
             highs.append(high)
-    law = FreeLaw(
-        bristles, tuple(which), tuple(numbers), jnp.asarray(lows), jnp.asarray(highs)
-    )
+    ends = jnp.asarray(lows), jnp.asarray(highs)
+    law = FreeLaw(bristles, tuple(which), tuple(numbers), *ends, times)
     _require_geometry(law, names)
     return law
+
+
+def _require_plain(free: Any, radius: Any, amplitude: Any) -> None:
+    """What surfaces under tips at different phases are not fitted with."""
+    given = {"free": free, "smallest_radius": radius, "largest_amplitude": amplitude}
+    for name, value in given.items():
+        needs = "tips of effects.RigidArray at one phase of the surface, or none of this"
+        require(value is None or not len(np.atleast_1d(value)), name, value, needs)
 
 
 def _names_of(free: Any) -> list[str]:

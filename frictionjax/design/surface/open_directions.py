@@ -1,6 +1,6 @@
 """What coefficients leave open: directions in the space of surfaces, and surfaces."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -9,8 +9,10 @@ import numpy as np
 from jaxtyping import Array
 
 from ..._checks import Real
+from ...effects import RigidArray
 from ..common import AbstractLaw
 from .barrier import at, peaks, reach, waves_of_heights, with_extreme_slopes
+from .seen_slopes import shares_seen
 from .settings import SETTINGS
 
 
@@ -30,12 +32,14 @@ class CoefficientIdentifiability(NamedTuple):
 
 
 @eqx.filter_jit
-def _sensitivities(law: AbstractLaw, cos: Array, sin: Array, free: Array) -> Array:
-    found = peaks(waves_of_heights(cos, sin))
+def _sensitivities(
+    law: AbstractLaw, cos: Array, sin: Array, free: Array, shares: Array | None
+) -> Array:
+    found = peaks(waves_of_heights(*_seen(cos, sin, shares)))
     turns = 2 * jnp.pi * jnp.arange(1, cos.size + 1)
 
     def coefficients(unknowns: Array) -> Array:
-        c, s = unknowns[: cos.size], unknowns[cos.size : 2 * cos.size]
+        c, s = _seen(unknowns[: cos.size], unknowns[cos.size : 2 * cos.size], shares)
         phase = turns * found.places[:, None]
         # The places are where slopes are extreme: their motion adds nothing.
         plus, low = turns * (jnp.cos(phase) * s - jnp.sin(phase) * c) @ jnp.ones(cos.size)
@@ -45,9 +49,27 @@ def _sensitivities(law: AbstractLaw, cos: Array, sin: Array, free: Array) -> Arr
     return jax.jacfwd(coefficients)(jnp.concatenate([cos, sin, free]))
 
 
-def identifiability(law: AbstractLaw, cos: Array, sin: Array, free: Array):
-    """What the coefficients see at this surface and these parameters."""
-    pulls = np.asarray(_sensitivities(law, cos, sin, free))
+def _seen(cos: Array, sin: Array, shares: Array | None) -> tuple[Array, Array]:
+    """Heights whose every wave is multiplied by a complex share; None: as they are."""
+    if shares is None:
+        return cos, sin
+    found = (cos - 1j * sin) * shares
+    return found.real, -found.imag
+
+
+def identifiability(
+    law: AbstractLaw,
+    cos: Array,
+    sin: Array,
+    free: Array,
+    array: RigidArray | None = None,
+) -> CoefficientIdentifiability:
+    """What the coefficients see at this surface and these parameters.
+
+    `array`: the tips that see it, upright ones at different phases.
+    """
+    shares: Any = None if array is None else shares_seen(array, np.size(cos))
+    pulls = np.asarray(_sensitivities(law, cos, sin, free, shares))
     _, values, vectors = np.linalg.svd(pulls)
     rank = int(np.sum(values > SETTINGS.rank * values[0]))
     unseen = vectors[rank:]

@@ -111,12 +111,15 @@ def reachable_text(
     harmonics: int,
     asked: np.ndarray,
     within: str = "",
+    most: str = "",
 ) -> str:
     """The reachable set in words, one sentence.
 
     `limits`: of each target's coefficients; `asked`: slopes of `slopes_asked`. `within`:
-    what the bounds on the surface leave room for, if there are any.
+    what the bounds on the surface leave room for, if there are any. `most`: the largest
+    ratio of slopes seen, where it is not the number of harmonics.
     """
+    most = most or str(harmonics)
     parts = []
     for index, (high, low) in enumerate(limits):
         name = f"targets[{index}]: " if len(limits) > 1 else ""
@@ -125,7 +128,7 @@ def reachable_text(
         parts.append(f"{name}{' and '.join(span) or 'any rho_plus > 0 > rho_minus'}")
     ratios = ", ".join(as_text(p / m) for p, m in asked if np.isfinite(p / m))
     parts.append(
-        f"omega_plus/|omega_minus| from 1/{harmonics} to {harmonics} with {harmonics} "
+        f"omega_plus/|omega_minus| from 1/{most} to {most} with {harmonics} "
         f"harmonics{f' (asked for: {ratios})' if ratios else ''}"
     )
     return "reachable: " + "; ".join([*parts, within] if within else parts)

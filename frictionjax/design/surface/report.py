@@ -7,9 +7,9 @@ import numpy as np
 
 from ..._checks import as_text
 from ..._compile import Program
-from ...model import coefficients_jit, potential
 from ...profiles import Fourier
-from ..common import FreeLaw
+from ..common import FreeLaw, coefficients_in_scene
+from .array_surface import ratio_seen
 from .barrier import SETTINGS as BARRIER_SETTINGS
 from .barrier import bending_energy, heights_of_waves
 from .history import History, Start
@@ -42,7 +42,7 @@ def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
     free = runs.settled.free[best]
     bristles = _bristles(problem, free)
     # They are computed while the starts are listed.
-    found = tuple(coefficients_jit(potential(profile, bristle)) for bristle in bristles)
+    found = tuple(coefficients_in_scene(problem.asked, profile, b) for b in bristles)
     wanted = np.asarray(task.coefficients)
     met = targets_met(task, runs.settled.residuals)
     statuses = [_status(problem, runs, i, losses[i], met[i]) for i in range(order.size)]
@@ -69,9 +69,10 @@ def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
         why=_message(problem, runs, best, status, reached, losses[best]),
         starts=starts,
         history=history,
-        identify=partial(identifiability, task.law, cos, sin, free),
+        identify=partial(identifiability, task.law, cos, sin, free, problem.asked.apart),
         free=_free_values(problem, free),
         bounds=problem.bounds,
+        effects=problem.asked.effects,
     )
 
 
@@ -203,7 +204,9 @@ def _reachable(problem: Any, runs: StartRuns, best: int) -> str:
         )
         within = share_text(share, slopes)
     limits = limits_of(task.law, runs.settled.free[best])
-    return reachable_text(limits, layout.harmonics, asked, within)
+    apart = problem.asked.apart
+    most = layout.harmonics if apart is None else ratio_seen(apart, layout.harmonics)
+    return reachable_text(limits, layout.harmonics, asked, within, as_text(most))
 
 
 def _start(

@@ -10,13 +10,15 @@ import numpy as np
 
 from ..._checks import as_text, require_real, require_whole
 from ...bristles import AbstractBristle, pulling_text
+from ...effects import AbstractEffect, Engine
 from ...io import ARRAY, AS_IS, NUMBER, PART, TOLD, Document, Form, by_name, record, several
 from ...model import Coefficients
 from ...profiles import Fourier
-from ..common import DesignResult
+from ..common import EFFECT_FORM, DesignResult, effects_of_scene
 from .barrier import heights_of_waves, waves_of_heights
 from .history import History, Start
 from .open_directions import CoefficientIdentifiability, members
+from .seen_family import surfaces_seen_alike
 from .status import MET, ProfileStatus
 
 _SHAPES = ("cos", "sin", "free")  # of iterates: most of the numbers, left out
@@ -60,7 +62,8 @@ class ProfileFit(DesignResult):
     """Result of `fit_profile`.
 
     `profile`, `bristles`: the best surface and the bristles on it, one for each target.
-    `coefficients`: of each target, as `friction` recomputes them. `targets`: (targets, 2)
+    `coefficients`: of each target, as `friction` recomputes them (of the scene with its
+    `effects`, those of a compliant array of all its bristles). `targets`: (targets, 2)
     in N. `bending_energy`: `int_0^1 w''^2`; `bending_bound`: proven lower bound of it for
     surfaces with these extreme slopes as far apart as here (0 where nothing is proven).
     `residuals`: achieved minus target in N; `largest_error`: the largest of them, relative.
@@ -88,6 +91,7 @@ class ProfileFit(DesignResult):
     identify: Callable[[], CoefficientIdentifiability]
     free: dict[str, float]
     bounds: dict[str, float | None]
+    effects: tuple[AbstractEffect, ...] = ()
 
     _good = MET
     document = Document(
@@ -104,6 +108,7 @@ class ProfileFit(DesignResult):
             "bristles": several(PART),
             "coefficients": several(_COEFFICIENTS),
             "targets": ARRAY,
+            "effects": EFFECT_FORM,
             "residuals": ARRAY,
             "starts": several(_START),
             "history": _HISTORY.or_else(lambda entries: None),
@@ -149,6 +154,9 @@ class ProfileFit(DesignResult):
         require_whole("count", count)
         require_whole("seed", seed, 0)
         require_real("size", size, "a number > 0", lambda v: v > 0)
+        apart = effects_of_scene(self.effects, Engine.DESIGN, ()).apart
+        if apart is not None:
+            return surfaces_seen_alike(apart, self.profile, count, float(size), seed)
         sharp, high = (self.bounds[k] for k in ("smallest_radius", "largest_amplitude"))
         known: Any = (
             waves_of_heights(self.profile.cos, self.profile.sin),
@@ -180,6 +188,7 @@ class ProfileFit(DesignResult):
             )
         rows += [f"  {name} = {as_text(value)}" for name, value in self.free.items()]
         both = zip(self.coefficients, self.bristles, strict=True)
-        pulls = [pulling_text(found.alpha, part) for found, part in both]
+        known = [(found, part) for found, part in both if found.alpha is not None]
+        pulls = [pulling_text(found.alpha, part) for found, part in known]
         rows += [f"  {text}" for text in dict.fromkeys(pulls) if text]
         return "\n".join(rows)

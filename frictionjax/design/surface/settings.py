@@ -31,6 +31,20 @@ class Settings(NamedTuple):
     # The closed form (`least_bent.py`).
     agreed: float = 1e-12  # of the targets, weighted: rounding of coefficients
 
+    # Tips at different phases (`seen_slopes.py`, `array_surface.py`, `least_distance.py`).
+    unseen: float = 1e-12  # of all weights: what is left of a wave is rounding
+    rows_seen: int = 8  # a wave: rows are added where the range is left
+    rows_ratio: int = 32
+    over: float = 1e-10  # of the range: how far beyond its ends is left to the last digits
+    additions: int = 20
+    place: float = 1e-5  # of the grid's width: the lowest slope's own is flat
+    seen_steps: int = 30
+    ends_seen: float = 4e-15  # of their range
+    touching: float = 1e-7
+    reached: float = 1e-9
+    impossible: float = 1e-12
+    exchanges: int = 50  # a row
+
     # What coefficients leave open (`open_directions.py`).
     rank: float = 1e-9  # of the largest singular value
     halvings: int = 6

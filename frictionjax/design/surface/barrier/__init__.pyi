@@ -6,6 +6,7 @@ from .constraints import FitShape as FitShape
 from .constraints import Unknowns as Unknowns
 from .constraints import at as at
 from .constraints import basis as basis
+from .constraints import basis_at as basis_at
 from .constraints import heights_of_waves as heights_of_waves
 from .constraints import waves_of_heights as waves_of_heights
 from .extreme_slopes import Reach as Reach

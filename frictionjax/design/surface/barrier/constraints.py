@@ -87,7 +87,12 @@ ORDERS = (0, 1, -1)  # derivatives of v: slopes, curvatures, heights
 
 def basis(harmonics: int, points: int, order: int = 0) -> np.ndarray:
     """The derivative of `v` of this order at `points` places of a period, by `waves`."""
-    return np.asarray(_basis(np.arange(points) / points, harmonics, order, np))
+    return basis_at(np.arange(points) / points, harmonics, order)
+
+
+def basis_at(y: Any, harmonics: int, order: int = 0) -> np.ndarray:
+    """The same at places `y` in periods, any shape."""
+    return np.asarray(_basis(np.asarray(y), harmonics, order, np))
 
 
 def _basis(y, harmonics: int, order: int, xp):
