@@ -10,6 +10,7 @@ import numpy as np
 from ..._checks import CodedResult, Real, as_text, is_concrete, is_known, require_whole
 from ..._compile import Program
 from ...bristles import AbstractBristle, pulling_text
+from ...contact import Nap, nap
 from ...effects import AbstractEffect, Engine
 from ...io import AS_IS, CODES, LEAF, PART, TOLD, Document, record
 from ...profiles import AbstractProfile
@@ -125,6 +126,13 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
             return _message(self)
         return [self[i].message for i in range(self.code.shape[0])]
 
+    @property
+    def nap(self) -> Nap:
+        """What `nap` says of the bristle found, of one target; see `ProfileFit.naps`."""
+        flip = self.scene.nap_flip
+        stiff = None if flip is None else flip.bending_stiffness
+        return nap(self.profile, self.bristle, stiff)
+
     def __getitem__(self, index: int) -> "AngleFit":
         """One target's fit out of a batch."""
         return AngleFit(
@@ -179,6 +187,8 @@ def _message(fit: AngleFit) -> str:
     others = "" if count < 2 else f" ({count} solutions)"
     pulls = pulling_text(fit.alpha, fit.bristle)
     told = f"; {pulls}" if pulls else ""
+    if fit.scene.nap_flip is not None:
+        told += f"; {fit.nap.message}"
     return f"{asked}: {status.message}, {fit.free} = {as_text(fit.value)}{others}{told}"
 
 

@@ -27,4 +27,5 @@ from .targets import Geometry as Geometry
 from .targets import Target as Target
 from .targets import coefficients_of as coefficients_of
 from .targets import extreme_slopes as extreme_slopes
+from .targets import lean_of as lean_of
 from .targets import require_targets as require_targets

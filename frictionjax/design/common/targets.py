@@ -17,6 +17,7 @@ from ..._compile import Program
 from ...bristles import AbstractBristle, pulling_text
 from ...model import BristlePotential, require_admissible, rounding_of_alpha
 from ...profiles import Sine
+from ...turning import nap_is_left
 from .settings import SETTINGS
 
 
@@ -31,7 +32,8 @@ class Target(NamedTuple):
 
     `rho_plus` > 0 > `rho_minus` in N. `weight`: > 0, of its squared residuals.
     `uncertainty`: standard deviation of the two in N, one number or a pair; without it
-    residuals are relative. Checked where it is used.
+    residuals are relative. Checked where it is used. `nap`: whether it was asked for by
+    the bristle's nap, which a fit must not turn round then.
     """
 
     bristle: AbstractBristle
@@ -39,6 +41,50 @@ class Target(NamedTuple):
     rho_minus: Any
     weight: Any = 1.0
     uncertainty: Any = None
+    nap: bool = False
+
+    @classmethod
+    def of_nap(
+        cls,
+        bristle: AbstractBristle,
+        with_nap: Any,
+        against_nap: Any,
+        weight: Any = 1.0,
+        uncertainty: Any = None,
+    ) -> "Target":
+        """A bristle moved with and against its nap, whichever way that is (Section 3.4).
+
+        `with_nap`, `against_nap`: friction in N, > 0, as `nap` tells it of the bristle as
+        it stands. `uncertainty`: one number, or that of each.
+
+        Raises `ValueError` for friction that is not positive, and for bristles of which
+        nothing says how they stand, or that stand upright and have no nap.
+        """
+        for name, value in (("with_nap", with_nap), ("against_nap", against_nap)):
+            require_real(name, value, f"{name} > 0 in N", _positive)
+        if not _nap_is_left(bristle):
+            return cls(bristle, with_nap, -against_nap, weight, uncertainty, True)
+        turned = uncertainty is not None and np.shape(uncertainty) == (2,)
+        uncertainty = uncertainty[::-1] if turned else uncertainty
+        return cls(bristle, against_nap, -with_nap, weight, uncertainty, True)
+
+
+def lean_of(bristle: AbstractBristle) -> float:
+    """Its angle in rad, of which the nap is a matter; NaN where nothing says it."""
+    stance = bristle.geometry(jnp.zeros(()))
+    return float("nan") if stance is None else float(stance.angle)
+
+
+def _nap_is_left(bristle: Any) -> bool:
+    """Raises `ValueError` where it has no nap."""
+    known = isinstance(bristle, AbstractBristle)
+    allowed = "a part of frictionjax.bristles"
+    require(known, "bristle", type(bristle).__name__, allowed)
+    require(is_concrete(bristle), "bristle", "traced", "numbers: a fit is not traced")
+    lean = lean_of(bristle)
+    needs = "one that leans, SlantedSpring or AngularSpring: others have no nap"
+    require(lean != 0 and np.isfinite(lean), "bristle", type(bristle).__name__, needs)
+    return bool(nap_is_left(lean))
 
 
 class Geometry(NamedTuple):

@@ -21,6 +21,7 @@ from ..common import (
     effects_of_scene,
     extreme_slopes,
     free_parameter,
+    lean_of,
     require_bounds,
     require_targets,
     with_arrays,
@@ -217,7 +218,7 @@ def _law(
             highs.append(high)
     ends = jnp.asarray(lows), jnp.asarray(highs)
     law = FreeLaw(bristles, tuple(which), tuple(numbers), *ends, times)
-    _require_geometry(law, names)
+    _require_geometry(law, targets)
     return law
 
 
@@ -275,14 +276,24 @@ def _bounds_of(name: str, number: Any, bristle: Any, given: Any) -> tuple[float,
     return low, high
 
 
-def _require_geometry(law: FreeLaw, names: list[str]) -> None:
-    """Every free parameter at either end leaves a bristle there is."""
+def _require_geometry(law: FreeLaw, targets: list[Target]) -> None:
+    """Every free parameter at either end leaves a bristle there is, with its nap.
+
+    Angles alone turn a nap round, so that the ends of each tell.
+    """
     own = np.asarray(law.shares())
-    for index, (_, number) in enumerate(law.free):
+    naps = {place for place, target in zip(law.which, targets, strict=True) if target.nap}
+    for index, (place, number) in enumerate(law.free):
         for end in (0.0, 1.0):
             share = own.copy()
             share[index] = end
             known = law.known_at(jnp.asarray(share))
             good = np.all(np.isfinite(known.a)) and np.all(np.isfinite(known.alpha))
             value = float(law.values(jnp.asarray(share))[index])
-            require(good, f"bounds of {number.name!r}", value, "a bristle with that number")
+            name = f"bounds of {number.name!r}"
+            require(good, name, value, "a bristle with that number")
+            if place in naps:
+                leans = law.bristles[place], law.bristles_at(jnp.asarray(share))[place]
+                before, after = map(lean_of, leans)
+                needs = "the nap on its side, of a target asked for by it"
+                require(before * after > 0, name, value, needs)

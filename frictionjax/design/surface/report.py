@@ -1,5 +1,6 @@
 """From what the program computed to what the user is told."""
 
+import dataclasses
 from functools import partial
 from typing import Any
 
@@ -53,7 +54,8 @@ def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
     )
     history = _history(problem, runs)
     reached = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in found])
-    return ProfileFit(
+    why = _message(problem, runs, best, status, reached, losses[best])
+    fit = ProfileFit(
         profile=profile,
         bristles=bristles,
         coefficients=found,
@@ -66,7 +68,7 @@ def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
         degrees_of_freedom=_freedom(problem),
         misfit=float(np.sqrt(losses[best] / wanted.size)),
         status=status,
-        why=_message(problem, runs, best, status, reached, losses[best]),
+        why=why,
         starts=starts,
         history=history,
         identify=partial(identifiability, task.law, cos, sin, free, problem.asked.apart),
@@ -74,6 +76,10 @@ def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
         bounds=problem.bounds,
         effects=problem.asked.effects,
     )
+    if problem.asked.nap_flip is None:
+        return fit
+    turns = dict.fromkeys(found.message for found in fit.naps)
+    return dataclasses.replace(fit, why="; ".join([why, *turns]))
 
 
 @Program

@@ -10,7 +10,8 @@ import numpy as np
 
 from ..._checks import as_text, require_real, require_whole
 from ...bristles import AbstractBristle, pulling_text
-from ...effects import AbstractEffect, Engine
+from ...contact import Nap, nap
+from ...effects import AbstractEffect, Engine, nap_flip_among
 from ...io import ARRAY, AS_IS, NUMBER, PART, TOLD, Document, Form, by_name, record, several
 from ...model import Coefficients
 from ...profiles import Fourier
@@ -126,6 +127,19 @@ class ProfileFit(DesignResult):
     def identifiability(self) -> CoefficientIdentifiability:
         """What the coefficients see of the surface, and what they leave open."""
         return self.identify()
+
+    @property
+    def naps(self) -> tuple[Nap, ...]:
+        """Of each target, what `nap` says of its bristle on the surface.
+
+        With `effects.NapFlip` of a rod of that bending stiffness: whether it turns over, so
+        that friction is `rho_with` one way and `rho_flipped` the other, and the `window` of
+        critical loads for which one does.
+        """
+        flip = nap_flip_among(self.effects)
+        stiff = None if flip is None else flip.bending_stiffness
+        known = [bristle for bristle in self.bristles if bristle is not None]
+        return tuple(nap(self.profile, bristle, stiff) for bristle in known)
 
     @property
     def singular_values(self) -> np.ndarray:
