@@ -21,6 +21,7 @@ from ..design import (
     surface_heights,
     write_heights,
 )
+from ..effects import CompliantArray
 from ..io import scene_document
 from ..model import Scene, friction
 from ..profiles import AbstractProfile
@@ -63,7 +64,7 @@ def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
     """Design the scene's bristle, or its surface, write it into `folder`, return tables.
 
     `rho_plus` and `rho_minus` together: the surface (`fit_profile`); one of them, or a
-    ratio or difference: one number of the bristle (`fit_angle`).
+    ratio or difference: one number of the bristle (`fit_angle`); with the scene's effects.
 
     Raises `ValueError` for targets that contradict each other or cannot be reached, with
     what can be; nothing is written then.
@@ -77,8 +78,10 @@ def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
     profile, bristle = _parts(scene)
     surface_heights(profile, asked.period, asked.samples)  # raises, or fits
     sections = [("", line) for line in job.notes] + design.sections
-    sections.append(("Friction coefficients", coefficient_table(friction(scene))))
-    if isinstance(scene.support, Spring):
+    many = any(isinstance(effect, CompliantArray) for effect in scene.effects)
+    title = "Friction coefficients of each bristle" if many else "Friction coefficients"
+    sections.append((title, coefficient_table(friction(scene))))
+    if isinstance(scene.support, Spring) and not scene.effects:
         check = check_design(profile, bristle, support=scene.support)
         sections.append(("On the dynamics", repr(check)))
     text = joined(sections)
@@ -104,7 +107,8 @@ def _bristle(job: Job, asked: DesignRequest, wanted: dict[str, float]) -> _Desig
         allowed = "--rho-plus and --rho-minus together: the surface is given otherwise"
         require(value is None, name, value, allowed)
     options: Any = wanted | {"free": asked.free or "angle", "bounds": asked.bounds}
-    fit = fit_angle(profile, bristle, **options, pulling=asked.pulling)
+    options |= {"pulling": asked.pulling, "effects": job.scene.effects}
+    fit = fit_angle(profile, bristle, **options)
     if not fit.success:
         raise ValueError(fit.message)
     found = with_surface(job.scene, profile, fit.bristle)
@@ -134,6 +138,8 @@ def angle_table(fit: AngleFit) -> str:
 
 def _bristle_pictures(fit: AngleFit) -> "Iterator[tuple[str, Figure]]":
     yield "design", plot.draw_angle_fit(fit)
+    if fit.effects:  # the map is of one bristle, as it is
+        return
     numbers = np.asarray(fit.admissible)
     numbers = numbers[~np.isnan(numbers[:, 0])]
     across = np.linspace(numbers.min(), numbers.max(), _MAP)
@@ -156,6 +162,7 @@ def _surface(job: Job, asked: DesignRequest, wanted: dict[str, float]) -> _Desig
         smallest_radius=asked.smallest_radius,
         largest_amplitude=asked.largest_amplitude,
         pulling=asked.pulling,
+        effects=job.scene.effects,
     )
     if not fit.success:
         raise ValueError(fit.message)
