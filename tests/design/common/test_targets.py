@@ -60,7 +60,7 @@ def test_a_free_angle_must_not_turn_the_nap_round():
         target = fx.Target.of_nap(part, 0.05, 0.09)
         known = {"free": "angle", "bounds": {"angle": bounds}}
         with pytest.raises(
-            ValueError, match="bounds of 'angle' = .*: needs the nap on its"
+            ValueError, match=r"bounds of 'angle' = .*: needs the nap on its"
         ):
             fx.fit_profile(target, **known)
 
