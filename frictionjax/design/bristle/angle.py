@@ -130,6 +130,10 @@ def fit_angle(
     < 0 too, where the bristle pulls: `pulling=True` returns such solutions as well. Without
     it, a target that only they reach has the status `PULLS`.
 
+    `effects`: of the scene, as in `fit_profile`: forces are those of all bristles of an
+    array, a ratio is that of one; with `NapFlip`, `.nap` and `.message` say for which
+    critical loads the rod turns over.
+
     Only the two extreme slopes of the surface enter. The intervals where the bristle is
     admissible are found first, then all extrema of the quantity in each, then every root
     between them by bracketed Newton, to rounding. Features of the quantity narrower than a
@@ -140,8 +144,9 @@ def fit_angle(
     the implicit derivative.
 
     Raises `ValueError` for no target or two, targets that are not finite, have another
-    shape or the wrong sign, an unknown `free`, bounds out of the number's range, and where
-    no value in the bounds is admissible, or all that are pull.
+    shape or the wrong sign, an unknown `free`, bounds out of the number's range, where no
+    value in the bounds is admissible, or all that are pull, and for other effects, and tips
+    at different phases of bristles that lean.
     """
     require_flags(pulling=pulling)
     require_x64(potential(profile, bristle))  # which checks the kinds of the parts

@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float
 
 from ..._checks import as_text, known_numbers, require, require_whole, require_x64, with_nan
 from ..._compile import Program
-from ...bristles import AbstractBristle, pulling_text
+from ...bristles import AbstractBristle
 from ...effects import AbstractEffect, Engine, RigidArray
 from ...model import BristlePotential, friction, potential
 from ...profiles import AbstractProfile
@@ -21,7 +21,6 @@ from ..common import (
     QUANTITIES,
     FreeParameter,
     SceneEffects,
-    aligned,
     effects_of_scene,
     entries_of,
     free_parameter,
@@ -34,6 +33,7 @@ from ..common import (
 )
 from ..slide import MEANINGS, SlideNumbers, slide_numbers, slides_of_designs
 from .settings import SETTINGS
+from .tolerance_table import Tolerance
 
 _QUANTILES = (0.025, 0.25, 0.5, 0.75, 0.975)
 
@@ -114,62 +114,6 @@ def _in_range(numbers: tuple, row: Float[Array, " m"]) -> Bool[Array, ""]:
     return good
 
 
-class Tolerance:
-    """How friction spreads; prints as a table.
-
-    `data`: an `xarray.Dataset` over `quantity`: `nominal`, `mean`, `std` of the samples,
-    `first_order` (std by the delta method), `quantiles`, all over admissible samples, and
-    `samples` themselves, NaN where inadmissible. `inadmissible`: their share. `flipped`:
-    the share in which alpha, and with it the direction of friction, changed sign.
-    """
-
-    def __init__(self, data: xr.Dataset):
-        self.data = data
-
-    @property
-    def inadmissible(self) -> float:
-        """Share of samples in which the bristle cannot follow the surface."""
-        return float(self.data.inadmissible)
-
-    @property
-    def flipped(self) -> float:
-        """Share of samples that pull where the nominal part presses, or the other way."""
-        return float(self.data.flipped)
-
-    def __repr__(self) -> str:
-        data = self.data
-        names = ("nominal", "mean", "std", "first_order")
-        heads = ["", *names, *(f"{q:.1%}" for q in data["quantile"].values)]
-        rows = [heads]
-        for name in data["quantity"].values:
-            line = data.sel(quantity=name)
-            numbers = [float(line[n]) for n in names] + line["quantiles"].values.tolist()
-            rows.append([str(name), *(f"{v:.6g}" for v in numbers)])
-        count = data.sizes["sample"]
-        told = f"{count} samples, {self.inadmissible:.3%} inadmissible and left out"
-        pulls = pulling_text(data.attrs["alpha"])
-        other = "press on the surface" if pulls else "pull on the surface, alpha < 0"
-        flipped = f", {self.flipped:.3%} {other}" if self.flipped else ""
-        nominal = f"\nnominal {pulls}" if pulls else ""
-        return f"{told}{flipped}{nominal}\n{aligned(rows)}{self._slides_in_words()}"
-
-    def _slides_in_words(self) -> str:
-        """How the steady slides spread, where they were asked for."""
-        data = self.data
-        if "slide_mean" not in data:
-            return ""
-        heads = ["", "nominal", "mean", "std"]
-        rows = [[*heads, *(f"{q:.1%}" for q in data["quantile"].values)]]
-        for name in data["force"].values:
-            line = data.sel(force=name)
-            numbers = [float(line[f"slide_{head}"]) for head in heads[1:]]
-            numbers += line["slide_quantiles"].values.tolist()
-            rows.append([str(name), *(f"{v:.6g}" for v in numbers)])
-        lost = int(np.count_nonzero(data["status"].values != int(Status.OK)))
-        told = f"Steady slides at eps = {data.attrs['eps']:.6g} m, {lost} without one"
-        return f"\n{told}\n{aligned(rows)}"
-
-
 @with_nan
 def tolerance(
     profile: AbstractProfile,
@@ -201,8 +145,11 @@ def tolerance(
     `slide_quantiles`, `slide_samples` of four forces in N, and the `status` of each sample.
     About 20 ms a sample: 200 to 1000 do.
 
+    `effects`: of the scene, as in `design_map`; all bristles of an array are alike in a
+    sample.
+
     Raises `ValueError` as `friction` does for the nominal parts, and for unknown names,
-    spreads that are negative or not finite, and counts below 2.
+    spreads that are negative or not finite, counts below 2, and other effects, by name.
     """
     require_x64(potential(profile, bristle))
     scene = effects_of_scene(effects, Engine.DESIGN_MAP, [bristle])

@@ -120,8 +120,12 @@ def design_map(
     and `status`, `NOT_TRIED` where the design is not admissible, or the bristle loses its
     contact at this eps. About 20 ms a design: choose axes for it.
 
-    Raises `ValueError` for unknown names, values that are not finite or positive, and a
-    profile that is missing, or too much.
+    `effects`: of the scene. Of a `RigidArray` and a `CompliantArray` forces are those of
+    all bristles, of tips at different phases where they stand upright and `profile` is
+    given; of `LeadingOrder` slides are those of `eps W`, and arrays have none.
+
+    Raises `ValueError` for unknown names, values that are not finite or positive, a
+    profile that is missing, or too much, and other effects, by name.
     """
     require_x64(bristle)
     require_flags(pulling=pulling)

@@ -86,7 +86,10 @@ def slides_of_designs(
     numbers: SlideNumbers,
     effects: Sequence[AbstractEffect] = (),
 ) -> DesignSlides:
-    """The steady slides of all designs, about 20 ms each; None: no design, no slide."""
+    """The steady slides of all designs, about 20 ms each; None: no design, no slide.
+
+    `effects`: those of their scene that `slide_numbers` takes.
+    """
     count = len(designs)
     forces = {name: np.full(count, np.nan) for name in MEANINGS}
     status = np.full(count, int(Status.NOT_TRIED))

@@ -22,6 +22,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
+from ..._checks import require
 from ...effects import RigidArray
 from ..common import coefficients_of, extreme_slopes
 from .barrier import SETTINGS as BARRIER_SETTINGS
@@ -37,6 +38,14 @@ class _Found(NamedTuple):
 
     waves: Float[np.ndarray, " waves"]
     bound: float
+
+
+def require_plain(free: Any, radius: Any, amplitude: Any) -> None:
+    """Raise `ValueError` for what such surfaces are not fitted with."""
+    given = {"free": free, "smallest_radius": radius, "largest_amplitude": amplitude}
+    for name, value in given.items():
+        needs = "tips of effects.RigidArray at one phase of the surface, or none of this"
+        require(value is None or not len(np.atleast_1d(value)), name, value, needs)
 
 
 def fit_to_array(

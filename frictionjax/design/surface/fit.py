@@ -26,7 +26,7 @@ from ..common import (
     require_targets,
     with_arrays,
 )
-from .array_surface import fit_to_array
+from .array_surface import fit_to_array, require_plain
 from .barrier import FitShape, FitTask, free_energy
 from .least_bent import least_bent
 from .multistart import StartRuns, descended
@@ -76,6 +76,15 @@ def fit_profile(
     does not change the sign. `smallest_radius`: of curvature, `1/max |w''|`, and
     `largest_amplitude`: `max w - min w`, in periods.
 
+    `effects`: of the scene that the coefficients are of. `LeadingOrder` changes none. Of a
+    `CompliantArray`, and of a `RigidArray` of tips at one phase, targets are forces of all
+    bristles, which are those of one times their number (`friction` of a scene with the
+    first tells those of one). Upright tips at different phases, of `Homothetic` and
+    `VerticalSpring`, see a sum of slopes, and the least bent surface for that is found:
+    see `array_surface`; without `free` and bounds on the surface. With `NapFlip` targets
+    are those of the rod as it stands, and `.message` and `.naps` say for which critical
+    loads it turns over, and whether for its own.
+
     Coefficients see only the extreme slopes (Lemmas 2 and 3), so infinitely many surfaces
     fit: this is the one with the least `int_0^1 w''^2`; `.bending_bound` proves how near.
     `.identifiability` and `.family` say what is left open. Where nothing is flattened and
@@ -87,8 +96,9 @@ def fit_profile(
     `.status` and `.message` that say why.
 
     Raises `ValueError` for targets of the wrong sign, shape or kind, weights or
-    uncertainties that are not positive, bristles that press on nothing, or pull, and names
-    and bounds of free parameters that do not fit together.
+    uncertainties that are not positive, bristles that press on nothing, or pull, names
+    and bounds of free parameters that do not fit together, a target asked for by its nap
+    whose bounds of an angle reach the other side, and other effects, by name.
     """
     require_flags(pulling=pulling)
     counts = ("harmonics", harmonics), ("starts", starts), ("max_steps", max_steps)
@@ -136,7 +146,7 @@ def surface_problem(
         effects, Engine.DESIGN, [target.bristle for target in asked]
     )
     if together.apart is not None:
-        _require_plain(free, radius, amplitude)
+        require_plain(free, radius, amplitude)
     for name, value in (("smallest_radius", radius), ("largest_amplitude", amplitude)):
         if value is not None:
             require_real(name, value, f"{name} > 0 in periods", lambda v: v > 0)
@@ -220,14 +230,6 @@ def _law(
     law = FreeLaw(bristles, tuple(which), tuple(numbers), *ends, times)
     _require_geometry(law, targets)
     return law
-
-
-def _require_plain(free: Any, radius: Any, amplitude: Any) -> None:
-    """What surfaces under tips at different phases are not fitted with."""
-    given = {"free": free, "smallest_radius": radius, "largest_amplitude": amplitude}
-    for name, value in given.items():
-        needs = "tips of effects.RigidArray at one phase of the surface, or none of this"
-        require(value is None or not len(np.atleast_1d(value)), name, value, needs)
 
 
 def _names_of(free: Any) -> list[str]:
