@@ -125,3 +125,32 @@ def test_heights_that_do_not_resolve_the_surface_are_refused():
     rows = surface_heights(WAVES, 1e-3, 64)
     assert rows[-1, 1] == rows[0, 1]
     assert rows[:, 1].min() == 0
+
+
+def saved(folder, *effects):
+    path = folder / "scene.toml"
+    fx.save_scene(default_study().scene.replace(effects=effects), path)
+    return path
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("wanted", [("--rho-minus", -0.15), ()], ids=["surface", "angle"])
+def test_scenes_with_effects_are_designed_with_them(tmp_path, wanted):
+    """Two bristles with supports of their own: each has half the friction asked for."""
+    array = fx.effects.CompliantArray([0.0, 0.5])
+    path, folder = saved(tmp_path, array), tmp_path / "made"
+    result = run("design", path, "--rho-plus", 0.2, *wanted, "--out", folder)
+    assert result.exit_code == 0, result.output
+    assert "Friction coefficients of each bristle" in result.stdout
+    assert "Steady slide" not in result.stdout
+    assert not (folder / "map.png").exists()
+    scene = fx.load_scene(folder / "design.toml")
+    assert len(scene.effects) == 1
+    assert float(fx.friction(scene).rho_plus) == pytest.approx(0.1, rel=1e-9)
+
+
+def test_scenes_with_effects_that_designs_do_not_do_are_refused(tmp_path):
+    path, folder = saved(tmp_path, fx.effects.Noise(1e-4)), tmp_path / "none"
+    line = error_line(run("design", path, "--ratio", 1.5, "--out", folder))
+    assert "does not do Noise: needs a design without it, and friction_curve" in line
+    assert not (folder / "design.toml").exists()
