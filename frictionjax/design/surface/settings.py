@@ -43,6 +43,7 @@ class Settings(NamedTuple):
     touching: float = 1e-7
     reached: float = 1e-9
     impossible: float = 1e-12
+    less_uneven: float = 0.9  # of what a ratio is above 1: the next one tried
     exchanges: int = 50  # a row
 
     # What coefficients leave open (`open_directions.py`).
