@@ -160,17 +160,18 @@ def _exactly(
 ) -> _Found | None:
     """Rows added where the range is left, then both ends to rounding."""
     waves, over = _within(seen, ends, place, rows), SETTINGS.over * np.sum(ends)
+    if waves is None:
+        return None
     for _ in range(SETTINGS.additions):
-        if waves is None:
-            return None
         places, slopes = bumps(seen, waves)
         out = np.maximum(slopes - ends[0], -ends[1] - slopes) > over
         if not np.any(out):
             break
         rows = np.concatenate([rows, seen.at(places[out])])
-        waves = _within(seen, ends, place, rows)
-    if waves is None:
-        return None
+        more = _within(seen, ends, place, rows)
+        if more is None:  # no series, or rows so near to each other that none is found
+            break
+        waves = more
     bound = float(waves @ waves)
     return _Found(with_ends_seen(seen, waves, ends), bound)
 

@@ -71,19 +71,36 @@ def bumps(seen: SeenSlopes, waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def with_ends_seen(seen: SeenSlopes, waves: np.ndarray, ends: Any) -> np.ndarray:
     """The waves changed until the slopes seen are -M at least and P at most, to rounding.
 
-    `ends`: (P, M). Newton's method on all extrema that touch an end, or nearly, by the
-    least change.
+    `ends`: (P, M). Newton's method on the farthest extrema and all that touch an end or
+    are beyond it, by the least change.
     """
     wanted, span = np.array([ends[0], -ends[1]]), np.sum(ends)
     for _ in range(SETTINGS.seen_steps):
         places, slopes = bumps(seen, waves)
         gaps = wanted - slopes[:, None]
-        most = np.argmax(slopes), np.argmin(slopes)
-        off = np.max(np.abs(gaps[most, (0, 1)]))
+        beyond = gaps * [1.0, -1.0]  # < 0: out of the range
+        off = np.max(np.abs(np.min(beyond, axis=0)))
         if off <= SETTINGS.ends_seen * span:
             break
-        touch = np.abs(gaps) <= max(2 * off, SETTINGS.touching * span)
-        where, which = np.nonzero(touch)
+        least = np.maximum(np.min(beyond, axis=0), SETTINGS.touching * span)
+        where, which = _apart(places, beyond, beyond <= least, seen.harmonics)
         rows = seen.at(places[where])
         waves = waves + np.linalg.pinv(rows, rtol=SETTINGS.rank) @ gaps[where, which]
     return waves
+
+
+def _apart(
+    places: np.ndarray, beyond: np.ndarray, chosen: np.ndarray, harmonics: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Of the chosen extrema that are next to each other the farthest out; and its end.
+
+    A flat top is several zeros of the derivative within rounding; to ask for each of them
+    is to ask for its tilt too.
+    """
+    where, which = np.nonzero(chosen)
+    kept: list[int] = []
+    for index in np.argsort(beyond[where, which]):
+        away = places[where[index]] - places[where[kept]]
+        if np.all(np.abs(away - np.round(away)) > 1 / (SETTINGS.rows_ratio * harmonics)):
+            kept.append(int(index))
+    return where[kept], which[kept]

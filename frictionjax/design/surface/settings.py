@@ -35,12 +35,14 @@ class Settings(NamedTuple):
     unseen: float = 1e-12  # of all weights: what is left of a wave is rounding
     rows_seen: int = 8  # a wave: rows are added where the range is left
     rows_ratio: int = 32
-    over: float = 1e-10  # of the range: how far beyond its ends is left to the last digits
+    # Of the range: how far beyond its ends is left to the last digits. At 1e-10 rows come
+    # so near to each other that problems that have a solution seem to have none.
+    over: float = 1e-6
     additions: int = 20
     place: float = 1e-5  # of the grid's width: the lowest slope's own is flat
     seen_steps: int = 30
     ends_seen: float = 4e-15  # of their range
-    touching: float = 1e-7
+    touching: float = 3e-6
     reached: float = 1e-9
     impossible: float = 1e-12
     less_uneven: float = 0.9  # of what a ratio is above 1: the next one tried

@@ -6,6 +6,8 @@ from samples import central
 from scipy.optimize import nnls
 
 import frictionjax as fx
+from frictionjax.design.surface.array_surface import fit_to_array, ratio_seen
+from frictionjax.design.surface.fit import surface_problem
 from frictionjax.design.surface.seen_slopes import SeenSlopes, bumps, shares_seen
 from frictionjax.design.surface.status import ProfileStatus
 
@@ -137,6 +139,32 @@ def test_ratios_that_no_surface_has_are_told(turned):
     share = ratio / 8
     best = (share + 1) / (share**2 + 1)
     assert errors[1 - high] == pytest.approx(best - 1, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_random_arrays_end_at_what_a_surface_has():
+    """Met where some surface has the ratio, whatever the phases; nothing is lost else."""
+    draw, met = np.random.default_rng(5), 0
+    for _ in range(200):
+        count, harmonics = int(draw.integers(2, 40)), int(draw.integers(1, 25))
+        grid = draw.integers(2, 7)  # places that waves divide, or anywhere
+        offsets = draw.uniform(-5, 5, count)
+        offsets = offsets if draw.random() < 0.7 else np.round(offsets * grid) / grid
+        effect = fx.effects.RigidArray(offsets, draw.uniform(0, 2, count))
+        ratio = float(np.exp(draw.uniform(-3.4, 3.4)))
+        target = fx.Target(VERTICAL, np.sqrt(ratio), -np.sqrt(1 / ratio))
+        problem = surface_problem(target, harmonics, effects=(effect,))
+        if problem.asked.apart is None:
+            continue
+        found = fit_to_array(problem.layout, problem.task, effect, 1)
+        if found.settled.met[0]:
+            met += 1
+            np.testing.assert_allclose(found.settled.residuals[0], 0.0, atol=1e-11)
+            energy = np.sum(found.settled.waves[0] ** 2)
+            assert energy <= found.bound[0] * (1 + 1e-3)
+        else:
+            assert max(ratio, 1 / ratio) >= ratio_seen(effect, harmonics)
+    assert met > 100
 
 
 def test_targets_that_contradict_each_other_are_weighed():
