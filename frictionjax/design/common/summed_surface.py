@@ -10,7 +10,8 @@ class SummedSurface(AbstractProfile):
     """`sum_i weight_i w(y + offset_i)`: what an upright bristle makes of a rigid array.
 
     Its `W = alpha w` is linear in `w`, so potentials add as surfaces do. `offsets` in
-    periods and `weights`, shape (n,).
+    periods and `weights`, shape (n,). Every tip is evaluated: thousands take seconds and
+    gigabytes.
     """
 
     single: AbstractProfile
