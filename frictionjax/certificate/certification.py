@@ -1,66 +1,17 @@
 """Whether a sampled curve solves the wiggly system, from the scene alone."""
 
-import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 
-from .._checks import (
-    Outcome,
-    Result,
-    as_real,
-    known_numbers,
-    require,
-    require_real,
-    with_nan,
-)
-from ..effects import Engine
+from .._checks import as_real, known_numbers, require, require_real, with_nan
+from ..effects import CompliantArray, Engine
 from ..model import Scene, coefficients_jit, require_reach, require_times, scene_for
-from .curve import Force, along_curve, force_of
-from .settings import SETTINGS
-from .transits import folds_of, missing_forces, viscosity_ratio
-from .tube import distance
+from .plain_curve import plain_certificate
+from .verdicts import Certificate, CertificateStatus, nothing_known
 
-
-class CertificateStatus(Outcome):
-    """Why a curve is or is not accepted; `message` says it for people."""
-
-    OK = 0, "the curve solves the wiggly system"
-    NOT_FINITE = 1, "the curve holds values that are not finite"
-    UNRESOLVED = 2, "samples are more than eps/4 apart: slips are not resolved"
-    SKIPPED = 3, "a well was crossed without the force that this takes"
-    OFF = 4, "the curve is too far from every solution"
-    VISCOSITY = 5, "slips take another time than eps^gamma gives them"
-
-
-class _Numbers(NamedTuple):
-    residual: float
-    residual_error: float
-    scale: float
-    slips: int
-    skipped: int
-    distance: float
-    missing_force: float
-    viscosity: float
-    spacing: float
-    status: CertificateStatus
-
-
-class Certificate(Result, _Numbers):
-    """What was found about a curve.
-
-    `residual` of the energy-dissipation balance in J, `int (eps^gamma z' + D E)^2 /
-    (2 eps^gamma)`, with its quadrature error `residual_error`; `scale = eps (rho_plus -
-    rho_minus)`, the energy of one slip, in J. `slips`: wells crossed. `distance`: the
-    curve is at least so far, in units of eps, from every solution. `missing_force`: the
-    most that was missing when a well was left, in units of `Phi'' eps`, the force of one
-    well. `viscosity`: measured in slips, relative to `eps^gamma`; NaN without slips.
-    `skipped`: wells crossed without the force. `status`: a `CertificateStatus`; `ok`:
-    whether the curve is within about eps/100 of a solution; `message`: the verdict.
-    """
-
-    __slots__ = ()
+__all__ = ["Certificate", "CertificateStatus", "certify"]
 
 
 @with_nan
@@ -80,83 +31,48 @@ def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
     not seen: a slip that comes early by a jump of less than 0.06 eps, once the load alone
     would have carried it over the fold.
 
+    Of a scene with `effects.CompliantArray` of N bristles `z` has the shape (N, n), a row
+    for each: `solve` of arrays of one offset each gives them, where that of all gives
+    their mean, which solves nothing. `residual`, `slips` and `skipped` are sums over
+    bristles, `scale` is the energy of one slip of one of them, and of all other numbers
+    there is the worst.
+
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.
     """
     scene = scene_for(Engine.CERTIFICATE, scene)
     require_real("eps", eps, "eps > 0", lambda e: e > 0)
     require_real("gamma", gamma, "gamma > 0", lambda g: g > 0)
-    ts, z = _require_curve(scene, ts, z)
+    array = next((e for e in scene.effects if isinstance(e, CompliantArray)), None)
+    ts = _require_instants(scene, ts)
+    z = _require_states(ts, z, array)
     require_reach(scene.potential, jnp.asarray(as_real(eps)))
     eps = float(eps)
     viscosity = eps ** float(gamma)
     law = coefficients_jit(scene.potential)
     scale = eps * float(law.rho_plus - law.rho_minus)
     if not np.all(np.isfinite(z)):
-        return _nothing_known(scale)
-    force = force_of(scene, jnp.asarray(eps))
-    at, on = along_curve(force, viscosity, ts, z)
-    residual = float(np.sum(on.residual))
-    folds = folds_of(force)
-    missing = missing_forces(force, folds, at)
-    measured = {
-        "distance": distance(ts, z, at, on, eps, viscosity, 0.5 * scale / eps),
-        "missing_force": float(np.max(missing, initial=-np.inf)),
-        "viscosity": viscosity_ratio(folds, z, at, on) / viscosity,
-        "spacing": float(np.max(np.abs(np.diff(z)))) / eps,
-    }
-    return Certificate(
-        residual=residual,
-        residual_error=_residual_error(force, viscosity, ts, z, residual),
-        scale=scale,
-        slips=missing.size,
-        skipped=int(np.sum(missing > SETTINGS.missing_force)),
-        status=_verdict(**measured),
-        **measured,
-    )
+        return nothing_known(scale)
+    if array is not None:
+        from .array_curves import array_certificate  # nothing else needs it
+
+        return array_certificate(scene, array, eps, viscosity, scale, ts, z)
+    return plain_certificate(scene, eps, viscosity, scale, ts, z)
 
 
-def _require_curve(scene: Scene, ts: Any, z: Any) -> tuple[np.ndarray, np.ndarray]:
-    times, states = known_numbers(ts), known_numbers(z)
+def _require_instants(scene: Scene, ts: Any) -> np.ndarray:
+    times = known_numbers(ts)
     require(times.ndim == 1 and times.size >= 2, "ts", ts, "times, shape (n,), n >= 2")
     times = np.asarray(require_times(scene, times), dtype=float)
     require(np.all(np.diff(times) > 0), "ts", times, "times that increase")
-    shape = f"real states of the shape {times.shape} of ts"
-    require(states.shape == times.shape, "z", z, shape)
-    return times, states.astype(float)
+    return times
 
 
-def _nothing_known(scale: float) -> Certificate:
-    unknown = math.nan
-    return Certificate(
-        residual=unknown,
-        residual_error=unknown,
-        scale=scale,
-        slips=0,
-        skipped=0,
-        distance=unknown,
-        missing_force=unknown,
-        viscosity=unknown,
-        spacing=unknown,
-        status=CertificateStatus.NOT_FINITE,
-    )
-
-
-def _residual_error(force: Force, viscosity: float, ts, z, residual: float) -> float:
-    """From the residual at every second sample: order 2 is claimed where h^6 can be met."""
-    keep = np.unique(np.append(np.arange(0, ts.size, 2), ts.size - 1))
-    _, on = along_curve(force, viscosity, ts[keep], z[keep])
-    return abs(float(np.sum(on.residual)) - residual) / 3
-
-
-def _verdict(
-    *, distance: float, missing_force: float, viscosity: float, spacing: float
-) -> CertificateStatus:
-    """The first test that fails. NaN is no slip: nothing to measure the viscosity by."""
-    if spacing > SETTINGS.coarsest:
-        return CertificateStatus.UNRESOLVED
-    if missing_force > SETTINGS.missing_force:
-        return CertificateStatus.SKIPPED
-    if abs(viscosity - 1) > SETTINGS.viscosity:
-        return CertificateStatus.VISCOSITY
-    return CertificateStatus.OK if distance <= SETTINGS.farthest else CertificateStatus.OFF
+def _require_states(ts: np.ndarray, z: Any, array: CompliantArray | None) -> np.ndarray:
+    states = known_numbers(z)
+    shape, needs = ts.shape, f"real states of the shape {ts.shape} of ts"
+    if array is not None:
+        shape = (array.offsets.size, *ts.shape)
+        needs = f"real states of the shape {shape}, a row a bristle, not their mean"
+    require(states.shape == shape, "z", z, needs)
+    return states.astype(float)

@@ -37,7 +37,9 @@ def engine_of(method: Any) -> Engine:
 
 _E = Engine
 _DOES: dict[str, frozenset[Engine]] = {
-    "CompliantArray": frozenset({_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP}),
+    "CompliantArray": frozenset(
+        {_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP, _E.CERTIFICATE}
+    ),
     "Noise": frozenset({_E.RESOLVED, _E.SWEEP, _E.ENSEMBLE, _E.FRICTION_CURVE}),
     "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
     "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
@@ -56,7 +58,6 @@ _MASSLESS = "a scene without it"
 _ALONE = "a bristle at a time: a scene without it"
 _INSTEAD: dict[tuple[str, Engine], str] = {
     ("CompliantArray", _E.PATH): "methods of its own, for scenes of known numbers",
-    ("CompliantArray", _E.CERTIFICATE): _ALONE,
     ("CompliantArray", _E.MECHANICS): _ALONE,
     ("CompliantArray", _E.ENSEMBLE): _ALONE,
     ("CompliantArray", _E.FRICTION_CURVE): _ALONE,

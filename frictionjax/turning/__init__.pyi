@@ -10,6 +10,7 @@ from .polynomials import BentForce as BentForce
 from .polynomials import bent_force as bent_force
 from .polynomials import turning_force as turning_force
 from .sides import SceneParts as SceneParts
+from .sides import SidedSupport as SidedSupport
 from .sides import compression as compression
 from .sides import sided_potential as sided_potential
 from .turned_rod import NO_TURNING as NO_TURNING

@@ -118,6 +118,5 @@ def test_a_bristle_that_fails_is_told(monkeypatch):
 def test_engines_that_do_not_are_named():
     with pytest.raises(ValueError, match=r"solver of diffrax.* does not do CompliantArray"):
         fx.solve(array_of(0.1), 1e-2, method="Kvaerno5")
-    ts = np.linspace(0, 3, 100)
-    with pytest.raises(ValueError, match="certify does not do CompliantArray"):
-        fx.certify(array_of(0.1), 1e-2, 1.0, ts, 0 * ts)
+    with pytest.raises(ValueError, match="ensemble does not do CompliantArray"):
+        fx.ensemble(array_of(0.1), 1e-2, 1.0, [0.5], 2, 0)

@@ -55,6 +55,13 @@ def noisy(scene):
     return scene.replace(effects=(*scene.effects, fx.effects.Noise(1e-4)))
 
 
+def curve_for(scene):
+    """States for `certify`, and what else a scene is asked for there."""
+    z = np.clip(TS - 0.1, 0, 1)
+    arrays = [e for e in scene.effects if isinstance(e, fx.effects.CompliantArray)]
+    return {"z": np.tile(z, (arrays[0].offsets.size, 1)) if arrays else z}
+
+
 CALLS = {
     Engine.LIMIT: lambda s: fx.solve_limit(s, [0.5, 1.0]),
     Engine.RESOLVED: lambda s: fx.solve(
@@ -63,7 +70,7 @@ CALLS = {
     Engine.WINDOWED: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="windowed"),
     Engine.PATH: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="Kvaerno3"),
     Engine.SWEEP: lambda s: fx.sweep(s, [0.05], [1.0], ts=[0.5, 1.0], key=key_for(s)),
-    Engine.CERTIFICATE: lambda s: fx.certify(s, 0.05, 1.0, TS, np.clip(TS - 0.1, 0, 1)),
+    Engine.CERTIFICATE: lambda s: fx.certify(s, 0.05, 1.0, TS, **curve_for(s)),
     Engine.COST: lambda s: fx.predict_cost(s, [0.05], [1.0]),
     Engine.MECHANICS: lambda s: fx.mechanics(s, AT_REST),
     Engine.ENSEMBLE: lambda s: fx.ensemble(noisy(s), 0.05, 1.0, [0.5, 1.0], 2, 0),

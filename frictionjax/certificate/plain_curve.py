@@ -1,0 +1,67 @@
+"""A curve of the plain system, or of its effects that change the potential or only read."""
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+
+from ..model import Scene
+from .curve import Force, along_curve, force_of
+from .settings import SETTINGS
+from .transits import folds_of, missing_forces, viscosity_ratio
+from .tube import distance
+from .verdicts import Certificate, CertificateStatus
+
+
+class CurveMeasures(NamedTuple):
+    """What verdicts go by, each as in a `Certificate`."""
+
+    distance: float
+    missing_force: float
+    viscosity: float
+    spacing: float
+
+
+def plain_certificate(
+    scene: Scene, eps: float, viscosity: float, scale: float, ts, z
+) -> Certificate:
+    """Of finite samples; `viscosity` is `eps^gamma`, `scale` the energy of a slip in J."""
+    force = force_of(scene, jnp.asarray(eps))
+    at, on = along_curve(force, viscosity, ts, z)
+    residual = float(np.sum(on.residual))
+    folds = folds_of(force)
+    missing = missing_forces(force, folds, at)
+    measured = CurveMeasures(
+        distance=distance(ts, z, at, on, eps, viscosity, 0.5 * scale / eps),
+        missing_force=float(np.max(missing, initial=-np.inf)),
+        viscosity=viscosity_ratio(folds, z, at, on) / viscosity,
+        spacing=float(np.max(np.abs(np.diff(z)))) / eps,
+    )
+    return Certificate(
+        residual=residual,
+        residual_error=_residual_error(force, viscosity, ts, z, residual),
+        scale=scale,
+        slips=missing.size,
+        skipped=int(np.sum(missing > SETTINGS.missing_force)),
+        status=verdict(measured),
+        **measured._asdict(),
+    )
+
+
+def _residual_error(force: Force, viscosity: float, ts, z, residual: float) -> float:
+    """From the residual at every second sample: order 2 is claimed where h^6 can be met."""
+    keep = np.unique(np.append(np.arange(0, ts.size, 2), ts.size - 1))
+    _, on = along_curve(force, viscosity, ts[keep], z[keep])
+    return abs(float(np.sum(on.residual)) - residual) / 3
+
+
+def verdict(measured: CurveMeasures) -> CertificateStatus:
+    """The first test that fails. NaN is no slip: nothing to measure the viscosity by."""
+    if measured.spacing > SETTINGS.coarsest:
+        return CertificateStatus.UNRESOLVED
+    if measured.missing_force > SETTINGS.missing_force:
+        return CertificateStatus.SKIPPED
+    if abs(measured.viscosity - 1) > SETTINGS.viscosity:
+        return CertificateStatus.VISCOSITY
+    near = measured.distance <= SETTINGS.farthest
+    return CertificateStatus.OK if near else CertificateStatus.OFF

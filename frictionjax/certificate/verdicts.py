@@ -1,0 +1,63 @@
+"""What a certificate says, and why."""
+
+import math
+from typing import NamedTuple
+
+from .._checks import Outcome, Result
+
+
+class CertificateStatus(Outcome):
+    """Why a curve is or is not accepted; `message` says it for people."""
+
+    OK = 0, "the curve solves the wiggly system"
+    NOT_FINITE = 1, "the curve holds values that are not finite"
+    UNRESOLVED = 2, "samples are more than eps/4 apart: slips are not resolved"
+    SKIPPED = 3, "a well was crossed without the force that this takes"
+    OFF = 4, "the curve is too far from every solution"
+    VISCOSITY = 5, "slips take another time than eps^gamma gives them"
+
+
+class _Numbers(NamedTuple):
+    residual: float
+    residual_error: float
+    scale: float
+    slips: int
+    skipped: int
+    distance: float
+    missing_force: float
+    viscosity: float
+    spacing: float
+    status: CertificateStatus
+
+
+class Certificate(Result, _Numbers):
+    """What was found about a curve.
+
+    `residual` of the energy-dissipation balance in J, `int (eps^gamma z' + D E)^2 /
+    (2 eps^gamma)`, with its quadrature error `residual_error`; `scale = eps (rho_plus -
+    rho_minus)`, the energy of one slip, in J. `slips`: wells crossed. `distance`: the
+    curve is at least so far, in units of eps, from every solution. `missing_force`: the
+    most that was missing when a well was left, in units of `Phi'' eps`, the force of one
+    well. `viscosity`: measured in slips, relative to `eps^gamma`; NaN without slips.
+    `skipped`: wells crossed without the force. `status`: a `CertificateStatus`; `ok`:
+    whether the curve is within about eps/100 of a solution; `message`: the verdict.
+    """
+
+    __slots__ = ()
+
+
+def nothing_known(scale: float) -> Certificate:
+    """Of a curve with values that are not finite."""
+    unknown = math.nan
+    return Certificate(
+        residual=unknown,
+        residual_error=unknown,
+        scale=scale,
+        slips=0,
+        skipped=0,
+        distance=unknown,
+        missing_force=unknown,
+        viscosity=unknown,
+        spacing=unknown,
+        status=CertificateStatus.NOT_FINITE,
+    )
