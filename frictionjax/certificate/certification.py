@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import as_real, known_numbers, require, require_real, with_nan
-from ..effects import CompliantArray, Engine
+from ..effects import CompliantArray, Engine, Inertia, inertia_among
 from ..model import Scene, coefficients_jit, require_reach, require_times, scene_for
 from .plain_curve import plain_certificate
 from .verdicts import Certificate, CertificateStatus, nothing_known
@@ -15,7 +15,9 @@ __all__ = ["Certificate", "CertificateStatus", "certify"]
 
 
 @with_nan
-def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
+def certify(
+    scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any, *, velocity: Any = None
+) -> Certificate:
     """Certify any sampled curve, whatever made it, against the scene alone.
 
     `eps` in m, `gamma` > 0; `ts` in s, increasing, in [0, duration]; `z` in m; shapes
@@ -37,6 +39,18 @@ def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
     bristles, `scale` is the energy of one slip of one of them, and of all other numbers
     there is the worst.
 
+    Of a scene with `effects.Inertia` it needs `velocity`, z' in m/s, (n,), as `solve` gives
+    it. Solutions of such scenes part in slips, and no window proves anything: the solution
+    nearest to all samples is sought, by steps from each to the next. `distance` is how far
+    in eps the curve is from it, inf where none is found; `status` is `VELOCITY` where only
+    velocities are not that solution's. `residual` is the size of what is left of the
+    balance of energies in J: the change of `m_eps z'^2/2 + Phi + V_eps`, less `int l z'`
+    and plus `int eps^gamma z'^2`; `viscosity` what would balance them, over `eps^gamma`.
+    Momentum may carry a tip over: `missing_force` is NaN and `skipped` 0. Where a slip
+    begins, samples have to come close in time before they move, each gap at most four
+    times its neighbour, else the steps between may not tell (`UNRESOLVED`); and noise of
+    eps/100 is not accepted everywhere: from states beyond a fold others follow.
+
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.
     """
@@ -46,17 +60,32 @@ def certify(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> Certificate:
     array = next((e for e in scene.effects if isinstance(e, CompliantArray)), None)
     ts = _require_instants(scene, ts)
     z = _require_states(ts, z, array)
+    inertia = inertia_among(scene.effects)
+    speeds = _require_velocity(ts, velocity, inertia)
     require_reach(scene.potential, jnp.asarray(as_real(eps)))
     eps = float(eps)
     viscosity = eps ** float(gamma)
     law = coefficients_jit(scene.potential)
     scale = eps * float(law.rho_plus - law.rho_minus)
-    if not np.all(np.isfinite(z)):
+    if not (np.all(np.isfinite(z)) and np.all(np.isfinite(speeds))):
         return nothing_known(scale)
     if array is not None:
         from .array_curves import array_certificate  # nothing else needs it
 
         return array_certificate(scene, array, eps, viscosity, scale, ts, z)
+    if inertia is not None:
+        from .massive_curve import massive_certificate  # nothing else needs it
+
+        return massive_certificate(
+            scene,
+            mass=float(inertia.mass_at(eps)),
+            eps=eps,
+            viscosity=viscosity,
+            scale=scale,
+            ts=ts,
+            z=z,
+            velocity=speeds,
+        )
     return plain_certificate(scene, eps, viscosity, scale, ts, z)
 
 
@@ -76,3 +105,16 @@ def _require_states(ts: np.ndarray, z: Any, array: CompliantArray | None) -> np.
         needs = f"real states of the shape {shape}, a row a bristle, not their mean"
     require(states.shape == shape, "z", z, needs)
     return states.astype(float)
+
+
+def _require_velocity(ts: np.ndarray, velocity: Any, inertia: Inertia | None) -> np.ndarray:
+    """The velocities of a curve with mass; none of others."""
+    if inertia is None:
+        needs = "None, or a scene with effects.Inertia"
+        require(velocity is None, "velocity", velocity, needs)
+        return np.zeros(0)
+    needs = f"z' in m/s of the shape {ts.shape} of ts, as solve gives it"
+    require(velocity is not None, "velocity", velocity, needs)
+    speeds = known_numbers(velocity)
+    require(speeds.shape == ts.shape, "velocity", velocity, needs)
+    return speeds.astype(float)

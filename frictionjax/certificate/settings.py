@@ -33,5 +33,19 @@ class Settings(NamedTuple):
     stiff: float = 1.5  # relaxation times an interval: beyond, velocities are not slopes
     chunk: int = 1 << 14  # samples a compiled call: any curve runs in the same program
 
+    # Curves with mass; in periods, and speeds in units.
+    steps: int = 2048  # of one compiled call
+    local: float = 1e-6  # half as long steps may change the way between samples by that
+    most: int = 256  # steps between two samples
+    room: int = 1 << 14  # steps in all gaps that need so many: of a wrong curve all do
+    room_a_gap: int = 6  # and more of longer curves
+    swing: float = 0.2  # of the guess between samples that hardly move
+    trusted: float = 0.2  # the longest move of one iteration
+    rounds: int = 40  # of Newton's method
+    solved: float = 1e-5  # changes at which it ends: rounding leaves 1e-6 at weak damping
+    rounds_in_gaps: int = 10  # in each gap alone, from where all of them set off
+    hopeless: float = 0.5  # moved that far: there is none nearby
+    unsure: float = 0.01  # doubt about it
+
 
 SETTINGS = Settings()

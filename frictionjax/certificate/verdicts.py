@@ -11,10 +11,14 @@ class CertificateStatus(Outcome):
 
     OK = 0, "the curve solves the wiggly system"
     NOT_FINITE = 1, "the curve holds values that are not finite"
-    UNRESOLVED = 2, "samples are more than eps/4 apart: slips are not resolved"
+    UNRESOLVED = (
+        2,
+        "samples are more than eps/4 apart, or too far in time: slips are not resolved",
+    )
     SKIPPED = 3, "a well was crossed without the force that this takes"
     OFF = 4, "the curve is too far from every solution"
     VISCOSITY = 5, "slips take another time than eps^gamma gives them"
+    VELOCITY = 6, "the velocity is not that of the curve"
 
 
 class _Numbers(NamedTuple):
@@ -40,7 +44,8 @@ class Certificate(Result, _Numbers):
     most that was missing when a well was left, in units of `Phi'' eps`, the force of one
     well. `viscosity`: measured in slips, relative to `eps^gamma`; NaN without slips.
     `skipped`: wells crossed without the force. `status`: a `CertificateStatus`; `ok`:
-    whether the curve is within about eps/100 of a solution; `message`: the verdict.
+    whether the curve is within about eps/100 of a solution; `message`: the verdict. What
+    some of these are for arrays and for tips with mass, `certify` tells.
     """
 
     __slots__ = ()

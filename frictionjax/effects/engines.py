@@ -42,7 +42,7 @@ _DOES: dict[str, frozenset[Engine]] = {
     ),
     "Noise": frozenset({_E.RESOLVED, _E.SWEEP, _E.ENSEMBLE, _E.FRICTION_CURVE}),
     "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
-    "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
+    "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE}),
 }
 """Of effects that change what moves: the engines that do them."""
 _READS_NOT: dict[str, frozenset[Engine]] = {"AxialLoad": frozenset({_E.ENSEMBLE, _E.SLIDE})}
@@ -73,7 +73,6 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
         _E.WINDOWED,
     ): 'method="auto": tips with mass are not ordered, no window holds',
     ("Inertia", _E.PATH): 'method="auto", and scenes of known numbers',
-    ("Inertia", _E.CERTIFICATE): "residual of solve, of the balance with kinetic energy",
     ("Inertia", _E.COST): "stats of solve, which tell steps",
     ("Inertia", _E.TRACE): _MASSLESS,
     ("Inertia", _E.ENSEMBLE): _MASSLESS,

@@ -59,7 +59,10 @@ def curve_for(scene):
     """States for `certify`, and what else a scene is asked for there."""
     z = np.clip(TS - 0.1, 0, 1)
     arrays = [e for e in scene.effects if isinstance(e, fx.effects.CompliantArray)]
-    return {"z": np.tile(z, (arrays[0].offsets.size, 1)) if arrays else z}
+    asked = {"z": np.tile(z, (arrays[0].offsets.size, 1)) if arrays else z}
+    if any(isinstance(e, fx.effects.Inertia) for e in scene.effects):
+        asked["velocity"] = np.gradient(z, TS)
+    return asked
 
 
 CALLS = {
