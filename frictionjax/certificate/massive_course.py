@@ -125,7 +125,7 @@ def divided(gaps: SampleGaps, count: int) -> MassiveCourse:
     return MassiveCourse(steps, count * np.arange(gaps.start.size + 1))
 
 
-def joined(
+def joined_courses(
     parts: list[tuple[np.ndarray, MassiveCourse, np.ndarray]], counts: np.ndarray
 ) -> MassiveCourse:
     """One course from several: of each the numbers of some gaps, which, and its steps."""

@@ -14,7 +14,14 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from .massive_course import GapMoves, MassiveCourse, divided, halved, joined, linear_near
+from .massive_course import (
+    GapMoves,
+    MassiveCourse,
+    divided,
+    halved,
+    joined_courses,
+    linear_near,
+)
 from .massive_steps import MassiveEquation
 from .sample_gaps import SampleGaps
 from .settings import SETTINGS
@@ -66,7 +73,9 @@ def _in_gaps(equation: MassiveEquation, gaps: SampleGaps) -> tuple[MassiveCourse
         counts[rows[near]] = 2 * count
         rows, count = rows[~near], 4 * count
         if not rows.size:
-            return joined(parts, counts), not (last and np.any(~(apart <= SETTINGS.unsure)))
+            return joined_courses(parts, counts), not (
+                last and np.any(~(apart <= SETTINGS.unsure))
+            )
 
 
 def _in_each(

@@ -125,6 +125,17 @@ def test_curves_that_cannot_be_judged_are_not_accepted():
         assert certified(1.0, *curve).status.name == "NOT_FINITE"
 
 
+def test_steps_that_do_not_agree_leave_it_open(monkeypatch):
+    from frictionjax.certificate import shadow
+
+    z, velocity = by_library(1.0)
+    thinned = z[::4], velocity[::4]
+    assert certified(1.0, *thinned, ts=TS[::4]).ok
+    strict = shadow.SETTINGS._replace(most=1, unsure=1e-9)  # 7e-8 is what they err by
+    monkeypatch.setattr(shadow, "SETTINGS", strict)
+    assert certified(1.0, *thinned, ts=TS[::4]).status.name == "UNRESOLVED"
+
+
 @pytest.mark.parametrize("velocity", [None, [0.0, 1.0]])
 def test_it_needs_a_velocity_of_the_shape_of_the_times(velocity):
     with pytest.raises(ValueError, match=r"^velocity = .*needs z' in m/s of the shape"):
