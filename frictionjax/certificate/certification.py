@@ -48,7 +48,8 @@ def certify(
     and plus `int eps^gamma z'^2`; `viscosity` what would balance them, over `eps^gamma`.
     Momentum may carry a tip over: `missing_force` is NaN and `skipped` 0. Where a slip
     begins, samples have to come close in time before they move, each gap at most four
-    times its neighbour, else the steps between may not tell (`UNRESOLVED`); and noise of
+    times its neighbour, else steps between them may not agree, as they may not on curves
+    that are wrong: both are `UNRESOLVED`. Noise of
     eps/100 is not accepted everywhere: from states beyond a fold others follow.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the

@@ -43,7 +43,7 @@ class SampleGaps(NamedTuple):
         )
 
     def at(self, rows: Any) -> "SampleGaps":
-        """Some of them."""
+        """Some of them, in columns of the shape of `rows`."""
         return SampleGaps(*(column[rows] for column in self[:-1]), unit=self.unit)
 
     @property
