@@ -13,7 +13,7 @@ class CertificateStatus(Outcome):
     NOT_FINITE = 1, "the curve holds values that are not finite"
     UNRESOLVED = (
         2,
-        "samples are more than eps/4 apart, or steps between them do not agree: not decided",
+        "samples are more than eps/4 apart, or steps between them do not agree: undecided",
     )
     SKIPPED = 3, "a well was crossed without the force that this takes"
     OFF = 4, "the curve is too far from every solution"

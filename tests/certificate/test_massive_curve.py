@@ -146,3 +146,24 @@ def test_no_other_scene_has_a_velocity():
     plain = scene_of(1.0).replace(effects=())
     with pytest.raises(ValueError, match=r"(?s)^velocity = .*needs None, or a scene"):
         fx.certify(plain, EPS, GAMMA, TS, 0 * TS, velocity=0 * TS)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("beta", [0.5, 20.0])
+def test_a_tip_that_is_not_at_the_state(beta):
+    """A rod, whose tip goes farther than its root where the surface rises."""
+    mass = mass_for(beta, EPS, GAMMA)
+    rod = fx.bristles.AngularSpring(1.0, 1.5, 1.0, 0.2)
+    scene = scene_of(1.0).replace(
+        profile=fx.profiles.Sine(0.15), bristle=rod, effects=(fx.effects.Inertia(mass),)
+    )
+    solved = fx.solve(scene, EPS, GAMMA, TS)
+    assert solved.ok
+    z, velocity = np.asarray(solved.z), np.asarray(solved.velocity)
+    found = fx.certify(scene, EPS, GAMMA, TS, z, velocity=velocity)
+    assert found.ok, found
+    assert found.distance < 2e-3
+    shifted = fx.certify(scene, EPS, GAMMA, TS, z + 0.1 * EPS, velocity=velocity)
+    assert not shifted.ok
+    heavier = scene.replace(effects=(fx.effects.Inertia(2 * mass),))
+    assert not fx.certify(heavier, EPS, GAMMA, TS, z, velocity=velocity).ok
