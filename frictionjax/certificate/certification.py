@@ -50,7 +50,8 @@ def certify(
     begins, samples have to come close in time before they move, each gap at most four
     times its neighbour, else steps between them may not agree, as they may not on curves
     that are wrong: both are `UNRESOLVED`. Noise of
-    eps/100 is not accepted everywhere: from states beyond a fold others follow.
+    eps/100, or a shift by it, is not accepted everywhere: from states beyond a fold
+    others follow.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.
