@@ -14,6 +14,10 @@ if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
     os.environ["JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"] = "0.3"
     atexit.register(shutil.rmtree, _CACHE, ignore_errors=True)
 
+# Two workers have a core each: threads of BLAS wait for one another, 30 CPU s of them in
+# one file. Has to stand before NumPy is imported.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import jax
 from jaxtyping import install_import_hook
 
