@@ -1,5 +1,7 @@
 """A scene's steps by a solver of diffrax, as derivatives of trajectories take them."""
 
+from functools import cache
+
 import diffrax
 import equinox as eqx
 import jax.numpy as jnp
@@ -18,9 +20,11 @@ SCENE = fx.Scene(
     duration=1.0,
 )
 CONTROLLER = diffrax.PIDController(rtol=0.0, atol=1e-5)
+ROOM = 2000  # of logs, for accepted steps
 FIRST = jnp.asarray(1e-3)
 
 
+@cache
 def stepper_of(solver="resolved", eps=0.1):
     field = field_of(SCENE, jnp.asarray(eps), jnp.asarray(1.0))
     energy = field.energy(jnp.zeros(()), field.start(SCENE.z0))
@@ -34,8 +38,12 @@ def start_of(stepper):
     return (tip, *stepper.solver.recorder.start(SCENE.z0), FIRST)  # and the longest step
 
 
+def stepped(stepper, t, stop, most=10_000):
+    """By one program, whatever `most` is."""
+    return _stepped(stepper, t, stop, jnp.asarray(most))
+
+
 @eqx.filter_jit
-def stepped(stepper, t, stop, most=10_000, room=0):
-    return step_to(
-        stop, stepper, CONTROLLER, t, start_of(stepper), FIRST, most=most, room=room
-    )
+def _stepped(stepper, t, stop, most):
+    start = start_of(stepper)
+    return step_to(stop, stepper, CONTROLLER, t, start, FIRST, most=most, room=ROOM)

@@ -12,23 +12,35 @@ from frictionjax.wiggly.sequential.step_adjoint import Ends, made_again
 ROOM = 400
 
 
+@eqx.filter_jit
 def energies(stepper, start, stop, room=ROOM):
-    ends = Ends(stepper, jnp.asarray(0.0), start, stop)
-    (tip, balance, *_), fits = made_again(ends, CONTROLLER, FIRST, room)
-    return tip + 3.0 * balance.viscous, fits
+    """The value, whether there was room, and derivatives by the first three: one program."""
+
+    def value(given):
+        stepper, start, stop = given
+        ends = Ends(stepper, jnp.asarray(0.0), start, stop)
+        (tip, balance, *_), fits = made_again(ends, CONTROLLER, FIRST, room)
+        return tip + 3.0 * balance.viscous, fits
+
+    slopes = eqx.filter_value_and_grad(value, has_aux=True)
+    (found, fits), by = slopes((stepper, start, stop))
+    return found, fits, by
 
 
 @eqx.filter_jit
-def one_step(stepper, begin, end, y, memory):
-    after, _, memory, _ = stepper.step(begin, end, y, memory)
-    return after, memory
-
-
-def chained(stepper, start, stop, times):
+@eqx.filter_grad
+def chained(given, times):
     """The same steps one after the other, to be differentiated as they stand."""
-    y, memory = start, stepper.memory(times[0], stop, start)
-    for begin, end in zip(times, [*times[1:], stop], strict=True):
-        y, memory = one_step(stepper, begin, end, y, memory)
+    stepper, start, stop = given
+    moving, still = eqx.partition(stepper.memory(times[0], stop, start), eqx.is_array)
+
+    def step(now, between):
+        y, memory = now
+        y, _, memory, _ = stepper.step(*between, y, eqx.combine(memory, still))
+        return (y, eqx.filter(memory, eqx.is_array)), None
+
+    between = times, jnp.append(times[1:], stop)
+    (y, _), _ = jax.lax.scan(step, (start, moving), between)
     return y[0] + 3.0 * y[1].viscous
 
 
@@ -40,7 +52,7 @@ def point():
 
 def test_values_are_those_of_the_steps(point):
     stepper, _, stop = point
-    value, fits = energies(*point)
+    value, fits, _ = energies(*point)
     now, _ = stepped(stepper, jnp.asarray(0.0), stop)
     assert bool(fits)
     assert float(value) == pytest.approx(
@@ -49,24 +61,18 @@ def test_values_are_those_of_the_steps(point):
 
 
 def test_too_little_room_is_told(point):
-    _, fits = energies(*point, room=5)
+    stepper, start, stop = point
+    ends = Ends(stepper, jnp.asarray(0.0), start, stop)
+    _, fits = eqx.filter_jit(made_again)(ends, CONTROLLER, FIRST, 5)
     assert not bool(fits)
 
 
 def test_derivatives_are_those_of_the_steps_made_once_more(point):
-    stepper, start, stop = point
-    now, log = stepped(stepper, jnp.asarray(0.0), stop, room=ROOM)
-    times = [jnp.asarray(t) for t in np.asarray(log.t)[: int(now.accepted)]]
-    assert 5 < len(times) < 30
-
-    def parts(ends):
-        return eqx.filter_grad(lambda e: energies(e[0], e[1], e[2])[0])(ends)
-
-    def plain(ends):
-        return eqx.filter_grad(lambda e: chained(e[0], e[1], e[2], times))(ends)
-
-    ends = stepper, start, stop
-    ours, theirs = eqx.filter_jit(parts)(ends), plain(ends)  # of which one step is compiled
+    stepper, _, stop = point
+    now, log = stepped(stepper, jnp.asarray(0.0), stop)
+    times = log.t[: int(now.accepted)]
+    assert 5 < times.size < 30
+    ours, theirs = energies(*point)[2], chained(point, times)
     found, expected = (
         np.asarray([float(np.sum(leaf)) for leaf in jax.tree_util.tree_leaves(tree)])
         for tree in (ours, theirs)
@@ -78,18 +84,17 @@ def test_derivatives_are_those_of_the_steps_made_once_more(point):
 def test_derivatives_by_the_start_are_finite_differences(point):
     stepper, start, stop = point
 
-    def value(tip):
-        return energies(stepper, (tip, *start[1:]), stop)[0]
+    def at(tip):
+        return energies(stepper, (tip, *start[1:]), stop)
 
-    slope = float(jax.grad(value)(start[0]))
+    slope = float(at(start[0])[2][1][0])
     step = 1e-5
-    difference = float(value(start[0] + step) - value(start[0] - step)) / (2 * step)
+    difference = float(at(start[0] + step)[0] - at(start[0] - step)[0]) / (2 * step)
     # The difference is by the lengths of the steps too, that is, by their errors.
     assert slope == pytest.approx(difference, rel=5e-3)
 
 
 def test_no_way_has_the_derivative_one(point):
     stepper, start, _ = point
-    zero = jnp.asarray(0.0)
-    slope = jax.grad(lambda tip: energies(stepper, (tip, *start[1:]), zero)[0])(start[0])
-    assert float(slope) == 1.0
+    by_start = energies(stepper, start, jnp.asarray(0.0))[2][1]
+    assert float(by_start[0]) == 1.0
