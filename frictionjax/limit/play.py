@@ -1,4 +1,4 @@
-"""The rate-independent limit system (eq. 2.3) as an associative scan of clips."""
+"""The rate-independent limit system (eq. 2.3) as one clip after the other."""
 
 from typing import Any
 
@@ -84,12 +84,6 @@ def play_step(support: AbstractSupport, found: Coefficients, z: Real, load: Real
     return jnp.clip(z, lower, upper)
 
 
-def _then(first: tuple[Array, Array], second: tuple[Array, Array]) -> tuple[Array, Array]:
-    """The clip that two clips make one after the other; associative."""
-    (a, b), (lower, upper) = first, second
-    return jnp.clip(a, lower, upper), jnp.clip(b, lower, upper)
-
-
 def limit_on_grid(
     load: AbstractPull,
     support: AbstractSupport,
@@ -100,12 +94,18 @@ def limit_on_grid(
     """State and cumulative dissipation on a sorted grid that holds the turning points.
 
     Between grid points the load is monotone, so the solution is too, and a clip to the
-    strip at the grid point is exact: there is no time-stepping error.
+    strip at the grid point is exact: there is no time-stepping error. (An associative scan
+    of the clips has the same values, but took 7.5 s to compile for 65536 points where this
+    takes 0.04, and ran 15 times as long.)
     """
     loads = jax.vmap(load)(grid)
-    lower, upper = jax.vmap(lambda load: strip(support, found, load))(loads)
-    lower, upper = jax.lax.associative_scan(_then, (lower, upper))
-    z = jnp.clip(z0, lower, upper)
+    strips = jax.vmap(lambda load: strip(support, found, load))(loads)
+
+    def clipped(z: Array, strip: tuple[Array, Array]) -> tuple[Array, Array]:
+        z = jnp.clip(z, *strip)
+        return z, z
+
+    _, z = jax.lax.scan(clipped, jnp.asarray(z0, grid.dtype), strips)
     moves = jnp.diff(z, prepend=z0)
     spent = dissipation_potential(found.rho_plus, found.rho_minus, moves)
     return z, jnp.cumsum(spent)
