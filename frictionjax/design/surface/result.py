@@ -172,12 +172,16 @@ class ProfileFit(DesignResult):
         if apart is not None:
             return surfaces_seen_alike(apart, self.profile, count, float(size), seed)
         sharp, high = (self.bounds[k] for k in ("smallest_radius", "largest_amplitude"))
+        # As arrays: another number compiles nothing.
+        numbers = (
+            size,
+            np.inf if sharp is None else 1 / sharp,
+            np.inf if high is None else high,
+        )
         known: Any = (
             waves_of_heights(self.profile.cos, self.profile.sin),
             jax.random.split(jax.random.PRNGKey(seed), count),
-            float(size),
-            np.inf if sharp is None else 1 / sharp,
-            np.inf if high is None else float(high),
+            *(np.asarray(number, dtype=float) for number in numbers),
         )
         waves, good = members(*known)
         cos, sin = (np.asarray(rows) for rows in heights_of_waves(waves))

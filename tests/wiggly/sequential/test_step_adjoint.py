@@ -14,7 +14,7 @@ ROOM = 400
 
 @eqx.filter_jit
 def energies(stepper, start, stop, room=ROOM):
-    """The value, whether there was room, and derivatives by the first three: one program."""
+    """The value, whether there was room, derivatives by the first three: one program."""
 
     def value(given):
         stepper, start, stop = given
