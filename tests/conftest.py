@@ -14,8 +14,8 @@ if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
     os.environ["JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"] = "0.3"
     atexit.register(shutil.rmtree, _CACHE, ignore_errors=True)
 
-# Two workers have a core each: threads of BLAS wait for one another, 30 CPU s of them in
-# one file. Has to stand before NumPy is imported.
+# Two workers have a core each: threads of BLAS wait for one another, 33 of the 53 CPU s
+# that tests/stochastic/test_smoluchowski.py took. Has to stand before NumPy is imported.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import jax
@@ -57,24 +57,36 @@ gc.set_threshold(20_000, 20, 50)
 
 # Files that take longest, first: the last one under way then leaves no worker idle.
 _LONGEST = (
-    "wiggly/sequential/test_sequential_gradients",
-    "wiggly/sums/test_sums_strip_excess",
-    "wiggly/sums/test_sums_of_sampled_slides",
-    "design/trace/test_fit",
-    "wiggly/test_guarantees",
-    "cost/test_measurement",
-    "wiggly/sums/test_sums_of_few_wells",
-    "sweeps/test_sweep_cells",
     "design/surface/test_fit",
-    "certificate/test_certification",
-    "design/slide/test_surface_fit",
-    "model/test_potentials",
+    "wiggly/sums/test_sums_strip_excess",
+    "explain/test_explanation",
+    "effects/test_rigid_array",
+    "wiggly/sums/test_sums_of_sampled_slides",
+    "sweeps/test_sweep_cells",
+    "model/test_tabulated",
     "design/bristle/test_angle",
+    "called_for/test_left_out",
+    "hard/test_flat_folds",
+    "model/test_potentials",
+    "test_cli",
+    "sweeps/test_scene_family",
+    "model/test_admissibility",
+    "sweeps/test_sweep_cells_with_turning",
+    "tables/test_profiles",
+    "wiggly/sequential/test_sequential_gradients",
+    "contact/test_readings",
+    "stochastic/test_path_loop",
+    "studies/test_convergence_study_with_turning",
+    "rate_dependence/test_curves",
+    "design/trace/test_fit",
+    "cost/test_prediction",
     "model/test_friction_coefficients",
-    "wiggly/sequential/test_well_guard",
-    "wiggly/enclosure/test_brackets",
-    "hard/test_hard_flags",
-    "hard/test_hard_accuracy",
+    "effects/test_compliant_array",
+    "effects/test_leading_order",
+    "design/surface/test_result",
+    "wiggly/slip_map/test_well_pull",
+    "limit/test_play",
+    "wiggly/test_guarantees",
 )
 _HERE = Path(__file__).parent
 
