@@ -26,15 +26,15 @@ def part_text(part: Any, names: list[str]) -> str:
         value = getattr(part, stored.get(name, name), None)
         default = known[name].default if name in known else inspect.Parameter.empty
         if value is not None and not _as_is(value, default):
-            given[name] = value_text(value)
+            given[name] = _value_text(value)
     return _call(type(part).__name__, given)
 
 
-def value_text(value: Any) -> str:
+def _value_text(value: Any) -> str:
     """One argument: numbers to six digits, parts as calls, functions by their names."""
     if isinstance(value, tuple | list) and any(isinstance(v, eqx.Module) for v in value):
         comma = "," if len(value) == 1 else ""
-        return f"({', '.join(value_text(v) for v in value)}{comma})"
+        return f"({', '.join(_value_text(v) for v in value)}{comma})"
     if isinstance(value, eqx.Module):
         return _module_text(value)
     if isinstance(value, jax.core.Tracer):
@@ -51,7 +51,7 @@ def _module_text(value: eqx.Module) -> str:
     if type(value).__repr__ is not eqx.Module.__repr__:
         return repr(value)
     names = [field.name for field in dataclasses.fields(value)]
-    shown = {name: value_text(getattr(value, name)) for name in names}
+    shown = {name: _value_text(getattr(value, name)) for name in names}
     return _call(type(value).__name__, shown)
 
 
@@ -67,16 +67,14 @@ def _numbers(values: np.ndarray) -> str:
 
 
 def _as_is(value: Any, default: Any) -> bool:
+    """Whether the constructor makes it so without being asked."""
     if value is default:
         return True
     if default is inspect.Parameter.empty or isinstance(value, jax.core.Tracer):
         return False
     if isinstance(value, tuple | list):
         return isinstance(default, tuple | list) and not value and not default
-    try:
-        return bool(np.ndim(value) == 0 and np.ndim(default) == 0 and value == default)
-    except (TypeError, ValueError):
-        return False
+    return bool(np.ndim(value) == 0 and np.ndim(default) == 0 and value == default)
 
 
 def _call(name: str, given: dict[str, str]) -> str:

@@ -7,17 +7,24 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 
-def in_columns(header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 0) -> str:
-    """Columns under a header, set flush right but for the first `left` and the last text.
+def in_columns(
+    header: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    left: int = 0,
+    meanings: bool = False,
+) -> str:
+    """Columns under a header, two spaces apart, set flush right.
 
-    Lines carry no trailing blanks.
+    But for the first `left`, and the last where it holds `meanings`. Lines carry no
+    trailing blanks.
     """
     cells = [list(header), *(list(row) for row in rows)]
     widths = [max(len(row[i]) for row in cells) for i in range(len(header))]
+    words = {*range(left), len(header) - 1 if meanings else -1}
     lines = []
     for row in cells:
         texts = [
-            text.ljust(width) if i < left else text.rjust(width)
+            text.ljust(width) if i in words else text.rjust(width)
             for i, (text, width) in enumerate(zip(row, widths, strict=True))
         ]
         lines.append("  ".join(texts).rstrip())

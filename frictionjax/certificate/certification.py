@@ -49,9 +49,8 @@ def certify(
     Momentum may carry a tip over: `missing_force` is NaN and `skipped` 0. Where a slip
     begins, samples have to come close in time before they move, each gap at most four
     times its neighbour, else steps between them may not agree, as they may not on curves
-    that are wrong: both are `UNRESOLVED`. Noise of
-    eps/100, or a shift by it, is not accepted everywhere: from states beyond a fold
-    others follow.
+    that are wrong: both are `UNRESOLVED`. Noise of eps/100, or a shift by it, is not
+    accepted everywhere: from states beyond a fold others follow.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.

@@ -15,8 +15,8 @@ from ..numerics import concatenated, rows_of
 from ..supports import AbstractSupport
 from .settings import SETTINGS
 
-_NODES = np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])  # Gauss on [0, 1]
-_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18
+THREE_NODES = np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])  # Gauss on [0, 1]
+THREE_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18
 
 
 Column = Any
@@ -116,9 +116,9 @@ def _along(force: Force, viscosity, ends, first, last):
         defect = viscosity * force.stretch(y) * speed / step - found
         return found, defect**2, y
 
-    found, defect, y = jax.vmap(node)(jnp.asarray(_NODES))
-    impulse = step * jnp.sum(_WEIGHTS * found)
-    return impulse, step * jnp.sum(_WEIGHTS * defect) / (2 * viscosity), y[1]
+    found, defect, y = jax.vmap(node)(jnp.asarray(THREE_NODES))
+    impulse = step * jnp.sum(THREE_WEIGHTS * found)
+    return impulse, step * jnp.sum(THREE_WEIGHTS * defect) / (2 * viscosity), y[1]
 
 
 def _interval(force: Force, viscosity: Real, ends) -> Intervals:
@@ -159,6 +159,11 @@ def _chunk(force: Force, viscosity: Real, ts, z) -> tuple[CurveSamples, Interval
     right = jax.tree_util.tree_map(lambda v: v[1:], samples)
     ends = (ts[:-1], ts[1:], left, right)
     return samples, jax.vmap(lambda e: _interval(force, viscosity, e))(ends)
+
+
+def every_second(count: int) -> np.ndarray:
+    """Numbers of every second sample and of the last, to see what a quadrature is worth."""
+    return np.unique(np.append(np.arange(0, count, 2), count - 1))
 
 
 def force_of(scene: Scene, eps: Real) -> Force:

@@ -12,16 +12,13 @@ from .._checks import Real
 from .._compile import Program, in_chunks
 from ..model import Scene
 from ..numerics import cubic, cubic_slope
-from .curve import Force, force_of
+from .curve import THREE_NODES, THREE_WEIGHTS, Force, every_second, force_of
 from .massive_steps import MassiveEquation
 from .sample_gaps import SampleGaps
 from .settings import SETTINGS
 from .shadow import Shadow, shadow
 from .transits import CurveFolds, along, folds_of, transits
 from .verdicts import Certificate, CertificateStatus
-
-_NODES = np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])  # Gauss on [0, 1]
-_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18
 
 
 class MassiveSamples(NamedTuple):
@@ -77,7 +74,7 @@ def massive_certificate(
     distance = float(np.max(np.abs(stretch * near.moved[:, 0])))
     ratio = energies.viscosity / viscosity if slips else math.nan
     residual = energies.left(viscosity)
-    thinned = np.unique(np.append(np.arange(0, ts.size, 2), ts.size - 1))
+    thinned = every_second(ts.size)
     fewer = _energies(equation, MassiveSamples(*(c[thinned] for c in samples)))
     residual_error = abs(fewer.left(viscosity) - residual) / 3
     known = residual > 3 * residual_error
@@ -166,8 +163,10 @@ def _integrals(force: Force, *columns: Array) -> tuple[Array, Array]:
             speed = force.stretch(here) * cubic_slope(s, *ends) / length
             return force.load(t + s * length) * speed, speed**2
 
-        work, squares = jax.vmap(node)(jnp.asarray(_NODES))
-        return length * jnp.dot(_WEIGHTS, work), length * jnp.dot(_WEIGHTS, squares)
+        work, squares = jax.vmap(node)(jnp.asarray(THREE_NODES))
+        return length * jnp.dot(THREE_WEIGHTS, work), length * jnp.dot(
+            THREE_WEIGHTS, squares
+        )
 
     return jax.vmap(one)(*columns)
 

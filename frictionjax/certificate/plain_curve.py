@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..model import Scene
-from .curve import Force, along_curve, force_of
+from .curve import Force, along_curve, every_second, force_of
 from .settings import SETTINGS
 from .transits import folds_of, missing_forces, viscosity_ratio
 from .tube import distance
@@ -50,7 +50,7 @@ def plain_certificate(
 
 def _residual_error(force: Force, viscosity: float, ts, z, residual: float) -> float:
     """From the residual at every second sample: order 2 is claimed where h^6 can be met."""
-    keep = np.unique(np.append(np.arange(0, ts.size, 2), ts.size - 1))
+    keep = every_second(ts.size)
     _, on = along_curve(force, viscosity, ts[keep], z[keep])
     return abs(float(np.sum(on.residual)) - residual) / 3
 

@@ -1,4 +1,4 @@
-"""Plain-text tables with in_columns columns."""
+"""Plain-text tables with aligned columns."""
 
 import math
 from collections.abc import Sequence
@@ -149,9 +149,7 @@ def row_table(rows: RowCoefficients) -> str:
 
 def _with_meanings(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """Names and meanings flush left, numbers between them flush right."""
-    width = max(len(row[-1]) for row in (header, *rows))
-    padded = [(*row[:-1], row[-1].ljust(width)) for row in (header, *rows)]
-    return in_columns(padded[0], padded[1:], left=1)
+    return in_columns(header, rows, left=1, meanings=True)
 
 
 def _signed(value: float) -> str:

@@ -1,7 +1,7 @@
 """A convergence study: what a sweep says about eps -> 0."""
 
-from .convergence_study import Study as Study
 from .convergence_study import study as study
+from .study_result import Study as Study
 from .study_tables import failed_table as failed_table
 from .study_tables import flag_names as flag_names
 from .study_tables import formatted as formatted

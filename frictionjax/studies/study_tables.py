@@ -158,8 +158,7 @@ def failed_table(failed: Sequence[dict[str, Any]]) -> str:
     ]
     scene = ("scene",) if several else ()
     header = (*scene, "gamma", "eps/m", "status", "why")
-    width = max(len(row[-1]) for row in (header, *rows))
-    return in_columns(header, [(*row[:-1], row[-1].ljust(width)) for row in rows], left=1)
+    return in_columns(header, rows, left=1, meanings=True)
 
 
 def flag_names(variable: xr.DataArray) -> dict[int, str]:

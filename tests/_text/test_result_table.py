@@ -13,6 +13,11 @@ def test_columns_line_up():
     assert text.splitlines() == ["name    x", "a     1.5", "long  -20"]
 
 
+def test_meanings_are_words():
+    text = in_columns(("x", "meaning"), [("1.5", "a"), ("-20", "longer")], meanings=True)
+    assert text.splitlines() == ["  x  meaning", "1.5  a", "-20  longer"]
+
+
 def test_it_prints_itself():
     lines = ["name  x_1, N", "a        1.5", "<b>   -20, 7", "5 % & more"]
     assert str(TABLE).splitlines() == repr(TABLE).splitlines() == lines

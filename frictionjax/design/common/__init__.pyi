@@ -1,4 +1,3 @@
-from .aligned_text import aligned as aligned
 from .design_result import DesignResult as DesignResult
 from .free_numbers import FreeParameter as FreeParameter
 from .free_numbers import entries_of as entries_of

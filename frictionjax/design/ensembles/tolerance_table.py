@@ -3,9 +3,9 @@
 import numpy as np
 import xarray as xr
 
+from ..._text import in_columns
 from ...bristles import pulling_text
 from ...wiggly import Status
-from ..common import aligned
 
 
 class Tolerance:
@@ -45,7 +45,8 @@ class Tolerance:
         other = "press on the surface" if pulls else "pull on the surface, alpha < 0"
         flipped = f", {self.flipped:.3%} {other}" if self.flipped else ""
         nominal = f"\nnominal {pulls}" if pulls else ""
-        return f"{told}{flipped}{nominal}\n{aligned(rows)}{self._slides_in_words()}"
+        text = in_columns(rows[0], rows[1:])
+        return f"{told}{flipped}{nominal}\n{text}{self._slides_in_words()}"
 
     def _slides_in_words(self) -> str:
         """How the steady slides spread, where they were asked for."""
@@ -61,4 +62,4 @@ class Tolerance:
             rows.append([str(name), *(f"{v:.6g}" for v in numbers)])
         lost = int(np.count_nonzero(data["status"].values != int(Status.OK)))
         told = f"Steady slides at eps = {data.attrs['eps']:.6g} m, {lost} without one"
-        return f"\n{told}\n{aligned(rows)}"
+        return f"\n{told}\n{in_columns(rows[0], rows[1:])}"

@@ -6,12 +6,12 @@ import equinox as eqx
 import numpy as np
 
 from ..._checks import CodedResult, Real, as_real, with_nan
+from ..._text import in_columns
 from ...bristles import AbstractBristle, pulling_text
 from ...model import Coefficients, friction
 from ...profiles import AbstractProfile
 from ...supports import Spring
 from ...wiggly import Status
-from ..common import aligned
 from .slide_friction import SteadySlide, steady_slide
 
 _MEANS = ("eps/m", "mean +/N", "gap", "mean -/N", "gap", "ratio", "gap")
@@ -61,7 +61,7 @@ class DesignCheck(CodedResult, eqx.Module):
         plus, minus = float(self.law.rho_plus), float(self.law.rho_minus)
         last = ("limit", f"{plus:.6g}", "", f"{minus:.6g}", "", f"{float(self.ratio):.6g}")
         rows.append((*last, "", f"{plus:.6g}", f"{minus:.6g}", ""))
-        return aligned(rows)
+        return in_columns(rows[0], rows[1:])
 
     def _row(self, i: int) -> tuple[str, ...]:
         found, worst = self.slide, np.atleast_1d(self.slide.status)[i]

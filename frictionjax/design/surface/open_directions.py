@@ -12,7 +12,7 @@ from ..._checks import Real
 from ...effects import RigidArray
 from ..common import AbstractLaw
 from .barrier import at, peaks, reach, waves_of_heights, with_extreme_slopes
-from .seen_slopes import shares_seen
+from .seen_slopes import shares_seen, times_shares
 from .settings import SETTINGS
 
 
@@ -51,10 +51,7 @@ def _sensitivities(
 
 def _seen(cos: Array, sin: Array, shares: Array | None) -> tuple[Array, Array]:
     """Heights whose every wave is multiplied by a complex share; None: as they are."""
-    if shares is None:
-        return cos, sin
-    found = (cos - 1j * sin) * shares
-    return found.real, -found.imag
+    return (cos, sin) if shares is None else times_shares(cos, sin, shares)
 
 
 def identifiability(

@@ -29,8 +29,13 @@ def phases_of(shares: Complex[np.ndarray, " n"]) -> Complex[np.ndarray, " n"]:
 def turned(waves: Any, factors: Any) -> np.ndarray:
     """Waves, cosines then sines, each times a complex number."""
     cos, sin = np.split(np.asarray(waves), 2)
-    found = (cos - 1j * sin) * factors
-    return np.concatenate([found.real, -found.imag])
+    return np.concatenate(times_shares(cos, sin, factors))
+
+
+def times_shares(cos: Any, sin: Any, shares: Any) -> tuple[Any, Any]:
+    """Cosines and sines of waves, each times a complex number; NumPy or traced."""
+    found = (cos - 1j * sin) * shares
+    return found.real, -found.imag
 
 
 class SeenSlopes(NamedTuple):

@@ -1,0 +1,54 @@
+"""What a study returns, and how it shows itself."""
+
+import html
+from typing import Any, NamedTuple
+
+import xarray as xr
+
+from .._text import ResultTable
+from .study_tables import failed_table, order_table, spread_table
+
+
+class Study(NamedTuple):
+    """Result of `study`.
+
+    `orders`: over gamma; `local_orders`: over gamma and neighbouring pairs of eps;
+    `failed`: one dict for each cell that failed, with gamma, eps, status and message;
+    `curves`: over gamma and eps, what the laws predict for each error and what was fitted.
+    Of several scenes all have the dimension `scene` in front, failed cells their scene,
+    and `spread` holds quantiles of orders and constants over the scenes; else it is None.
+    """
+
+    orders: xr.Dataset
+    local_orders: xr.Dataset
+    failed: list[dict[str, Any]]
+    dataset: xr.Dataset
+    curves: xr.Dataset
+    spread: xr.Dataset | None = None
+
+    def table(self) -> ResultTable:
+        """Orders and constants for eps -> 0, a line for each error and gamma.
+
+        Of several scenes how they spread.
+        """
+        if self.spread is not None:
+            return spread_table(self.spread)
+        return order_table(self.orders)
+
+    def __repr__(self) -> str:
+        return f"{self.table()}\n{failed_table(self.failed)}"
+
+    def _repr_html_(self) -> str:
+        failed = html.escape(failed_table(self.failed))
+        return f"{self.table()._repr_html_()}<pre>{failed}</pre>"
+
+    def plot(self) -> Any:
+        """Errors against eps with the fitted orders, as a matplotlib Figure.
+
+        Of several scenes: the errors of all, and how their orders spread.
+        """
+        from ..plot import draw_convergence, draw_scenes
+
+        if self.spread is not None:
+            return draw_scenes(self.dataset, self.orders)
+        return draw_convergence(self.dataset, self.orders, self.curves)
