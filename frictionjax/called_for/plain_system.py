@@ -39,11 +39,11 @@ def higher_order(at: Setting) -> Estimate:
 
     The extreme forces of a well change by `eps Q'(Y*)`, and to second order by
     `(eps Q'')^2/(2 |W'''|)`, as the steepest place moves by `eps^2 Q''/W'''`; strip and
-    slides by that over Phi''. The support has to be pulled on by as much as that place has
-    moved, too, before a tip slips, and a tip on its way there moves by `fastest` times as
-    much as both. (Over a rough surface, eps = 0.02, gamma = 2, slips were late by 20 times
-    what the extreme force says.) Where tips rest inside wells they move by
-    `eps^2 Q'/W''`, and slips last longer as forces change.
+    slides by that over Phi'', and a tip on its way to the next slip by `fastest` times as
+    much. A well that has moved holds its tip as far ahead, and until the support has been
+    pulled on by as much: `fastest` times less once. (Over a rough surface, eps = 0.02,
+    gamma = 2, slips were late by 20 times what the extreme force says.) Where tips rest
+    inside wells they move by `eps^2 Q'/W''`, and slips last longer as forces change.
     """
     Y = np.arange(_PLACES) / _PLACES - 0.5
     Y = np.append(Y, [at.data.phase[np.argmax(s * at.data.force)] for s in (1.0, -1.0)])
@@ -54,13 +54,14 @@ def higher_order(at: Setting) -> Estimate:
     place = at.eps * np.abs(bend[tops]) / np.maximum(np.abs(sharp[tops]), 1e-300)
     forces = at.eps * (np.abs(slope[tops]) + 0.5 * place * np.abs(bend[tops]))
     force = float(np.max(forces))
-    until = float(np.max(forces + at.stiffest * at.eps * place))
+    carried = max(1.0, at.fastest * at.stiffest / at.softest - 1)
+    late = float(np.max(at.fastest * forces / at.softest + carried * at.eps * place))
     flat = at.eps * at.softest / at.fastest
     inside = at.eps**2 * float(np.max(np.abs(slope) / np.maximum(np.abs(steep), flat)))
     share = at.eps * float(np.max(np.abs(slope))) / at.rho
     slip = _SLIP * at.eps ** (1 + at.gamma) / float(np.max(np.abs(steep)))
     longer = share * min(at.fastest * at.speed * slip, _FELT * at.eps)
-    in_z = max(at.fastest * until / at.softest, inside) + longer
+    in_z = max(late, inside) + longer
     return Estimate(in_z, force, 1.0, "eps Q' at the steepest places (Lemma 2)")
 
 
