@@ -4,8 +4,10 @@ Writes frictionjax/overview.png, of the scene that is built in, gamma = 1.
 """
 
 from pathlib import Path
+from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -43,8 +45,8 @@ def draw_sketch(axes: Axes) -> None:
     axes.fill_between(x, surface, -0.3, color=GUIDE, alpha=0.5, lw=0)
     axes.plot(x, surface, color=LIMIT, lw=1.2)
     tip = np.array([TIP, HEIGHT * PERIOD * float(SCENE.profile(TIP / PERIOD))])
-    root = tip + [np.tan(LEAN), 1.0]
-    post = root + [1.25, 0.0]
+    root = tip + np.array([np.tan(LEAN), 1.0])
+    post = root + np.array([1.25, 0.0])
     axes.plot(*coil(tip, root).T, color=colour(0), lw=1.8)
     axes.plot(*coil(root, post).T, color=LIMIT, lw=1.2)
     axes.plot(*root, "s", color=colour(0), ms=8)
@@ -54,7 +56,7 @@ def draw_sketch(axes: Axes) -> None:
     turn = np.pi * 1.5 - np.linspace(0.0, LEAN, 30)
     arc = root[:, None] + 0.5 * np.array([np.cos(turn), np.sin(turn)])
     axes.plot(*arc, color=LIMIT, lw=1)
-    say = {"fontsize": 9.5, "ha": "center", "va": "center"}
+    say: dict[str, Any] = {"fontsize": 9.5, "ha": "center", "va": "center"}
     axes.text(root[0] + 0.36, root[1] - 0.42, "angle > 0", **say)
     axes.text(tip[0] - 0.22, tip[1] + 0.13, "tip", **say)
     axes.text(root[0] - 0.03, root[1] + 0.15, "root", **say)
@@ -74,19 +76,21 @@ def draw_sketch(axes: Axes) -> None:
         arrowprops={"arrowstyle": "<->", "lw": 1, "color": LIMIT},
     )
     axes.text(2.375, low - 0.1, "$\\epsilon$", **say)
-    axes.set(xlim=(0.0, 3.45), ylim=(-0.3, 1.75), aspect="equal", title="A bristle, dragged")
+    axes.set(
+        xlim=(0.0, 3.45), ylim=(-0.3, 1.75), aspect="equal", title="A bristle, dragged"
+    )
     axes.set_axis_off()
 
 
 def draw_forces(axes: Axes) -> None:
     """Friction of the wiggly system, and of its limit, over one load cycle."""
     ts = np.linspace(0.0, 3.0, 6001)
-    load = np.asarray(jax.vmap(SCENE.load)(ts))
+    load = np.asarray(jax.vmap(SCENE.load)(jnp.asarray(ts)))
     limit = np.asarray(fx.solve_limit(SCENE, ts).z)
     for index, eps in enumerate(EPS):
         z = np.asarray(fx.solve(SCENE, eps, 1.0, ts, method="resolved").z)
-        look = {"color": colour(index), "lw": 0.9, "label": f"$\\epsilon$ = {eps:g} m"}
-        axes.plot(z, load - z, **look)
+        label = f"$\\epsilon$ = {eps:g} m"
+        axes.plot(z, load - z, color=colour(index), lw=0.9, label=label)
     axes.plot(limit, load - limit, "--", color=LIMIT, lw=1.6, label="limit: dry friction")
     law = fx.friction(SCENE)
     for value, name in ((law.rho_plus, "\\rho_+"), (law.rho_minus, "\\rho_-")):
@@ -102,7 +106,8 @@ def draw_errors(axes: Axes) -> None:
     data = fx.sweep(SCENE, eps, [0.75, 1.0])
     for index, gamma in enumerate((0.75, 1.0)):
         errors = data.sup_error.sel(gamma=gamma)
-        axes.loglog(eps, errors, "o", color=colour(index), ms=4, label=f"$\\gamma$ = {gamma:g}")
+        label = f"$\\gamma$ = {gamma:g}"
+        axes.loglog(eps, errors, "o", color=colour(index), ms=4, label=label)
     axes.loglog(eps, eps, "--", color=LIMIT, lw=1.2, label="one well: $\\epsilon$")
     axes.set(xlabel="$\\epsilon$ (m)", ylabel="sup$_t$ |z$_\\epsilon$ - z| (m)")
     axes.set_title("How fast the limit is reached")

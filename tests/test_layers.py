@@ -23,7 +23,7 @@ FLOORS = {
         {"_checks"},
         {"_compile", "_text", "numerics", "intervals"},
         {"profiles", "bristles", "supports", "loads", "effects", "rods"},
-        {"tables"},
+        {"tables", "coefficients"},
         {"model"},
         {"stochastic", "turning", "slide_laws"},
         {"called_for"},
@@ -258,6 +258,7 @@ def test_packages_that_the_library_imports_are_declared():
 CUTTING_ACROSS = {
     "test_layers",
     "test_notebooks",
+    "test_pages",
     "test_shapes",
     "_checks/test_arrays",
     "_checks/test_inside_jit",

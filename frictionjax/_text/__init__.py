@@ -1,4 +1,5 @@
-"""Tables of numbers in text files, with the units that their headings name."""
+"""Tables of numbers in text files, with the units that their headings name; and tables
+that results show themselves as."""
 
 import lazy_loader
 

@@ -1,6 +1,8 @@
 from .encoding import decoded as decoded
 from .result_table import ResultTable as ResultTable
 from .result_table import in_columns as in_columns
+from .shown_numbers import Named as Named
+from .shown_numbers import ShownNumbers as ShownNumbers
 from .tables import Table as Table
 from .tables import place_of as place_of
 from .tables import read_table as read_table

@@ -11,16 +11,15 @@ def in_columns(
     header: Sequence[str],
     rows: Iterable[Sequence[str]],
     left: int = 0,
-    meanings: bool = False,
+    meanings: int = 0,
 ) -> str:
     """Columns under a header, two spaces apart, set flush right.
 
-    But for the first `left`, and the last where it holds `meanings`. Lines carry no
-    trailing blanks.
+    But for the first `left` and the last `meanings`. Lines carry no trailing blanks.
     """
     cells = [list(header), *(list(row) for row in rows)]
     widths = [max(len(row[i]) for row in cells) for i in range(len(header))]
-    words = {*range(left), len(header) - 1 if meanings else -1}
+    words = _flush_left(len(header), left, meanings)
     lines = []
     for row in cells:
         texts = [
@@ -31,8 +30,12 @@ def in_columns(
     return "\n".join(lines)
 
 
+def _flush_left(columns: int, left: int, meanings: int) -> set[int]:
+    return {*range(left), *range(columns - meanings, columns)}
+
+
 class ResultTable(NamedTuple):
-    """Rows of texts under a header, the first `left` columns flush left, and a note.
+    """Rows of texts under a header, and a note; columns as those of `in_columns`.
 
     Prints itself in a shell and shows itself in a notebook; `.to_csv()`, `.to_latex()`.
     """
@@ -41,9 +44,10 @@ class ResultTable(NamedTuple):
     rows: tuple[tuple[str, ...], ...]
     left: int = 1
     note: str = ""
+    meanings: int = 0
 
     def __repr__(self) -> str:
-        text = in_columns(self.header, self.rows, self.left)
+        text = in_columns(self.header, self.rows, self.left, self.meanings)
         return f"{text}\n{self.note}" if self.note else text
 
     def _repr_html_(self) -> str:
@@ -53,8 +57,9 @@ class ResultTable(NamedTuple):
         return f"<table>{''.join(lines)}</table>{note}"
 
     def _line(self, tag: str, cells: Sequence[str]) -> str:
+        words = _flush_left(len(cells), self.left, self.meanings)
         shown = [
-            f'<{tag} style="text-align: {"left" if i < self.left else "right"}">'
+            f'<{tag} style="text-align: {"left" if i in words else "right"}">'
             f"{html.escape(cell)}</{tag}>"
             for i, cell in enumerate(cells)
         ]
@@ -68,7 +73,9 @@ class ResultTable(NamedTuple):
 
     def to_latex(self) -> str:
         """A `tabular` without packages."""
-        columns = "l" * self.left + "r" * (len(self.header) - self.left)
+        count = len(self.header)
+        words = _flush_left(count, self.left, self.meanings)
+        columns = "".join("l" if i in words else "r" for i in range(count))
         head, *body = (" & ".join(map(_in_latex, row)) for row in (self.header, *self.rows))
         rules = [rf"{row} \\" for row in body]
         lines = [rf"\begin{{tabular}}{{{columns}}}", rf"{head} \\", r"\hline", *rules]

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model import Coefficients, Scene, coefficients_jit, composed, require_reach
+from ..coefficients import Coefficients
+from ..model import Scene, coefficients_jit, composed, require_reach
 from ..slide_laws import SlideData, slide_data
 
 AWAY = 0.005  # of the time that a well takes

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from .._checks import Outcome, Result
+from .._text import Named, ShownNumbers
 
 
 class CertificateStatus(Outcome):
@@ -34,7 +35,7 @@ class _Numbers(NamedTuple):
     status: CertificateStatus
 
 
-class Certificate(Result, _Numbers):
+class Certificate(ShownNumbers, Result, _Numbers):
     """What was found about a curve.
 
     `residual` of the energy-dissipation balance in J, `int (eps^gamma z' + D E)^2 /
@@ -49,6 +50,19 @@ class Certificate(Result, _Numbers):
     """
 
     __slots__ = ()
+
+    def _numbers(self) -> list[Named]:
+        return [
+            Named("distance", self.distance, "eps", "at least, from every solution"),
+            Named("residual", self.residual, "J", "of the energy-dissipation balance"),
+            Named("residual_error", self.residual_error, "J", "of its quadrature"),
+            Named("scale", self.scale, "J", "energy of one slip"),
+            Named("slips", self.slips, "", "wells crossed"),
+            Named("skipped", self.skipped, "", "wells crossed without the force"),
+            Named("missing_force", self.missing_force, "", "most, over that of one well"),
+            Named("viscosity", self.viscosity, "", "seen in slips, over eps^gamma"),
+            Named("spacing", self.spacing, "eps", "of samples, at most"),
+        ]
 
 
 def nothing_known(scale: float) -> Certificate:

@@ -8,7 +8,8 @@ import numpy as np
 from .._checks import as_real, is_concrete, require, require_real, with_nan
 from .._text import ResultTable
 from ..bristles import AbstractBristle, AngularSpring, Stance
-from ..model import Coefficients, friction
+from ..coefficients import Coefficients
+from ..model import friction
 from ..profiles import AbstractProfile
 from ..rods import hinged_load
 from ..turning import (

@@ -14,6 +14,7 @@ from .._checks import (
     require_real,
     with_nan,
 )
+from .._text import Named, ShownNumbers
 from ..effects import Engine
 from ..limit import require_start_in_strip
 from ..model import Scene, require_reach, require_times, require_told_apart, scene_for
@@ -29,7 +30,15 @@ PREDICTED_ACCURACIES = (
 )  # that calibration has looked at, and their cost
 
 
-class CostPrediction(NamedTuple):
+class _Costs(NamedTuple):
+    seconds: float
+    cells: np.ndarray
+    compilation: float
+    memory: float
+    measured: bool
+
+
+class CostPrediction(ShownNumbers, _Costs):
     """Predicted cost of a sweep on this machine.
 
     `seconds`: of the warm sweep, NaN where the load turns more often than lanes have room
@@ -40,11 +49,7 @@ class CostPrediction(NamedTuple):
     else the numbers are those of another one.
     """
 
-    seconds: float
-    cells: np.ndarray
-    compilation: float
-    memory: float
-    measured: bool
+    __slots__ = ()
 
     @property
     def low(self) -> float:
@@ -63,6 +68,16 @@ class CostPrediction(NamedTuple):
             f"{_seconds(self.compilation)} s of compilation the first time, "
             f"{self.memory / 1e9:.1f} GB{where}"
         )
+
+    def _numbers(self) -> list[Named]:
+        where = "this machine, measured" if self.measured else "of another machine"
+        return [
+            Named("seconds", self.seconds, "s", where),
+            Named("low", self.low, "s", "nine of ten cells keep between this"),
+            Named("high", self.high, "s", "and this"),
+            Named("compilation", self.compilation, "s", "at most, the first time"),
+            Named("memory", self.memory / 1e9, "GB", "of the process at most"),
+        ]
 
 
 def _seconds(value: float) -> str:

@@ -19,11 +19,12 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program, padded_size
+from .._text import Named, ShownNumbers
+from ..coefficients import Coefficients
 from ..effects import Engine, NapFlip, nap_flip_among
 from ..loads import AbstractPull
 from ..model import (
     SETTINGS,
-    Coefficients,
     Scene,
     coefficients_jit,
     dissipation_potential,
@@ -45,7 +46,7 @@ class LimitStatus(Outcome):
     NOT_FINITE = 1, "not finite, or the load turns more often than there is room for"
 
 
-class LimitSolution(CodedResult, eqx.Module):
+class LimitSolution(ShownNumbers, CodedResult, eqx.Module):
     """Limit trajectory: times `ts` (s), states `z` (m), `dissipation` (J), shapes (n,).
 
     `dissipation` is cumulative, `int_0^ts R(z')`. `ok`, `status`: not finite only where
@@ -71,6 +72,17 @@ class LimitSolution(CodedResult, eqx.Module):
         codes, count = self._codes, np.shape(self.z)[-1]
         batch = f"batch {codes.shape}: " if codes.ndim else ""
         return f"LimitSolution({batch}{self._ended}, {count} times)"
+
+    def _numbers(self) -> list[Named]:
+        modes = None if self.mode is None else self.mode[..., -1]
+        return [
+            Named("time", self.ts[..., -1], "s", "the last one"),
+            Named("z", self.z[..., -1], "m", "the state then"),
+            Named("mode", modes, "", "1 as the rod stood at first, -1 turned over"),
+            Named(
+                "dissipation", self.dissipation[..., -1], "J", "into friction until then"
+            ),
+        ]
 
 
 def strip(support: AbstractSupport, found: Coefficients, load: Real) -> tuple[Real, Real]:

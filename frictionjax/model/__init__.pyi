@@ -4,7 +4,6 @@ from .admissibility import rounding_of_alpha as rounding_of_alpha
 from .composition import composed as composed
 from .composition import scene_for as scene_for
 from .composition import with_effects as with_effects
-from .friction_coefficients import Coefficients as Coefficients
 from .friction_coefficients import coefficients as coefficients
 from .friction_coefficients import coefficients_jit as coefficients_jit
 from .friction_law import dissipation_potential as dissipation_potential

@@ -12,10 +12,11 @@ from jaxtyping import Array, ArrayLike, Float
 from .._checks import Real, is_concrete, no_more, require
 from .._compile import Interpreted, Program, in_chunks
 from ..bristles import AbstractBristle
+from ..coefficients import Coefficients
 from ..numerics import smallest
 from ..supports import AbstractSupport
 from .clearance import clearance
-from .friction_coefficients import Coefficients, coefficients_jit
+from .friction_coefficients import coefficients_jit
 from .given_rest import require_given
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
 from .settings import SETTINGS

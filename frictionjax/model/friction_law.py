@@ -11,10 +11,10 @@ from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Real, checked, require, require_x64, with_nan
 from ..bristles import AbstractBristle
+from ..coefficients import Coefficients, with_errors
 from ..profiles import AbstractSampled
 from .admissibility import admissible_coefficients
 from .composition import composed
-from .friction_coefficients import Coefficients, with_errors
 from .potentials import AbstractPotential, BristlePotential, potential
 from .scene import Scene
 from .settings import SETTINGS

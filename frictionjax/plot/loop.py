@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .._compile import Program
-from ..model import Coefficients
+from ..coefficients import Coefficients
 from ..supports import AbstractSupport
 from ..sweeps import whole_grid
 from .style import (

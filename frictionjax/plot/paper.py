@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..bristles import AbstractBristle, AngularSpring, SlantedSpring
-from ..model import Coefficients, friction
+from ..coefficients import Coefficients
+from ..model import friction
 from ..profiles import Sine
 from .style import GUIDE, colour, new_figure, styled
 

@@ -10,6 +10,7 @@ from .. import plot
 from .._checks import as_text, require, write_whole
 from .._text import in_columns
 from ..bristles import AbstractBristle
+from ..coefficients import coefficient_table
 from ..design import (
     AngleFit,
     Target,
@@ -28,7 +29,6 @@ from ..profiles import AbstractProfile
 from ..supports import Spring
 from .folder import write_figures
 from .job import Job, joined, with_surface
-from .tables import coefficient_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,7 +80,7 @@ def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
     sections = [("", line) for line in job.notes] + design.sections
     many = any(isinstance(effect, CompliantArray) for effect in scene.effects)
     title = "Friction coefficients of each bristle" if many else "Friction coefficients"
-    sections.append((title, coefficient_table(friction(scene))))
+    sections.append((title, str(coefficient_table(friction(scene)))))
     if isinstance(scene.support, Spring) and not scene.effects:
         check = check_design(profile, bristle, support=scene.support)
         sections.append(("On the dynamics", repr(check)))

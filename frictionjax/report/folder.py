@@ -9,8 +9,9 @@ import numpy as np
 
 from .. import plot
 from .._checks import naming, write_whole
+from ..coefficients import Coefficients
 from ..effects import NapFlip, nap_flip_among
-from ..model import Coefficients, Scene
+from ..model import Scene
 from ..studies import Study
 from ..turning import flipping_rod
 from ..wiggly import solve

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from ..coefficients import coefficient_table, coefficients_by_name, errors_by_name
 from ..contact import Nap, nap
 from ..effects import NapFlip, nap_flip_among
 from ..limit import solve_limit
 from ..model import friction
 from .job import Job, joined
-from .tables import coefficient_table, coefficients_by_name, errors_by_name, row_table
+from .tables import row_table
 
 _TIMES = 2001  # pictures follow a rod that turns over
 
@@ -19,7 +20,7 @@ _TIMES = 2001  # pictures follow a rod that turns over
 def friction_text(job: Job) -> str:
     """Notes of a job and tables of its friction coefficients."""
     sections = [("", line) for line in job.notes]
-    table = coefficient_table(friction(job.scene), job.error)
+    table = str(coefficient_table(friction(job.scene), job.error))
     sections.append(("Friction coefficients", table))
     if job.rows is not None:
         sections.append(("Over the rows of the map", row_table(job.rows)))

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from ..coefficients import coefficient_table
 from ..io import scene_document
 from ..model import friction
 from ..studies import (
@@ -16,7 +17,7 @@ from ..studies import (
 )
 from .folder import write_study
 from .job import Job, joined
-from .tables import coefficient_table, row_table
+from .tables import row_table
 
 _COVERS = (
     "Intervals are for eps -> 0. With a law: of the ratio of the errors to those that the\n"
@@ -38,7 +39,7 @@ def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
     sections = [("", line) for line in job.notes]
     if "left_out" in data.attrs:
         sections.append(("", f"Effects left out: {data.attrs['left_out']}"))
-    sections.append(("Friction coefficients", coefficient_table(law, job.error)))
+    sections.append(("Friction coefficients", str(coefficient_table(law, job.error))))
     if job.rows is not None:
         sections.append(("Friction over the rows of the map", row_table(job.rows)))
     if found.spread is not None:

@@ -9,10 +9,10 @@ from jaxtyping import Array, Float
 
 from .._checks import Real
 from .._compile import Program, in_chunks
+from ..coefficients import Coefficients
 from ..model import (
     AbstractPotential,
     BristlePotential,
-    Coefficients,
     Scene,
     known_turning_points,
     strips_at,

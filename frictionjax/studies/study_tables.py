@@ -158,7 +158,7 @@ def failed_table(failed: Sequence[dict[str, Any]]) -> str:
     ]
     scene = ("scene",) if several else ()
     header = (*scene, "gamma", "eps/m", "status", "why")
-    return in_columns(header, rows, left=1, meanings=True)
+    return in_columns(header, rows, left=1, meanings=1)
 
 
 def flag_names(variable: xr.DataArray) -> dict[int, str]:

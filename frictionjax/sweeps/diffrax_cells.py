@@ -8,8 +8,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .._checks import Real
+from ..coefficients import Coefficients
 from ..limit import play_step, strip
-from ..model import Coefficients, Scene, coefficients, dissipation_potential
+from ..model import Scene, coefficients, dissipation_potential
 from ..wiggly import AbstractObserver, Status, integrate, plan_steps, pull_of
 
 

@@ -6,7 +6,8 @@ import equinox as eqx
 import numpy as np
 
 from ..bristles import AbstractBristle, AngularSpring
-from ..model import Coefficients, coefficients_jit, potential
+from ..coefficients import Coefficients
+from ..model import coefficients_jit, potential
 from ..profiles import AbstractProfile
 from ..rods import hinged_load
 

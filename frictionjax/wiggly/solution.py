@@ -7,10 +7,11 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from .._checks import CodedResult
+from .._text import Named, ShownNumbers
 from .equation import Status
 
 
-class Solution(CodedResult, eqx.Module):
+class Solution(ShownNumbers, CodedResult, eqx.Module):
     """Trajectory of the wiggly system.
 
     `ts` in s, `z` in m, shapes (n,). `dissipation`: `int_0^ts eps^gamma z'^2` in J.
@@ -66,3 +67,24 @@ class Solution(CodedResult, eqx.Module):
             return f"Solution(batch {np.shape(self.status_code)}: {ended}; {parts})"
         end = f"z({float(self.ts[-1]):.6g} s) = {float(self.z[-1]):.9g} m"
         return f"Solution({ended}: {self.ts.size} times, {end}, {int(steps)} steps)"
+
+    def _numbers(self) -> list[Named]:
+        told = self.counts
+        return [
+            Named("time", self.ts[..., -1], "s", "the last one"),
+            Named("z", self.z[..., -1], "m", "the state then"),
+            Named("velocity", _last(self.velocity), "m/s", "z' then"),
+            Named("root", _last(self.root), "m", "where the root is then"),
+            Named("tip", _last(self.tip), "m", "where the tip is then"),
+            Named("mode", _last(self.mode), "", "1 as it stood at first, -1 turned over"),
+            Named("dissipation", _last(self.dissipation), "J", "into viscosity until then"),
+            Named("residual", _last(self.residual), "J", "of the balance of energies"),
+            Named("beta", told.get("beta"), "", "far below 1 mass does not matter"),
+            Named("tolerance", told["tolerance"], "periods", "of a step"),
+            Named("steps", told["steps"], "", self.how),
+            Named("rejected", told["rejected"], "", "of the steps"),
+        ]
+
+
+def _last(values: Array | None) -> Array | None:
+    return None if values is None else values[..., -1]

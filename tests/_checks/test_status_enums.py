@@ -9,13 +9,13 @@ import pytest
 
 import frictionjax as fx
 from frictionjax._checks.status_enums import counted
+from frictionjax.coefficients import Coefficients
 from frictionjax.design.bristle.inverse import PulledParts
 from frictionjax.design.bristle.result import AngleFit
 from frictionjax.design.bristle.status import FitStatus
 from frictionjax.design.slide.check import DesignCheck
 from frictionjax.design.slide.slide_friction import SteadySlide
 from frictionjax.limit.play import LimitSolution, LimitStatus
-from frictionjax.model.friction_coefficients import Coefficients
 from frictionjax.wiggly import Solution
 from frictionjax.wiggly.equation.status import FailedCells, warn_of_failed
 

@@ -4,44 +4,13 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.coefficients import coefficients_by_name, errors_by_name
 from frictionjax.measured import RowCoefficients
-from frictionjax.model.friction_coefficients import with_errors
 from frictionjax.report.job import number_list, read_job
 from frictionjax.report.place import filled, require_folder
-from frictionjax.report.tables import (
-    coefficient_table,
-    coefficients_by_name,
-    errors_by_name,
-    row_table,
-)
+from frictionjax.report.tables import row_table
 
 LAW = fx.friction(fx.profiles.Sine(0.1), fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0))
-
-
-def test_coefficients():
-    lines = {
-        line.split()[0]: line.split()[1:] for line in coefficient_table(LAW).splitlines()
-    }
-    assert float(lines["rho_plus"][0]) == pytest.approx(float(LAW.rho_plus), rel=1e-5)
-    assert lines["rho_plus"][1] == "N"
-    assert float(lines["ratio"][0]) == pytest.approx(
-        float(-LAW.rho_plus / LAW.rho_minus), rel=1e-5
-    )
-    assert float(lines["normal_minus"][0]) == pytest.approx(float(LAW.normal_minus), 1e-5)
-    assert " ".join(lines["alpha"][2:]) == "normal force without friction"
-    assert len(lines) == 12
-
-
-def test_coefficients_with_errors():
-    text = coefficient_table(LAW, dict.fromkeys(coefficients_by_name(LAW), 0.0123))
-    lines = {line.split()[0]: line.split()[1:] for line in text.splitlines()}
-    assert lines["rho_plus"][1:3] == ["0.012", "N"]
-    assert lines["alpha"][1] == "N"  # the bristle's own
-
-
-def test_the_abstract_setting_has_two_coefficients():
-    bare = coefficients_by_name(type(LAW)(rho_plus=LAW.rho_plus, rho_minus=LAW.rho_minus))
-    assert list(bare) == ["rho_plus", "rho_minus", "ratio"]
 
 
 def test_rows_of_a_map():
@@ -125,15 +94,6 @@ def test_a_sawtooth_in_a_file_is_told_what_its_samples_leave_open(tmp_path):
         read_job(None, period=None, harmonics=None, row=None, smoothing=1e-6)
 
 
-def test_of_two_errors_the_larger_is_shown():
-    found = with_errors(LAW, np.float64(0.01), np.float64(0.02))
-    standard = dict.fromkeys(coefficients_by_name(LAW), 0.015)
-    errors = errors_by_name(found, standard)
-    assert errors["omega_plus"] == 0.015
-    assert errors["omega_minus"] == 0.02
-    assert errors_by_name(LAW, standard) == standard
-
-
 def test_a_named_bristle_takes_the_place_of_the_scenes():
     fit = {"period": None, "harmonics": None, "row": None}
     job = read_job(None, bristle="angular", **fit)
@@ -141,16 +101,3 @@ def test_a_named_bristle_takes_the_place_of_the_scenes():
     assert isinstance(job.scene.profile, fx.profiles.Sine)
     with pytest.raises(ValueError, match="row = 2: needs --heights FILE"):
         read_job(None, **(fit | {"row": 2}))
-
-
-def test_where_a_bristle_pulls_the_sides_of_normal_forces_are_named():
-    surface = fx.profiles.Fourier([0.0, 0.004], [0.02, 0.0])
-    for alpha, right, left in ((2.0, "plus", "minus"), (-2.0, "minus", "plus")):
-        law = fx.friction(surface, fx.bristles.Homothetic(alpha))
-        assert law.rho_plus / law.normal_plus == pytest.approx(
-            float(getattr(law, f"omega_{right}"))
-        )
-        lines = {line.split()[0]: line for line in coefficient_table(law).splitlines()}
-        named = alpha < 0
-        assert lines[f"omega_{right}"].endswith("of a slide to the right") == named
-        assert lines[f"omega_{left}"].endswith("of a slide to the left") == named

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..._checks import CodedResult, Real, as_text, is_concrete, is_known, require_whole
 from ..._compile import Program
+from ..._text import Named, ShownNumbers
 from ...bristles import AbstractBristle, pulling_text
 from ...contact import Nap, nap
 from ...effects import AbstractEffect, Engine
@@ -46,7 +47,7 @@ _EFFECTS = EFFECT_FORM._replace(
 _PULLED = record(PulledParts, PulledParts._fields, LEAF)
 
 
-class AngleFit(DesignResult, CodedResult, eqx.Module):
+class AngleFit(ShownNumbers, DesignResult, CodedResult, eqx.Module):
     """A bristle that gives a wanted friction; every array has the shape of the target.
 
     `bristle`: the one given, with the number called `free` set to `value`: of all
@@ -174,6 +175,22 @@ class AngleFit(DesignResult, CodedResult, eqx.Module):
         if self.code.ndim:
             return f"AngleFit({self.free}, batch {self.code.shape}: {self._ended})"
         return f"AngleFit({self.free}={as_text(self.value)}: {self.message})"
+
+    def _numbers(self) -> list[Named]:
+        count = jnp.sum(~jnp.isnan(self.roots), axis=-1)
+        return [
+            Named(self.free, self.value, "", "of the bristle found"),
+            Named(f"{self.quantity} wanted", self.target),
+            Named(f"{self.quantity} achieved", self.achieved, "", "on the same surface"),
+            Named("alpha", self.alpha, "N", "normal force without friction"),
+            Named("solutions", count, "", "in the admissible range"),
+        ]
+
+    def plot(self) -> Any:
+        """What the free number reaches, and the solutions, as a matplotlib Figure."""
+        from ...plot import draw_angle_fit
+
+        return draw_angle_fit(self)
 
 
 def _message(fit: AngleFit) -> str:

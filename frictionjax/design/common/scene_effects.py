@@ -10,6 +10,7 @@ from jaxtyping import Array
 
 from ..._checks import Real, as_real, checked, is_concrete, is_known, require
 from ...bristles import AbstractBristle, Homothetic, VerticalSpring
+from ...coefficients import Coefficients
 from ...effects import (
     AbstractEffect,
     CompliantArray,
@@ -22,7 +23,7 @@ from ...effects import (
     require_together,
 )
 from ...io import PART, several
-from ...model import Coefficients, coefficients_jit, potential, with_effects
+from ...model import coefficients_jit, potential, with_effects
 from ...profiles import AbstractProfile
 from .settings import SETTINGS
 from .summed_surface import SummedSurface

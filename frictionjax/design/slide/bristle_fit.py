@@ -10,6 +10,7 @@ from jaxtyping import Array
 
 from ..._checks import Real, as_real, as_text, is_concrete, require, require_real, with_nan
 from ..._compile import Program, in_chunks
+from ..._text import Named, ShownNumbers
 from ...bristles import AbstractBristle, normal_force, pulling_text
 from ...io import AS_IS, LEAF, PART, TOLD, Document, Form, by_name, nested
 from ...model import BristlePotential, smallest_stretch
@@ -32,7 +33,7 @@ from .slide_friction import (
 _PAIRS = Form(read=lambda rows: jnp.asarray(np.array(rows, float).reshape(-1, 2)))
 
 
-class SlideFit(DesignResult, eqx.Module):
+class SlideFit(ShownNumbers, DesignResult, eqx.Module):
     """A bristle whose steady slide at `eps` gives a wanted quantity.
 
     As `AngleFit`, with the quantity made of the slide's forces, `force` "mean" or "peak":
@@ -108,6 +109,17 @@ class SlideFit(DesignResult, eqx.Module):
 
     def __repr__(self) -> str:
         return f"SlideFit({self.message})"
+
+    def _numbers(self) -> list[Named]:
+        asked = f"{self.limit.quantity} of {self.force} forces"
+        return [
+            Named(self.limit.free, self.value, "", "of the bristle found"),
+            Named("wanted", self.target, "", asked),
+            Named("achieved", self.achieved, "", asked),
+            Named("eps", self.slide.eps, "m", "of the slide"),
+            Named("by_target", self.by_target, "", f"d {self.limit.free}/d wanted"),
+            Named("in the limit", self.limit.value, "", f"{self.limit.free} for eps -> 0"),
+        ]
 
 
 class _Asked(NamedTuple):

@@ -8,7 +8,8 @@ import numpy as np
 from ..._checks import CodedResult, Real, as_real, with_nan
 from ..._text import in_columns
 from ...bristles import AbstractBristle, pulling_text
-from ...model import Coefficients, friction
+from ...coefficients import Coefficients
+from ...model import friction
 from ...profiles import AbstractProfile
 from ...supports import Spring
 from ...wiggly import Status

@@ -24,6 +24,7 @@ from ..._checks import (
     with_nan,
 )
 from ..._compile import Program, padded_size
+from ..._text import Named, ShownNumbers
 from ...bristles import AbstractBristle
 from ...effects import AbstractEffect, Engine, require_done, require_together
 from ...io import CODES, LEAF, record
@@ -46,7 +47,7 @@ from .slide_sides import Sides, one_side
 SLIDE_FORCES = ("mean", "peak")  # of a slide, that designs may ask for
 
 
-class SteadySlide(CodedResult, eqx.Module):
+class SteadySlide(ShownNumbers, CodedResult, eqx.Module):
     """Forces in the spring while a tip slides steadily, of the shape of `eps`.
 
     `mean_plus`, `peak_plus` (N, > 0): mean over time, and largest, of `l - Phi'(z)` in a
@@ -77,6 +78,16 @@ class SteadySlide(CodedResult, eqx.Module):
         names = ("eps", "mean_plus", "mean_minus", "peak_plus", "peak_minus")
         known = ", ".join(f"{name}={as_text(getattr(self, name))}" for name in names)
         return f"SteadySlide({known}, status={self._ended})"
+
+    def _numbers(self) -> list[Named]:
+        return [
+            Named("eps", self.eps, "m", "period of the wiggles"),
+            Named("mean_plus", self.mean_plus, "N", "over time, to the right"),
+            Named("mean_minus", self.mean_minus, "N", "over time, to the left"),
+            Named("peak_plus", self.peak_plus, "N", "largest, to the right"),
+            Named("peak_minus", self.peak_minus, "N", "largest, to the left"),
+            Named("ratio", self.ratio, "", "-mean_plus/mean_minus"),
+        ]
 
 
 SLIDE = record(

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..._checks import as_text, require_real, with_nan
+from ..._text import Named, ShownNumbers
 from ...bristles import AbstractBristle
 from ...io import ARRAY, AS_IS, TOLD, Document, by_name, nested, several
 from ...profiles import Fourier
@@ -27,7 +28,7 @@ _DESIGNED = (*MET, ProfileStatus.CONTRADICTORY)
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class SlideProfileFit(DesignResult):
+class SlideProfileFit(ShownNumbers, DesignResult):
     """A surface, least bent for its coefficients, with wanted steady slides at `eps`.
 
     `targets`, `achieved` (targets, 2): forces to the right and to the left in N, of the
@@ -99,6 +100,23 @@ class SlideProfileFit(DesignResult):
         from ...plot import draw_slide_profile_fit
 
         return draw_slide_profile_fit(self)
+
+    def _numbers(self) -> list[Named]:
+        told = []
+        for index, (wanted, shown) in enumerate(
+            zip(self.targets, self.achieved, strict=True)
+        ):
+            which = f" {index + 1}" if len(self.targets) > 1 else ""
+            for side, name in enumerate(("plus", "minus")):
+                asked = f"wanted {as_text(wanted[side])} N"
+                told.append(Named(f"{self.force}_{name}{which}", shown[side], "N", asked))
+        bending = self.fit.bending_energy
+        return [
+            *told,
+            Named("eps", self.slides[0].eps, "m", "period of the wiggles"),
+            Named("bending_energy", bending, "", "int w''^2"),
+            Named("steps", self.steps, "", "designs"),
+        ]
 
     def __repr__(self) -> str:
         return f"SlideProfileFit({self.status.name}: {self.message})"

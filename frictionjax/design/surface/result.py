@@ -9,11 +9,12 @@ import jax
 import numpy as np
 
 from ..._checks import as_text, require_real, require_whole
+from ..._text import Named, ShownNumbers
 from ...bristles import AbstractBristle, pulling_text
+from ...coefficients import Coefficients
 from ...contact import Nap, nap
 from ...effects import AbstractEffect, Engine, nap_flip_among
 from ...io import ARRAY, AS_IS, NUMBER, PART, TOLD, Document, Form, by_name, record, several
-from ...model import Coefficients
 from ...profiles import Fourier
 from ..common import EFFECT_FORM, DesignResult, effects_of_scene
 from .barrier import heights_of_waves, waves_of_heights
@@ -59,7 +60,7 @@ _SEEN = record(
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class ProfileFit(DesignResult):
+class ProfileFit(ShownNumbers, DesignResult):
     """Result of `fit_profile`.
 
     `profile`, `bristles`: the best surface and the bristles on it, one for each target.
@@ -192,6 +193,24 @@ class ProfileFit(DesignResult):
         from ...plot import draw_profile_fit
 
         return draw_profile_fit(self)
+
+    def _numbers(self) -> list[Named]:
+        told = []
+        for index, (wanted, found) in enumerate(
+            zip(self.targets, self.coefficients, strict=True)
+        ):
+            which = f" {index + 1}" if len(self.targets) > 1 else ""
+            for side, name in enumerate(("rho_plus", "rho_minus")):
+                asked = f"wanted {as_text(wanted[side])} N"
+                told.append(Named(f"{name}{which}", getattr(found, name), "N", asked))
+        told += [Named(name, value, "", "free") for name, value in self.free.items()]
+        bound = f"int w''^2; at least {as_text(self.bending_bound)}, proven"
+        return [
+            *told,
+            Named("bending_energy", self.bending_energy, "", bound),
+            Named("largest_error", self.largest_error, "", "relative, of a target"),
+            Named("rank", self.rank, "", "of what targets say about the surface"),
+        ]
 
     def __repr__(self) -> str:
         rows = [

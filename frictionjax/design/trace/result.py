@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..._text import Named, ShownNumbers
 from ...io import ARRAY, AS_IS, BOOLS, INTEGERS, NUMBER, Document, Form, by_name, record
 from ...profiles import Fourier
 from ..common import DesignResult
@@ -46,7 +47,7 @@ _SEEN = record(
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class TraceFit(DesignResult):
+class TraceFit(ShownNumbers, DesignResult):
     """Result of `fit_trace`.
 
     `profile`: the surface found. `trace`: what was asked for, at `eps` and `gamma`.
@@ -128,6 +129,18 @@ class TraceFit(DesignResult):
         from ...plot import draw_trace_fit
 
         return draw_trace_fit(self, truth)
+
+    def _numbers(self) -> list[Named]:
+        return [
+            Named("eps", self.eps, "m", "period of the wiggles"),
+            Named("samples", self.used.size),
+            Named("used", int(np.sum(self.used)), "", "of them"),
+            Named("slipping", int(np.sum(self.slipping)), "", "in slips, left out"),
+            Named("disputed", self.disputed, "", "in other wells"),
+            Named("reduced_chi2", self.reduced_chi2, "", "about 1 where errors explain it"),
+            Named("determined", self.identifiability.share, "", "share of the surface"),
+            Named("steps", self.history.chi2.size, "", "of the fit"),
+        ]
 
     def __repr__(self) -> str:
         used = f"{int(np.sum(self.used))} of {self.used.size} samples used"

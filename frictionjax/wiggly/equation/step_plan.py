@@ -9,8 +9,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..._checks import Real, known_numbers, require, require_real
+from ...coefficients import Coefficients
 from ...loads import AbstractPull, steep_times
-from ...model import AbstractPotential, Coefficients, Scene, coefficients
+from ...model import AbstractPotential, Scene, coefficients
 from ...supports import AbstractSupport
 from ..stepping import Control
 from .landscape import Landscape, WiggleFolds, landscape
