@@ -39,7 +39,7 @@ class ShownNumbers:
         if not is_known(self):
             raise ValueError(f"{type(self).__name__}: needs known numbers, not a trace")
         told = [number for number in self._numbers() if number.value is not None]
-        status = getattr(self, "status", None)
+        status: Any = getattr(self, "status", None)
         if np.ndim(status):
             return _of_batch(told, status)
         return _of_one(told, status, getattr(self, "message", ""))

@@ -79,9 +79,7 @@ class LimitSolution(ShownNumbers, CodedResult, eqx.Module):
             Named("time", self.ts[..., -1], "s", "the last one"),
             Named("z", self.z[..., -1], "m", "the state then"),
             Named("mode", modes, "", "1 as the rod stood at first, -1 turned over"),
-            Named(
-                "dissipation", self.dissipation[..., -1], "J", "into friction until then"
-            ),
+            Named("dissipation", self.dissipation[..., -1], "J", "into friction"),
         ]
 
 

@@ -51,19 +51,15 @@ def test_a_batch_has_a_line_for_each():
 
 
 class Many(ShownNumbers):
-    status = fx.Status.OK * np.ones(50, dtype=object)
-
     def __init__(self, value):
-        self.value = value
+        self.value, self.status = value, np.array([fx.Status.OK] * value.size, object)
 
     def _numbers(self):
         return [Named("force", self.value, "N"), Named("nothing", None)]
 
 
 def test_long_batches_say_what_they_leave_out():
-    many = Many(np.arange(50.0))
-    many.status = np.full(50, fx.Status.OK)
-    table = many.table()
+    table = Many(np.arange(50.0)).table()
     assert table.header == ("", "status", "force/N")
     assert len(table.rows) == 40
     assert repr(table).endswith("10 more, not shown")
