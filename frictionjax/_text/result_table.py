@@ -34,31 +34,42 @@ def in_columns(
 class ResultTable(NamedTuple):
     """Rows of texts under a header, the first `left` columns flush left, and a note.
 
-    Prints itself in a shell and shows itself in a notebook; `.to_csv()`, `.to_latex()`.
+    The last column too where it holds `meanings`. Prints itself in a shell and shows itself
+    in a notebook; `.to_html()`, `.to_csv()`, `.to_latex()`.
     """
 
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     left: int = 1
     note: str = ""
+    meanings: bool = False
 
     def __repr__(self) -> str:
-        text = in_columns(self.header, self.rows, self.left)
+        text = in_columns(self.header, self.rows, self.left, self.meanings)
         return f"{text}\n{self.note}" if self.note else text
 
     def _repr_html_(self) -> str:
-        lines = [self._line("th", self.header)]
-        lines += [self._line("td", row) for row in self.rows]
-        note = f"<p>{html.escape(self.note)}</p>" if self.note else ""
-        return f"<table>{''.join(lines)}</table>{note}"
+        return self.to_html()
 
-    def _line(self, tag: str, cells: Sequence[str]) -> str:
+    def to_html(self, caption: str = "") -> str:
+        """A `table` under its caption, with its note below; texts are escaped."""
+        above = f"<caption>{html.escape(caption)}</caption>" if caption else ""
+        head = self._line('th scope="col"', "th", self.header)
+        body = "".join(self._line("td", "td", row) for row in self.rows)
+        note = f"<p>{html.escape(self.note)}</p>" if self.note else ""
+        lines = f"<thead>{head}</thead><tbody>{body}</tbody>"
+        return f"<table>{above}{lines}</table>{note}"
+
+    def _line(self, opened: str, closed: str, cells: Sequence[str]) -> str:
         shown = [
-            f'<{tag} style="text-align: {"left" if i < self.left else "right"}">'
-            f"{html.escape(cell)}</{tag}>"
+            f'<{opened} style="text-align: {self._side(i)}">{html.escape(cell)}</{closed}>'
             for i, cell in enumerate(cells)
         ]
         return f"<tr>{''.join(shown)}</tr>"
+
+    def _side(self, column: int) -> str:
+        words = column < self.left or (self.meanings and column == len(self.header) - 1)
+        return "left" if words else "right"
 
     def to_csv(self) -> str:
         """The cells, comma separated, as `csv` of Python's library reads them."""
@@ -68,7 +79,7 @@ class ResultTable(NamedTuple):
 
     def to_latex(self) -> str:
         """A `tabular` without packages."""
-        columns = "l" * self.left + "r" * (len(self.header) - self.left)
+        columns = "".join(self._side(i)[0] for i in range(len(self.header)))
         head, *body = (" & ".join(map(_in_latex, row)) for row in (self.header, *self.rows))
         rules = [rf"{row} \\" for row in body]
         lines = [rf"\begin{{tabular}}{{{columns}}}", rf"{head} \\", r"\hline", *rules]

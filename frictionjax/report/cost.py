@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .._text import in_columns
+from .._text import ResultTable
 from ..cost import MEASURED_ACCURACIES, METHODS, slips_of, work_precision
 from ..io import scene_document
 from ..model import Scene
@@ -156,7 +156,7 @@ def _judged(run: xr.Dataset, name: str) -> str:
     return f"<{_digits(name, floor)}" if value < floor else _digits(name, value)
 
 
-def cost_table(cell: xr.Dataset) -> str:
+def cost_table(cell: xr.Dataset) -> ResultTable:
     """One line a run of one cell."""
     names = flag_names(cell.status)
     rows = [
@@ -164,7 +164,7 @@ def cost_table(cell: xr.Dataset) -> str:
         for solver in cell.solver.values
         for accuracy in cell.accuracy.values
     ]
-    return in_columns(_HEADER, rows, left=1)
+    return ResultTable(_HEADER, tuple(rows), left=1)
 
 
 def _row(run: xr.Dataset, names: dict[int, str]) -> tuple[str, ...]:

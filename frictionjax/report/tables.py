@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from .._text import in_columns
+from .._text import ResultTable
 from ..bristles import pulling_text
 from ..measured import RowCoefficients
 from ..model import Coefficients
@@ -77,6 +77,13 @@ def _larger(known: dict[str, float], name: str, error: float) -> dict[str, float
 
 
 def coefficient_table(found: Coefficients, error: dict[str, float] | None = None) -> str:
+    """The lines of `coefficient_rows`."""
+    return str(coefficient_rows(found, error))
+
+
+def coefficient_rows(
+    found: Coefficients, error: dict[str, float] | None = None
+) -> ResultTable:
     """Friction coefficients with their units and meanings, and errors if known.
 
     `error`: standard errors over the rows of a map, beside those of `errors_by_name`.
@@ -95,10 +102,10 @@ def coefficient_table(found: Coefficients, error: dict[str, float] | None = None
         if name in numbers
     ]
     added = ("+-",) if error else ()
-    text = _with_meanings(("coefficient", "value", *added, "unit", "meaning"), rows)
+    table = _with_meanings(("coefficient", "value", *added, "unit", "meaning"), rows)
     note = pulling_text(numbers.get("alpha", 0.0))
     notes = [note for note in (_taken_text(found), note) if note]
-    return "\n".join([text, *(f"({note})" for note in notes)])
+    return table._replace(note="\n".join(f"({note})" for note in notes))
 
 
 def _taken_text(found: Coefficients) -> str:
@@ -147,9 +154,9 @@ def row_table(rows: RowCoefficients) -> str:
     return "\n".join(text)
 
 
-def _with_meanings(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+def _with_meanings(header: Sequence[str], rows: Sequence[Sequence[str]]) -> ResultTable:
     """Names and meanings flush left, numbers between them flush right."""
-    return in_columns(header, rows, left=1, meanings=True)
+    return ResultTable(tuple(header), tuple(map(tuple, rows)), left=1, meanings=True)
 
 
 def _signed(value: float) -> str:

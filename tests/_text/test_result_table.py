@@ -31,6 +31,21 @@ def test_in_a_notebook_nothing_is_taken_for_a_tag():
     assert page.count("text-align: left") == page.count("<tr>") == 3
 
 
+def test_a_page_says_what_a_table_is_of():
+    page = TABLE.to_html("<Loads>")
+    assert page.startswith("<table><caption>&lt;Loads&gt;</caption><thead><tr><th scope=")
+    assert page.count('<th scope="col"') == 2
+    assert page.count("<td ") == 4
+
+
+def test_a_column_of_meanings_is_flush_left_wherever_it_is_shown():
+    table = ResultTable(("x", "meaning"), (("1.5", "a"),), left=0, meanings=True)
+    assert str(table) == in_columns(table.header, table.rows, meanings=True)
+    assert table.to_latex().startswith(r"\begin{tabular}{rl}")
+    sides = [part.split('"')[0] for part in table.to_html().split("text-align: ")[1:]]
+    assert sides == ["right", "left"] * 2
+
+
 def test_csv_is_read_back():
     rows = [tuple(row) for row in csv.reader(TABLE.to_csv().splitlines())]
     assert rows == [TABLE.header, *TABLE.rows]
