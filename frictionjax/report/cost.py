@@ -6,14 +6,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from .._checks import write_whole
 from .._text import ResultTable
 from ..cost import MEASURED_ACCURACIES, METHODS, slips_of, work_precision
 from ..io import scene_document
-from ..model import Scene
+from ..model import Scene, friction
 from ..plot import draw_work_precision
 from ..studies import flag_names, formatted
+from .cost_page import CostFacts, MeasuredCell, cost_page
 from .folder import write_figures, write_record
 from .job import Job, joined
+from .tables import coefficient_rows
 
 # Slips of the cells that are measured where none are named: at the last, general solvers
 # are lost already.
@@ -73,20 +76,35 @@ def run_cost(
     text = joined([("", line) for line in job.notes] + cost_sections(data))
     toml = scene_document(job.scene, job.study)
     write_record(folder, {"cost": data}, toml, text)
-    write_figures(folder, iter([("work_precision", draw_work_precision(data))]))
+    picture = draw_work_precision(data)
+    write_figures(folder, iter([("work_precision", picture)]))
+    if job.report is not None:
+        coefficients = coefficient_rows(friction(job.scene), job.error)
+        columns = _COLUMNS + _calls(data)
+        cells = [MeasuredCell(*cell) for cell in measured_cells(data)]
+        facts = CostFacts(job, data, cells, columns, coefficients, picture, toml)
+        write_whole(folder / "report.html", cost_page(facts, job.report))
     return text
 
 
 def cost_sections(data: xr.Dataset) -> list[tuple[str, str]]:
     """For each cell its title and table, and what the columns mean."""
-    sections = []
+    sections = [
+        (title, f"{truth}\n{table}") for title, truth, table in measured_cells(data)
+    ]
+    sections.append(("", _COLUMNS + _calls(data)))
+    return sections
+
+
+def measured_cells(data: xr.Dataset) -> list[tuple[str, str, ResultTable]]:
+    """For each cell its title, what the reference is, and its table."""
+    cells = []
     for gamma in data.gamma.values:
         for eps in data.eps.values:
             cell = data.sel(gamma=gamma, eps=eps)
             title = f"gamma = {gamma:.4g}, eps = {eps:.4g} m"
-            sections.append((title, f"{_truth(cell)}\n{cost_table(cell)}"))
-    sections.append(("", _COLUMNS + _calls(data)))
-    return sections
+            cells.append((title, _truth(cell), cost_table(cell)))
+    return cells
 
 
 def _calls(data: xr.Dataset) -> str:
