@@ -160,7 +160,10 @@ def _trust(data: xr.Dataset) -> str:
     """How many runs reported success and were wrong, and how many are not done."""
     count, wrong = data.status.size, int(np.sum(data.wrong.values > 0))
     undone = int(np.sum(data.status.values != int(Status.OK)))
-    said = f"Of {count} runs {wrong} reported success and were half an eps or more off"
+    said = (
+        f"Of {count} runs {wrong or 'none'} reported success and were half an eps or more "
+        "off"
+    )
     if wrong:
         named = [
             f"`{name}` {int(np.sum(data.wrong.sel(solver=name).values > 0))}"
@@ -168,7 +171,7 @@ def _trust(data: xr.Dataset) -> str:
             if np.any(data.wrong.sel(solver=name).values > 0)
         ]
         said += f" ({', '.join(named)})"
-    return f"{said}, and {undone} were too slow or failed."
+    return f"{said}, and {undone or 'none'} were too slow or failed."
 
 
 def _picture_section(facts: CostFacts) -> Section:
@@ -244,7 +247,7 @@ def _failed_rows(data: xr.Dataset) -> list[tuple[str, ...]]:
 
 def _judged(facts: CostFacts) -> Section:
     blocks = [paragraph(_REFERENCE)]
-    lines = [f"{one.title}: {' '.join(one.judged_by.split())}" for one in facts.cells]
+    lines = [f"{one.title}: {'; '.join(one.judged_by.splitlines())}" for one in facts.cells]
     return Section("What judges the runs", [*blocks, items(lines)])
 
 

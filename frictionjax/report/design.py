@@ -29,6 +29,7 @@ from ..supports import Spring
 from .design_page import DesignFacts, design_page
 from .folder import write_figures
 from .job import Job, joined, with_surface
+from .sections import unit_of
 from .tables import coefficient_rows
 
 if TYPE_CHECKING:
@@ -159,13 +160,25 @@ def _bristle(job: Job, asked: DesignRequest, wanted: dict[str, float]) -> _Desig
         raise ValueError(fit.message)
     found = with_surface(job.scene, profile, fit.bristle)
     pictures = _bristle_pictures(fit)
+    number = f"{fit.free} = {float(fit.value):.6g} {_unit(fit.bristle, fit.free)}".rstrip()
     verdict = (
-        f"Asked for: {fit.quantity} = {as_text(fit.target)}. A {type(bristle).__name__} "
-        f"with {fit.free} = {float(fit.value):.6g} gives {float(fit.achieved):.6g}: "
-        f"{fit.status.message}."
+        f"Asked for: {_with_unit(fit.quantity, float(fit.target))}. Found: a "
+        f"{type(bristle).__name__} with {number} gives "
+        f"{_with_unit(fit.quantity, float(fit.achieved))}."
     )
+    if fit.status.message != "found":
+        verdict += f" Mind: {fit.status.message}."
     files = {"fit.json": fit.to_json()}
     return _Design(found, angle_rows(fit), verdict, pictures, files, _NO_SEED)
+
+
+def _unit(bristle: AbstractBristle, name: str) -> str:
+    unit = unit_of(bristle, name)
+    return "" if unit == "1" else unit
+
+
+def _with_unit(quantity: str, value: float) -> str:
+    return f"{quantity} = {value:.6g}{'' if quantity == 'ratio' else ' N'}"
 
 
 _NO_SEED = "none: nothing in this search is drawn at random"
@@ -180,7 +193,7 @@ def angle_rows(fit: AngleFit) -> ResultTable:
         ("wanted", f"{fit.quantity} = {as_text(fit.target)}"),
         ("achieved", f"{float(fit.achieved):.10g}"),
         ("alpha", f"{float(fit.alpha):.10g} N"),
-        (fit.free, f"{float(fit.value):.10g}"),
+        (fit.free, f"{float(fit.value):.10g} {_unit(fit.bristle, fit.free)}".rstrip()),
         ("other solutions", ", ".join(others) or "none"),
         ("reachable", intervals_text(fit.reachable)),
         (f"d {fit.free}/d {fit.quantity}", as_text(moved.target)),

@@ -44,7 +44,18 @@ class NapFacts(NamedTuple):
 
 
 _WORDS = (
-    *("nap", "rho", "critical load", "eps", "gamma", "state z", "slip", "alpha", "ratio"),
+    *(
+        "nap",
+        "rho",
+        "rho_with",
+        "critical load",
+        "eps",
+        "gamma",
+        "state z",
+        "slip",
+        "alpha",
+        "ratio",
+    ),
     "omega",
 )
 _ABOUT = (
@@ -110,15 +121,16 @@ def nap_page(facts: NapFacts, asked: ReportRequest) -> str:
 
 def verdict_of_nap(found: Nap) -> str:
     """Friction both ways, and what becomes of the bristle."""
-    return (
+    told = (
         f"Moved with its nap the bristle holds against {found.rho_with:.4g} N, against its "
-        f"nap {found.rho_against:.4g} N: {found.ratio:.4g} times as much. "
-        f"{_sentence(found.message)}"
+        f"nap {found.rho_against:.4g} N: {found.ratio:.4g} times as much."
     )
-
-
-def _sentence(message: str) -> str:
-    return f"{message[:1].upper()}{message[1:]}." if message else ""
+    if found.turns_over:
+        told += (
+            " But it does not stay as it stands: pushed against its nap it turns over, and "
+            f"then holds against {found.rho_flipped:.4g} N."
+        )
+    return f"{told} In detail: {found.message}." if found.message else told
 
 
 def _stiffness_text(stiffness: float | None) -> str:

@@ -12,7 +12,7 @@ from ...model import Scene
 from ..style import LIMIT, STRIP, colour, new_figure, styled
 
 _PERIOD = 0.22  # of the surface as drawn, in heights of the root
-_POINTS = 4801
+_POINTS = 1201
 _TURNS = 7  # of a spring
 
 
@@ -36,27 +36,29 @@ def draw_parts(scene: Scene) -> Figure:
     angle, length = float(stance.angle), float(stance.length)
     height = length * np.cos(angle)
     root = np.array([length * np.sin(angle), height])
-    _surface(axes, profile, height)
+    left = min(-1.0, root[0] / height - 0.9) * height
+    end = root + np.array([1.5 * height, 0.0])
+    pulled = end + np.array([0.55 * height, 0.0])
+    right = float(pulled[0]) + 0.35 * height
+    _surface(axes, profile, height, left, right)
     tip = np.array([0.0, _PERIOD * height * float(profile(jnp.zeros(())))])
     rod = seen is None or isinstance(bristle, AngularSpring)
     _line(axes, tip, root, 0.05 * height, rod, colour(0), 2.2)
     axes.plot(*tip, "o", color=colour(1), markersize=6)
     axes.plot(*root, "s", color=LIMIT, markersize=8)
-    end = root + np.array([1.5 * height, 0.0])
     _line(axes, root, end, 0.05 * height, False, LIMIT, 1.2)
     arrow = {"arrowstyle": "-|>", "color": colour(2), "linewidth": 2}
-    pulled = end + np.array([0.55 * height, 0.0])
     axes.annotate("", pulled, end, arrowprops=arrow)
     _words(axes, scene, root, end, height, seen)
-    axes.set_xlim(min(-1.0, root[0] / height - 0.9) * height, pulled[0] + 0.35 * height)
+    axes.set_xlim(left, right)
     axes.set_ylim(-0.22 * height, 1.42 * height)
     axes.set_aspect("equal")
     axes.set_axis_off()
     return figure
 
 
-def _surface(axes: Any, profile: Any, height: float) -> None:
-    x = np.linspace(-4.0 * height, 6.0 * height, _POINTS)
+def _surface(axes: Any, profile: Any, height: float, left: float, right: float) -> None:
+    x = np.linspace(left, right, _POINTS)
     w = np.asarray(profile(jnp.asarray(x / (_PERIOD * height))))
     low = _PERIOD * height * w
     axes.fill_between(x, low, -0.3 * height, color=STRIP, linewidth=0)

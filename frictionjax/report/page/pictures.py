@@ -3,6 +3,7 @@
 import base64
 import html
 import io
+import re
 from typing import Any, NamedTuple
 
 import matplotlib
@@ -15,6 +16,8 @@ _WIDE = 6.0  # inches: beyond, a phone moves it sideways instead of making it sm
 _PIXELS = 96  # an inch, on screens
 _LEAST = 58  # an inch, on phones: letters of 8 pixels
 _SETTINGS: Any = {"svg.fonttype": "path", "svg.hashsalt": "frictionjax"}
+_PATH = re.compile(r' d="[^"]*"')
+_DECIMALS = re.compile(r"(\.\d\d)\d+")
 _NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 
 
@@ -54,7 +57,12 @@ def vector_graphic(figure: Figure) -> str:
     with matplotlib.rc_context(_SETTINGS):
         figure.savefig(buffer, format="svg", metadata=_NO_METADATA)
     text = buffer.getvalue()
-    return text[text.index("<svg") :]
+    return _PATH.sub(_rounded, text[text.index("<svg") :])
+
+
+def _rounded(path: re.Match) -> str:
+    """Two decimals of points: half the size, and nobody sees the rest."""
+    return _DECIMALS.sub(r"\1", path[0])
 
 
 def _data_url(svg: str) -> str:

@@ -98,6 +98,11 @@ MEANINGS: dict[str, dict[str, tuple[str, str]]] = {
 _FEW = 6  # numbers of a list that are written out
 
 
+def unit_of(part: Part, name: str) -> str:
+    """Of a part's number; "" where nothing is known of it."""
+    return MEANINGS.get(type(part).__name__, {}).get(name, ("", ""))[0]
+
+
 def part_rows(scene: Scene) -> ResultTable:
     """One line for each number of a scene: part, kind, name, value, unit, meaning."""
     rows: list[tuple[str, ...]] = [

@@ -8,12 +8,13 @@ from ..page import Section, definitions
 
 _WORDS = {
     "eps": (
-        "The distance between two bumps of the surface, in m. Real surfaces have one eps; "
-        "here it is made smaller and smaller, to see what is left."
+        "The distance between two bumps of the surface, in m; \u03b5 in formulas. Real "
+        "surfaces have one; here it is made smaller and smaller, to see what is left."
     ),
     "gamma": (
-        "How weak viscosity becomes with the bumps: it is eps^gamma, in N s/m. The larger "
-        "gamma, the less the speed matters."
+        "How weak viscosity becomes with the bumps: it is eps^gamma, in N s/m; "
+        "\N{GREEK SMALL LETTER GAMMA} in formulas. The larger gamma, the less the speed "
+        "matters."
     ),
     "state z": "Where the root of the bristle is, in m, but for a constant.",
     "limit": (
@@ -31,6 +32,10 @@ _WORDS = {
     "rho": (
         "The friction force: rho_plus against motion to the right, rho_minus against "
         "motion to the left, in N."
+    ),
+    "rho_with": (
+        "Friction with the nap, in N; rho_against is that against it, and rho_flipped that "
+        "of a rod that has turned over, moved as before. All positive."
     ),
     "dissipation": "The energy that has become heat since the start, in J.",
     "cell": "One eps with one gamma: one computation.",
