@@ -2,7 +2,9 @@
 
 import json
 import os
+import shlex
 import sys
+import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -21,6 +23,11 @@ class OneLineErrors(click.Group):
     Exit status 2 for what the user can mend in the command or around it, 1 for a full
     disk, 130 for Ctrl-C.
     """
+
+    def make_context(self, info_name: Any, args: list[str], *more: Any, **kwargs: Any):
+        """With what was typed, which reports tell."""
+        kwargs["obj"] = shlex.join(["frictionjax", *args])
+        return super().make_context(info_name, args, *more, **kwargs)
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         """Run the command line and exit."""
@@ -83,6 +90,9 @@ def _out(command: str) -> Callable:
     return click.option("--out", default=default, show_default=True, metavar="DIR")
 
 
+_report = click.option(
+    "--report", is_flag=True, help="Also report.html there: one page that tells it all."
+)
 _POSITIVE = click.FloatRange(min=0, min_open=True)
 _progress = click.option(
     "--progress/--no-progress", default=True, help="A bar on standard error."
@@ -164,6 +174,14 @@ def _show_warning(message: Any, *_: Any) -> None:
     click.echo(f"Warning: {' '.join(str(message).split())}", err=True)
 
 
+def _asked(report: bool, started: float, expected: str = "") -> Any:
+    """A report that tells the command as it was typed; None where none is asked for."""
+    from .report import ReportRequest
+
+    command = click.get_current_context().obj
+    return ReportRequest(command, started, expected) if report else None
+
+
 def _write(folder: Path, work: Callable[[Path], str]) -> None:
     """Run `work` on a place for its files, and print the tables that it returns."""
     from .report import filled
@@ -217,19 +235,27 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
     help="Also nap.png there, over angles of the rod; of one that turns over also "
     "turning.png and nap_loops.png.",
 )
+@click.option(
+    "--report",
+    is_flag=True,
+    help="Also report.html there, or in frictionjax-nap: one page that tells it all.",
+)
 def nap(
     scene: str | None,
     bending_stiffness: float | None,
     as_json: bool,
     out: str | None,
+    report: bool,
     **surface: Any,
 ) -> None:
     """Friction with and against the nap, and whether the bristle turns over."""
+    started = time.perf_counter()
     _start()
     from .report import nap_document, nap_figures, nap_text, read_job, require_folder
 
+    out = "frictionjax-nap" if report and out is None else out
     folder = None if out is None else require_folder(out)
-    job = read_job(scene, **surface)
+    job = read_job(scene, **surface)._replace(report=_asked(report, started))
     if folder is not None:
         _write(folder, lambda place: nap_figures(job, bending_stiffness, place))
     if not as_json:
@@ -287,6 +313,7 @@ def _numbers(**given: str | None) -> dict[str, Any]:
     "--rows", is_flag=True, help="Every row of the map of --heights, and how they differ."
 )
 @_out("study")
+@_report
 @_progress
 def study(
     scene: str | None,
@@ -297,10 +324,12 @@ def study(
     budget: float | None,
     effects: str | None,
     out: str,
+    report: bool,
     progress: bool,
     **surface: Any,
 ) -> None:
     """Convergence to the limit: tables, NetCDF data and pictures in a folder."""
+    started = time.perf_counter()
     _start()
     from .report import (
         expectation,
@@ -323,10 +352,12 @@ def study(
     job = job._replace(study=job.study | wanted)
     prepare_study(job, method)  # while its cost is found
     if budget is not None:
-        job, found = within_budget(job, budget, method, accuracy)
-        click.echo(found, err=True)
+        job, expected = within_budget(job, budget, method, accuracy)
+        click.echo(expected, err=True)
     else:
-        click.echo(f"Expected: {expectation(job, method)}", err=True)
+        expected = expectation(job, method)
+        click.echo(f"Expected: {expected}", err=True)
+    job = job._replace(report=_asked(report, started, expected))
     _write(folder, lambda place: run_study(job, place, method, progress))
 
 
@@ -363,6 +394,7 @@ def _refuse(beside: str, *names: str) -> None:
     help="Instead: which eps give the order of convergence to +- this, and in which time.",
 )
 @_out("cost")
+@_report
 @_progress
 def cost(
     scene: str | None,
@@ -373,15 +405,18 @@ def cost(
     seconds: float,
     order_within: float | None,
     out: str,
+    report: bool,
     progress: bool,
     **surface: Any,
 ) -> None:
     """What accuracy costs in time: this library's methods and general solvers."""
+    started = time.perf_counter()
     _start()
     from .report import chosen_eps, read_job, require_folder, run_cost, run_order_cost
 
     if order_within is not None:
-        _refuse("--order-within", "methods", "accuracies", "seconds", "out", "progress")
+        others = "methods", "accuracies", "seconds", "out", "report", "progress"
+        _refuse("--order-within", *others)
         job = read_job(scene, **surface)
         job = job._replace(study=job.study | _numbers(eps=eps, gamma=gamma))
         within = order_within
@@ -394,7 +429,7 @@ def cost(
     job = read_job(scene, **surface)
     if "eps" not in cells:
         cells["eps"] = chosen_eps(job.scene, job.study["eps"])
-    job = job._replace(study=job.study | cells)
+    job = job._replace(study=job.study | cells, report=_asked(report, started))
     _write(folder, lambda place: run_cost(job, place, names, asked, seconds, progress))
 
 
@@ -430,17 +465,21 @@ def cost(
     help="Of heights.csv in a period.",
 )
 @_out("design")
-def design(scene: str | None, bristle: str | None, out: str, **asked: Any) -> None:
+@_report
+def design(
+    scene: str | None, bristle: str | None, out: str, report: bool, **asked: Any
+) -> None:
     """The bristle, or the surface, with a wanted friction.
 
     Writes the scene with it, the heights of its surface for a machine tool, tables and
     pictures into a folder.
     """
+    started = time.perf_counter()
     _start()
     from .report import TARGETS, DesignRequest, read_job, require_folder, run_design
 
     folder = require_folder(out)
-    job = read_job(scene, bristle)
+    job = read_job(scene, bristle)._replace(report=_asked(report, started))
     wanted = {name: asked.pop(name) for name in [*asked] if name in TARGETS}
     request = DesignRequest(wanted, **asked)
     _write(folder, lambda place: run_design(job, place, request))

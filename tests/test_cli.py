@@ -245,6 +245,7 @@ def test_help_without_a_command():
         (["study", "--rows", "--budget", "9"], "--budget: not with --rows"),
         (["friction", "--bristle", "soft"], "'soft' is not one of 'slanted', 'angular'"),
         (["cost", "--order-within", "0.1", "--methods", "auto"], "not with --order-within"),
+        (["cost", "--order-within", "0.1", "--report"], "--report: not with"),
         (
             ["cost", "--order-within", "0.1", "--out", "x", "--seconds", "7"],
             "--seconds, --out: not with --order-within",

@@ -37,7 +37,8 @@ def _flush_left(columns: int, left: int, meanings: int) -> set[int]:
 class ResultTable(NamedTuple):
     """Rows of texts under a header, and a note; columns as those of `in_columns`.
 
-    Prints itself in a shell and shows itself in a notebook; `.to_csv()`, `.to_latex()`.
+    Prints itself in a shell and shows itself in a notebook; `.to_html()`, `.to_csv()`,
+    `.to_latex()`.
     """
 
     header: tuple[str, ...]
@@ -51,19 +52,27 @@ class ResultTable(NamedTuple):
         return f"{text}\n{self.note}" if self.note else text
 
     def _repr_html_(self) -> str:
-        lines = [self._line("th", self.header)]
-        lines += [self._line("td", row) for row in self.rows]
-        note = f"<p>{html.escape(self.note)}</p>" if self.note else ""
-        return f"<table>{''.join(lines)}</table>{note}"
+        return self.to_html()
 
-    def _line(self, tag: str, cells: Sequence[str]) -> str:
-        words = _flush_left(len(cells), self.left, self.meanings)
+    def to_html(self, caption: str = "") -> str:
+        """A `table` under its caption, with its note below; texts are escaped."""
+        above = f"<caption>{html.escape(caption)}</caption>" if caption else ""
+        head = self._line('th scope="col"', "th", self.header)
+        body = "".join(self._line("td", "td", row) for row in self.rows)
+        note = f"<p>{html.escape(self.note)}</p>" if self.note else ""
+        lines = f"<thead>{head}</thead><tbody>{body}</tbody>"
+        return f"<table>{above}{lines}</table>{note}"
+
+    def _line(self, opened: str, closed: str, cells: Sequence[str]) -> str:
         shown = [
-            f'<{tag} style="text-align: {"left" if i in words else "right"}">'
-            f"{html.escape(cell)}</{tag}>"
+            f'<{opened} style="text-align: {self._side(i)}">{html.escape(cell)}</{closed}>'
             for i, cell in enumerate(cells)
         ]
         return f"<tr>{''.join(shown)}</tr>"
+
+    def _side(self, column: int) -> str:
+        words = _flush_left(len(self.header), self.left, self.meanings)
+        return "left" if column in words else "right"
 
     def to_csv(self) -> str:
         """The cells, comma separated, as `csv` of Python's library reads them."""
@@ -73,9 +82,7 @@ class ResultTable(NamedTuple):
 
     def to_latex(self) -> str:
         """A `tabular` without packages."""
-        count = len(self.header)
-        words = _flush_left(count, self.left, self.meanings)
-        columns = "".join("l" if i in words else "r" for i in range(count))
+        columns = "".join(self._side(i)[0] for i in range(len(self.header)))
         head, *body = (" & ".join(map(_in_latex, row)) for row in (self.header, *self.rows))
         rules = [rf"{row} \\" for row in body]
         lines = [rf"\begin{{tabular}}{{{columns}}}", rf"{head} \\", r"\hline", *rules]

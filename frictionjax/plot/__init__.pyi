@@ -11,6 +11,8 @@ from .noise import draw_histogram as draw_histogram
 from .paper import draw_mu_angular as draw_mu_angular
 from .paper import draw_mu_slanted as draw_mu_slanted
 from .paper import draw_nap as draw_nap
+from .parts import draw_forces as draw_forces
+from .parts import draw_parts as draw_parts
 from .scenes import draw_scenes as draw_scenes
 from .slide_profile import draw_slide_profile_fit as draw_slide_profile_fit
 from .trace_fit import draw_trace_fit as draw_trace_fit

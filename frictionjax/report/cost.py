@@ -6,12 +6,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .._text import in_columns
+from .._checks import write_whole
+from .._text import ResultTable
+from ..coefficients import coefficient_table
 from ..cost import MEASURED_ACCURACIES, METHODS, slips_of, work_precision
 from ..io import scene_document
-from ..model import Scene
+from ..model import Scene, friction
 from ..plot import draw_work_precision
 from ..studies import flag_names, formatted
+from .cost_page import CostFacts, MeasuredCell, cost_page
 from .folder import write_figures, write_record
 from .job import Job, joined
 
@@ -73,20 +76,35 @@ def run_cost(
     text = joined([("", line) for line in job.notes] + cost_sections(data))
     toml = scene_document(job.scene, job.study)
     write_record(folder, {"cost": data}, toml, text)
-    write_figures(folder, iter([("work_precision", draw_work_precision(data))]))
+    picture = draw_work_precision(data)
+    write_figures(folder, iter([("work_precision", picture)]))
+    if job.report is not None:
+        coefficients = coefficient_table(friction(job.scene), job.error)
+        columns = _COLUMNS + _calls(data)
+        cells = [MeasuredCell(*cell) for cell in measured_cells(data)]
+        facts = CostFacts(job, data, cells, columns, coefficients, picture, toml)
+        write_whole(folder / "report.html", cost_page(facts, job.report))
     return text
 
 
 def cost_sections(data: xr.Dataset) -> list[tuple[str, str]]:
     """For each cell its title and table, and what the columns mean."""
-    sections = []
+    sections = [
+        (title, f"{truth}\n{table}") for title, truth, table in measured_cells(data)
+    ]
+    sections.append(("", _COLUMNS + _calls(data)))
+    return sections
+
+
+def measured_cells(data: xr.Dataset) -> list[tuple[str, str, ResultTable]]:
+    """For each cell its title, what the reference is, and its table."""
+    cells = []
     for gamma in data.gamma.values:
         for eps in data.eps.values:
             cell = data.sel(gamma=gamma, eps=eps)
             title = f"gamma = {gamma:.4g}, eps = {eps:.4g} m"
-            sections.append((title, f"{_truth(cell)}\n{cost_table(cell)}"))
-    sections.append(("", _COLUMNS + _calls(data)))
-    return sections
+            cells.append((title, _truth(cell), cost_table(cell)))
+    return cells
 
 
 def _calls(data: xr.Dataset) -> str:
@@ -156,7 +174,7 @@ def _judged(run: xr.Dataset, name: str) -> str:
     return f"<{_digits(name, floor)}" if value < floor else _digits(name, value)
 
 
-def cost_table(cell: xr.Dataset) -> str:
+def cost_table(cell: xr.Dataset) -> ResultTable:
     """One line a run of one cell."""
     names = flag_names(cell.status)
     rows = [
@@ -164,7 +182,7 @@ def cost_table(cell: xr.Dataset) -> str:
         for solver in cell.solver.values
         for accuracy in cell.accuracy.values
     ]
-    return in_columns(_HEADER, rows, left=1)
+    return ResultTable(_HEADER, tuple(rows), left=1)
 
 
 def _row(run: xr.Dataset, names: dict[int, str]) -> tuple[str, ...]:

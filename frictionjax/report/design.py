@@ -8,9 +8,9 @@ import numpy as np
 
 from .. import plot
 from .._checks import as_text, require, write_whole
-from .._text import in_columns
+from .._text import ResultTable
 from ..bristles import AbstractBristle
-from ..coefficients import coefficient_table
+from ..coefficients import Coefficients
 from ..design import (
     AngleFit,
     Target,
@@ -22,13 +22,15 @@ from ..design import (
     surface_heights,
     write_heights,
 )
-from ..effects import CompliantArray
-from ..io import scene_document
+from ..effects import CompliantArray, NapFlip
+from ..io import load_scene, scene_document
 from ..model import Scene, friction
 from ..profiles import AbstractProfile
 from ..supports import Spring
+from .design_page import DesignFacts, design_page
 from .folder import write_figures
 from .job import Job, joined, with_surface
+from .sections import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,12 +54,17 @@ class DesignRequest(NamedTuple):
 
 
 class _Design(NamedTuple):
-    """A scene that gives what was asked for, its tables, pictures and further files."""
+    """A scene that gives what was asked for, what was found, pictures and further files.
+
+    `told`: what was found as lines, or as a table; `verdict`: in a sentence.
+    """
 
     scene: Scene
-    sections: list[tuple[str, str]]
+    told: ResultTable | str
+    verdict: str
     pictures: "Iterator[tuple[str, Figure]]"
     files: dict[str, str]
+    seed: str
 
 
 def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
@@ -77,21 +84,61 @@ def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
     scene = design.scene
     profile, bristle = _parts(scene)
     surface_heights(profile, asked.period, asked.samples)  # raises, or fits
-    sections = [("", line) for line in job.notes] + design.sections
+    sections = [("", line) for line in job.notes]
+    sections.append(("Inverse design", _as_lines(design.told)))
     many = any(isinstance(effect, CompliantArray) for effect in scene.effects)
     title = "Friction coefficients of each bristle" if many else "Friction coefficients"
-    sections.append((title, str(coefficient_table(friction(scene)))))
+    law = friction(scene)
+    coefficients = law.table()
+    sections.append((title, str(coefficients)))
+    check = None
     if isinstance(scene.support, Spring) and not scene.effects:
         check = check_design(profile, bristle, support=scene.support)
         sections.append(("On the dynamics", repr(check)))
     text = joined(sections)
-    write_whole(folder / "design.toml", scene_document(scene, job.study))
+    toml = scene_document(scene, job.study)
+    write_whole(folder / "design.toml", toml)
     write_whole(folder / "tables.txt", text + "\n")
     write_heights(folder / "heights.csv", profile, asked.period, asked.samples)
     for name, content in design.files.items():
         write_whole(folder / name, content + "\n")
-    write_figures(folder, design.pictures)
+    pictures = dict(design.pictures)
+    write_figures(folder, iter(pictures.items()))
+    if job.report is not None:
+        facts = DesignFacts(
+            job,
+            scene,
+            wanted,
+            design.verdict,
+            design.told,
+            design.seed,
+            law,
+            _read_back(folder / "design.toml", scene.effects),
+            coefficients,
+            None if check is None else check.gap_table,
+            "" if check is None else repr(check).partition("\n")[0] + ".",
+            [] if check is None else [int(one) for one in np.atleast_1d(check.status)],
+            pictures,
+            sorted(path.name for path in folder.iterdir()),
+            toml,
+        )
+        write_whole(folder / "report.html", design_page(facts, job.report))
     return text
+
+
+def _as_lines(told: ResultTable | str) -> str:
+    """Without the names of two columns that say nothing in a shell."""
+    if isinstance(told, str):
+        return told
+    return str(told._replace(header=("", ""))).lstrip("\n")
+
+
+def _read_back(path: Path, effects: tuple) -> Coefficients | None:
+    """Friction of the scene in a file; None where it is not what was asked for: of one
+    bristle of an array, of a rod that has not turned over."""
+    if any(isinstance(effect, CompliantArray | NapFlip) for effect in effects):
+        return None
+    return friction(load_scene(path))
 
 
 def _parts(scene: Scene) -> tuple[AbstractProfile, AbstractBristle]:
@@ -113,11 +160,32 @@ def _bristle(job: Job, asked: DesignRequest, wanted: dict[str, float]) -> _Desig
         raise ValueError(fit.message)
     found = with_surface(job.scene, profile, fit.bristle)
     pictures = _bristle_pictures(fit)
-    sections = [("Inverse design", angle_table(fit))]
-    return _Design(found, sections, pictures, {"fit.json": fit.to_json()})
+    number = f"{fit.free} = {float(fit.value):.6g} {_unit(fit.bristle, fit.free)}".rstrip()
+    verdict = (
+        f"Asked for: {_with_unit(fit.quantity, float(fit.target))}. Found: a "
+        f"{type(bristle).__name__} with {number} gives "
+        f"{_with_unit(fit.quantity, float(fit.achieved))}."
+    )
+    if fit.status.message != "found":
+        verdict += f" Mind: {fit.status.message}."
+    files = {"fit.json": fit.to_json()}
+    return _Design(found, angle_rows(fit), verdict, pictures, files, _NO_SEED)
 
 
-def angle_table(fit: AngleFit) -> str:
+def _unit(bristle: AbstractBristle, name: str) -> str:
+    unit = unit_of(bristle, name)
+    return "" if unit == "1" else unit
+
+
+def _with_unit(quantity: str, value: float) -> str:
+    return f"{quantity} = {value:.6g}{'' if quantity == 'ratio' else ' N'}"
+
+
+_NO_SEED = "none: nothing in this search is drawn at random"
+_SEED = "0, of the random surfaces that the search starts from, and of those in grey"
+
+
+def angle_rows(fit: AngleFit) -> ResultTable:
     """What one `fit_angle` found: value, reach, other solutions, sensitivities."""
     moved = fit.sensitivities
     others = [as_text(v) for v in np.asarray(fit.solutions) if v != float(fit.value)]
@@ -125,7 +193,7 @@ def angle_table(fit: AngleFit) -> str:
         ("wanted", f"{fit.quantity} = {as_text(fit.target)}"),
         ("achieved", f"{float(fit.achieved):.10g}"),
         ("alpha", f"{float(fit.alpha):.10g} N"),
-        (fit.free, f"{float(fit.value):.10g}"),
+        (fit.free, f"{float(fit.value):.10g} {_unit(fit.bristle, fit.free)}".rstrip()),
         ("other solutions", ", ".join(others) or "none"),
         ("reachable", intervals_text(fit.reachable)),
         (f"d {fit.free}/d {fit.quantity}", as_text(moved.target)),
@@ -133,7 +201,7 @@ def angle_table(fit: AngleFit) -> str:
         (f"d {fit.free}/d omega_minus", as_text(moved.omega_minus)),
         ("status", fit.status.message),
     ]
-    return in_columns(("", ""), rows, left=2).lstrip("\n")
+    return ResultTable(("number", "value"), tuple(rows), left=2)
 
 
 def _bristle_pictures(fit: AngleFit) -> "Iterator[tuple[str, Figure]]":
@@ -168,6 +236,10 @@ def _surface(job: Job, asked: DesignRequest, wanted: dict[str, float]) -> _Desig
         raise ValueError(fit.message)
     found = with_surface(job.scene, fit.profile, fit.bristles[0] or bristle)
     pictures = iter([("design", plot.draw_profile_fit(fit))])
-    return _Design(
-        found, [("Inverse design", repr(fit))], pictures, {"fit.json": fit.to_json()}
+    verdict = (
+        f"Asked for: rho_plus = {target.rho_plus:.6g} N and rho_minus = "
+        f"{target.rho_minus:.6g} N. A surface of {asked.harmonics} harmonics was designed "
+        f"for it: {fit.status.message}; the largest error is {fit.largest_error:.1e}."
     )
+    files = {"fit.json": fit.to_json()}
+    return _Design(found, repr(fit), verdict, pictures, files, _SEED)

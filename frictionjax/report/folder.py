@@ -99,11 +99,15 @@ def write_record(
 
 
 def write_study(
-    folder: Path, found: Study, scene: Scene, law: Coefficients, toml: str, text: str
+    folder: Path,
+    found: Study,
+    pictures: "Mapping[str, Figure]",
+    toml: str,
+    text: str,
 ) -> None:
     """Write data, orders, tables, scene and pictures of a study into `folder`."""
     data = {"study": found.dataset, "orders": found.orders}
     if found.spread is not None:
         data["spread"] = found.spread
     write_record(folder, data, toml, text)
-    write_figures(folder, study_figures(found, scene, law))
+    write_figures(folder, iter(pictures.items()))

@@ -2,17 +2,27 @@
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._checks import write_whole
+from ..bristles import AngularSpring
 from ..coefficients import coefficient_table, coefficients_by_name, errors_by_name
 from ..contact import Nap, nap
 from ..effects import NapFlip, nap_flip_among
+from ..io import scene_document
 from ..limit import solve_limit
 from ..model import friction
+from ..profiles import AbstractProfile
 from .job import Job, joined
+from .nap_page import NapFacts, nap_page
 from .tables import row_table
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.figure import Figure
 
 _TIMES = 2001  # pictures follow a rod that turns over
 
@@ -75,14 +85,43 @@ def nap_figures(job: Job, bending_stiffness: float | None, folder: Path) -> str:
     """Pictures of a rod on an angular spring into a folder; their names, a line each.
 
     Of one that turns over under the load of the scene also how it does, and the loops of
-    both effects, all in the limit.
+    both effects, all in the limit. With a report where one is asked for, which other
+    bristles have too, without these pictures.
     """
-    from .. import plot
     from .folder import write_figures
 
-    stiffness = _stiffness(job, bending_stiffness)
-    own = plot.draw_own_nap(job.scene.profile, job.scene.bristle, stiffness)
-    pictures = [("nap", own)]
+    pictures: dict[str, Figure] = {}
+    notes: list[str] = []
+    if job.report is None or isinstance(job.scene.bristle, AngularSpring):
+        pictures, notes = _nap_pictures(job, bending_stiffness)
+    names = [path.name for path in write_figures(folder, iter(pictures.items()))]
+    if job.report is not None:
+        names += _write_report(job, bending_stiffness, pictures, folder)
+    return "\n".join(names + notes)
+
+
+def _write_report(
+    job: Job, asked: float | None, pictures: "Mapping[str, Figure]", folder: Path
+) -> list[str]:
+    """Write the report and the scene; their names."""
+    assert job.report is not None
+    toml = scene_document(job.scene, job.study)
+    coefficients = coefficient_table(friction(job.scene), job.error)
+    stiffness = _stiffness(job, asked)
+    facts = NapFacts(job, _nap_of(job, asked), stiffness, coefficients, pictures, toml)
+    write_whole(folder / "scene.toml", toml)
+    write_whole(folder / "report.html", nap_page(facts, job.report))
+    return ["scene.toml", "report.html"]
+
+
+def _nap_pictures(job: Job, asked: float | None) -> "tuple[dict[str, Figure], list[str]]":
+    """By file name; and notes on what there is none of."""
+    from .. import plot
+
+    stiffness = _stiffness(job, asked)
+    bristle: Any = job.scene.bristle
+    own = plot.draw_own_nap(_profile_of(job), bristle, stiffness)
+    pictures = {"nap": own}
     notes = []
     found = _nap_of(job, stiffness)
     if stiffness is not None and found.turns_over:
@@ -91,12 +130,17 @@ def nap_figures(job: Job, bending_stiffness: float | None, folder: Path) -> str:
         ts = np.linspace(0.0, float(scene.duration), _TIMES)
         limit = solve_limit(scene, ts)
         if np.any(np.asarray(limit.mode) != 1):
-            pictures.append(("turning", plot.draw_turning(scene, limit)))
-            pictures.append(("nap_loops", plot.draw_nap_loops(scene, ts)))
+            pictures["turning"] = plot.draw_turning(scene, limit)
+            pictures["nap_loops"] = plot.draw_nap_loops(scene, ts)
         else:
             notes.append("under the load of the scene the rod does not turn over")
-    names = [path.name for path in write_figures(folder, iter(pictures))]
-    return "\n".join(names + notes)
+    return pictures, notes
+
+
+def _profile_of(job: Job) -> AbstractProfile:
+    """`job` always has one."""
+    assert job.scene.profile is not None
+    return job.scene.profile
 
 
 def _stiffness(job: Job, asked: float | None) -> float | None:
@@ -109,10 +153,9 @@ def _stiffness(job: Job, asked: float | None) -> float | None:
 
 def _nap_of(job: Job, bending_stiffness: float | None) -> Nap:
     """Of the scene's parts; `job` always has a bristle."""
-    profile, bristle = job.scene.profile, job.scene.bristle
-    assert profile is not None
+    bristle = job.scene.bristle
     assert bristle is not None
-    return nap(profile, bristle, _stiffness(job, bending_stiffness))
+    return nap(_profile_of(job), bristle, _stiffness(job, bending_stiffness))
 
 
 def _finite(number: float | None) -> float | None:

@@ -34,10 +34,20 @@ def named_bristle(name: str) -> AbstractBristle:
     return kind(**numbers)
 
 
+class ReportRequest(NamedTuple):
+    """`command`: as it was typed; `started`: by `time.perf_counter`; `expected`: its cost
+    in words, where somebody knew."""
+
+    command: str
+    started: float
+    expected: str = ""
+
+
 class Job(NamedTuple):
     """A scene, its file, and what is known of the measured surface, where there is one.
 
-    `scenes`: one for each row of a map, by its number, where all are asked for.
+    `scenes`: one for each row of a map, by its number, where all are asked for. `report`:
+    where a page is to be written too.
     """
 
     scene: Scene
@@ -46,6 +56,7 @@ class Job(NamedTuple):
     rows: RowCoefficients | None
     row: int | None = None
     scenes: dict[int, Scene] | None = None
+    report: ReportRequest | None = None
 
     @property
     def error(self) -> dict[str, float]:

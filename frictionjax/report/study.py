@@ -1,5 +1,6 @@
 """A whole study: what it will cost, and how it is run."""
 
+import time
 from pathlib import Path
 
 import jax.numpy as jnp
@@ -118,10 +119,12 @@ def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
     """
     in_background(_import_results, "imports", daemon=True)
     scenes, ts = job.scenes or job.scene, study_times(job)
+    started = time.perf_counter()
     data = sweep(scenes, ts=ts, method=method, progress=progress, **job.study)
+    seconds = time.perf_counter() - started
     from .study_results import write_results
 
-    return write_results(job, data, folder)
+    return write_results(job, data, folder, seconds)
 
 
 def _import_results() -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from .._checks import write_whole
 from ..coefficients import coefficient_table
 from ..io import scene_document
 from ..model import friction
@@ -15,8 +16,9 @@ from ..studies import (
     study,
     sweep_table,
 )
-from .folder import write_study
+from .folder import study_figures, write_study
 from .job import Job, joined
+from .study_page import StudyFacts, study_page
 from .tables import row_table
 
 _COVERS = (
@@ -31,15 +33,19 @@ _COVERS = (
 )
 
 
-def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
-    """Write the results of a job's sweep into `folder`, return its tables."""
+def write_results(job: Job, data: xr.Dataset, folder: Path, seconds: float) -> str:
+    """Write the results of a job's sweep into `folder`, return its tables.
+
+    `seconds`: that the sweep took.
+    """
     scene = job.scene
     law = friction(scene)
     found = study(data)
     sections = [("", line) for line in job.notes]
     if "left_out" in data.attrs:
         sections.append(("", f"Effects left out: {data.attrs['left_out']}"))
-    sections.append(("Friction coefficients", str(coefficient_table(law, job.error))))
+    coefficients = coefficient_table(law, job.error)
+    sections.append(("Friction coefficients", str(coefficients)))
     if job.rows is not None:
         sections.append(("Friction over the rows of the map", row_table(job.rows)))
     if found.spread is not None:
@@ -59,5 +65,9 @@ def write_results(job: Job, data: xr.Dataset, folder: Path) -> str:
     sections.append(("Failed cells", failed_table(found.failed)))
     text = joined(sections)
     toml = scene_document(scene, job.study)
-    write_study(folder, found, scene, law, toml, text)
+    pictures = dict(study_figures(found, scene, law))
+    write_study(folder, found, pictures, toml, text)
+    if job.report is not None:
+        facts = StudyFacts(job, law, found, coefficients, pictures, toml, seconds)
+        write_whole(folder / "report.html", study_page(facts, job.report))
     return text

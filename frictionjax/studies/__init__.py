@@ -3,6 +3,7 @@
 from .convergence_study import study as study
 from .study_result import Study as Study
 from .study_tables import failed_table as failed_table
+from .study_tables import failures as failures
 from .study_tables import flag_names as flag_names
 from .study_tables import formatted as formatted
 from .study_tables import lemma_table as lemma_table

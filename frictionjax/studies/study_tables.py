@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .._text import ResultTable, in_columns
+from .._text import ResultTable
 
 _GRAPHS = (
     ("graph_error", "graph error/m"),
@@ -143,9 +143,12 @@ def lemma_table(orders: xr.Dataset) -> ResultTable:
 
 def failed_table(failed: Sequence[dict[str, Any]]) -> str:
     """One line a failed cell with the reason; says so where none failed."""
-    if not failed:
-        return "no cell failed"
-    several = "scene" in failed[0]
+    return str(failures(failed)) if failed else "no cell failed"
+
+
+def failures(failed: Sequence[dict[str, Any]]) -> ResultTable:
+    """One line a failed cell with the reason."""
+    several = bool(failed) and "scene" in failed[0]
     rows = [
         (
             *((str(cell["scene"]),) if several else ()),
@@ -158,7 +161,7 @@ def failed_table(failed: Sequence[dict[str, Any]]) -> str:
     ]
     scene = ("scene",) if several else ()
     header = (*scene, "gamma", "eps/m", "status", "why")
-    return in_columns(header, rows, left=1, meanings=1)
+    return ResultTable(header, tuple(rows), left=1, meanings=1)
 
 
 def flag_names(variable: xr.DataArray) -> dict[int, str]:

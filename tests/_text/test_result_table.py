@@ -14,7 +14,7 @@ def test_columns_line_up():
 
 
 def test_meanings_are_words():
-    text = in_columns(("x", "meaning"), [("1.5", "a"), ("-20", "longer")], meanings=True)
+    text = in_columns(("x", "meaning"), [("1.5", "a"), ("-20", "longer")], meanings=1)
     assert text.splitlines() == ["  x  meaning", "1.5  a", "-20  longer"]
 
 
@@ -29,6 +29,21 @@ def test_in_a_notebook_nothing_is_taken_for_a_tag():
     assert "<b>" not in page
     assert page.endswith("</table><p>5 % &amp; more</p>")
     assert page.count("text-align: left") == page.count("<tr>") == 3
+
+
+def test_a_page_says_what_a_table_is_of():
+    page = TABLE.to_html("<Loads>")
+    assert page.startswith("<table><caption>&lt;Loads&gt;</caption><thead><tr><th scope=")
+    assert page.count('<th scope="col"') == 2
+    assert page.count("<td ") == 4
+
+
+def test_a_column_of_meanings_is_flush_left_wherever_it_is_shown():
+    table = ResultTable(("x", "meaning"), (("1.5", "a"),), left=0, meanings=1)
+    assert str(table) == in_columns(table.header, table.rows, meanings=1)
+    assert table.to_latex().startswith(r"\begin{tabular}{rl}")
+    sides = [part.split('"')[0] for part in table.to_html().split("text-align: ")[1:]]
+    assert sides == ["right", "left"] * 2
 
 
 def test_csv_is_read_back():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from command_line import error_line, run
+from html_pages import checked_page
 
 import frictionjax as fx
 from frictionjax.design.bristle.result import AngleFit
@@ -18,14 +19,27 @@ def ratio_of(scene):
     return float(-law.rho_plus / law.rho_minus)
 
 
+def _require_told(page, files, angle):
+    """What was asked for, what was found, read back, and the slides that show it."""
+    assert "Asked for: ratio = 1.5. Found: a SlantedSpring with angle = " in page.text
+    assert f"angle = {angle:.6g} rad gives ratio = 1.5." in page.text
+    assert "of the file design.toml" in page.text
+    assert "None of the 3 slides failed" in page.text
+    assert "frictionjax design --ratio 1.5" in page.text
+    assert files - {"report.html"} <= {link["href"] for link in page.of("a")}
+    assert len(page.of("img")) == 4
+
+
 def test_a_bristle_for_a_ratio(tmp_path):
     folder = tmp_path / "made" / "here"
     result = run(
-        "design", "--ratio", 1.5, "--period", 2e-4, "--samples", 128, "--out", folder
+        *("design", "--ratio", 1.5, "--period", 2e-4, "--samples", 128),
+        *("--report", "--out", folder),
     )
     assert result.exit_code == 0, result.output
     names = {path.name for path in folder.iterdir()}
     assert names == {
+        "report.html",
         "design.toml",
         "design.png",
         "map.png",
@@ -40,6 +54,8 @@ def test_a_bristle_for_a_ratio(tmp_path):
     before = default_study().scene
     assert scene.bristle.height == before.bristle.height
     assert float(scene.duration) == float(before.duration)
+    page = checked_page((folder / "report.html").read_text(encoding="utf-8"))
+    _require_told(page, names, float(scene.bristle.angle))
     lines = {line.split("  ")[0]: line for line in result.stdout.splitlines()}
     assert "1.5" in lines["achieved"]
     assert f"{float(scene.bristle.angle):.8g}"[:8] in lines["angle"]

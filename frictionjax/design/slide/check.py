@@ -6,7 +6,7 @@ import equinox as eqx
 import numpy as np
 
 from ..._checks import CodedResult, Real, as_real, with_nan
-from ..._text import in_columns
+from ..._text import ResultTable
 from ...bristles import AbstractBristle, pulling_text
 from ...coefficients import Coefficients
 from ...model import friction
@@ -58,11 +58,16 @@ class DesignCheck(CodedResult, eqx.Module):
     @property
     def table(self) -> str:
         """The gaps as text, one line an eps, the limit below."""
-        rows = [_HEADER, *(self._row(i) for i in range(self.slide.eps.size))]
+        return str(self.gap_table)
+
+    @property
+    def gap_table(self) -> ResultTable:
+        """The gaps, one line an eps, the limit below."""
+        rows = [self._row(i) for i in range(self.slide.eps.size)]
         plus, minus = float(self.law.rho_plus), float(self.law.rho_minus)
         last = ("limit", f"{plus:.6g}", "", f"{minus:.6g}", "", f"{float(self.ratio):.6g}")
         rows.append((*last, "", f"{plus:.6g}", f"{minus:.6g}", ""))
-        return in_columns(rows[0], rows[1:])
+        return ResultTable(_HEADER, tuple(rows), left=0)
 
     def _row(self, i: int) -> tuple[str, ...]:
         found, worst = self.slide, np.atleast_1d(self.slide.status)[i]

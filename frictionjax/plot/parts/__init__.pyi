@@ -1,0 +1,2 @@
+from .bristle_on_surface import draw_parts as draw_parts
+from .load_and_well import draw_forces as draw_forces

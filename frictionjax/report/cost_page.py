@@ -1,0 +1,280 @@
+"""The report of what accuracy costs, as a page."""
+
+import time
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from .._text import ResultTable
+from ..model import friction
+from ..studies import flag_names
+from ..wiggly import Status, status_of
+from .job import Job, ReportRequest
+from .page import (
+    Drawn,
+    Page,
+    Section,
+    definitions,
+    items,
+    page_text,
+    paragraph,
+    shown,
+    table_region,
+)
+from .sections import (
+    Origin,
+    coefficient_section,
+    origin_section,
+    reproduction_section,
+    scene_section,
+    scene_sentence,
+    status_legend,
+    words_section,
+)
+
+_WANTED = 1e-3  # in eps, what the first sentence is about
+
+
+class MeasuredCell(NamedTuple):
+    """Of one eps and gamma: a title, what it was judged by, a line for each run."""
+
+    title: str
+    judged_by: str
+    table: ResultTable
+
+
+class CostFacts(NamedTuple):
+    """What was measured; `columns`: what those of the tables mean."""
+
+    job: Job
+    data: xr.Dataset
+    cells: Sequence[MeasuredCell]
+    columns: str
+    coefficients: ResultTable
+    picture: Figure
+    toml: str
+
+
+class _Best(NamedTuple):
+    """The fastest run that is as accurate as wanted."""
+
+    solver: str
+    asked: float
+    error: float
+    seconds: float
+
+
+_WORDS = (
+    *("eps", "gamma", "state z", "accuracy", "reference", "slip", "cell", "residual"),
+    *("dissipation", "rho", "alpha", "omega", "ratio"),
+)
+_ABOUT = (
+    "To follow a bristle through all slips over a surface costs computing time, and the "
+    "more accurate, the more. Here methods compute the same motion at several accuracies, "
+    "are timed side by side, and are judged by a reference that is more accurate than all "
+    "of them: their own word that they have succeeded is not taken for it."
+)
+_AGAIN = "frictionjax cost scene.toml --out again --report"
+_PYTHON = """\
+import frictionjax as fx
+import xarray as xr
+
+data = xr.load_dataset("cost.nc", engine="h5netcdf")
+fx.plot.draw_work_precision(data)"""
+_FILES = (
+    ("cost.nc", "every number measured (NetCDF), with units"),
+    ("scene.toml", "the scene"),
+    ("tables.txt", "the tables as text"),
+    ("work_precision.png", "the picture of this page"),
+)
+
+
+def cost_page(facts: CostFacts, asked: ReportRequest) -> str:
+    """The page: the fastest method, all runs, what was wrong, what judged them."""
+    job, data = facts.job, facts.data
+    law = friction(job.scene)
+    cell = _shown_cell(data)
+    origin = _origin(facts, asked)
+    return page_text(
+        Page(
+            title="What accuracy costs",
+            about=_ABOUT,
+            verdict=verdict_of_cost(data),
+            first=[items(job.notes)] if job.notes else [],
+            sections=[
+                _picture_section(facts),
+                *_runs(facts),
+                _failures(data),
+                _judged(facts),
+                scene_section(job.scene, law, float(cell.eps), float(cell.gamma)),
+                coefficient_section(law, facts.coefficients),
+                _cost(data),
+                origin_section(origin),
+                reproduction_section(origin, facts.toml, [_AGAIN], _FILES, _PYTHON),
+                words_section(_WORDS),
+            ],
+            made_by=f"Written by {data.attrs.get('source', 'frictionjax')}. "
+            f"{scene_sentence(job.scene)}",
+        )
+    )
+
+
+def _shown_cell(data: xr.Dataset) -> xr.Dataset:
+    """The cell of the picture: smallest eps, gamma nearest to 1."""
+    nearest = int(np.argmin(np.abs(data.gamma.values - 1.0)))
+    return data.isel(gamma=nearest).sel(eps=float(data.eps.min()))
+
+
+def verdict_of_cost(data: xr.Dataset) -> str:
+    """Which method is fastest at an accuracy of 1e-3 eps, and what cannot be trusted."""
+    cell = _shown_cell(data)
+    where = f"eps = {float(cell.eps):.4g} m, gamma = {float(cell.gamma):.4g}"
+    best = _fastest(cell)
+    if best is None:
+        told = f"At {where} no method came within {_WANTED:g} eps of the reference"
+    else:
+        told = (
+            f"To know the motion to {_WANTED:g} eps at {where}, take `{best.solver}` and "
+            f"ask it for {best.asked:.0e}: it took {best.seconds:.3g} s and was "
+            f"{best.error:.1e} eps off"
+        )
+    return f"{told}. {_trust(data)}"
+
+
+def _fastest(cell: xr.Dataset) -> _Best | None:
+    found = []
+    for solver in cell.solver.values:
+        for accuracy in cell.accuracy.values:
+            run = cell.sel(solver=solver, accuracy=accuracy)
+            error, good = float(run.error), int(run.status) == Status.OK
+            seconds = float(run.seconds)
+            if good and not int(run.wrong) and error <= _WANTED and np.isfinite(seconds):
+                found.append(_Best(str(solver), float(accuracy), error, seconds))
+    return min(found, key=lambda one: one.seconds) if found else None
+
+
+def _trust(data: xr.Dataset) -> str:
+    """How many runs reported success and were wrong, and how many are not done."""
+    count, wrong = data.status.size, int(np.sum(data.wrong.values > 0))
+    undone = int(np.sum(data.status.values != int(Status.OK)))
+    said = (
+        f"Of {count} runs {wrong or 'none'} reported success and were half an eps or more "
+        "off"
+    )
+    if wrong:
+        named = [
+            f"`{name}` {int(np.sum(data.wrong.sel(solver=name).values > 0))}"
+            for name in map(str, data.solver.values)
+            if np.any(data.wrong.sel(solver=name).values > 0)
+        ]
+        said += f" ({', '.join(named)})"
+    return f"{said}, and {undone or 'none'} were too slow or failed."
+
+
+def _picture_section(facts: CostFacts) -> Section:
+    drawn = Drawn(facts.picture, _picture_told(facts.data), _CAPTION)
+    return Section("Error against time", [shown(drawn, "work and precision")])
+
+
+_CAPTION = (
+    "Above, left: error against seconds, a line for each method, lower left is better; the "
+    "yellow band joins runs that nothing beats in both. Right: is the accuracy that was "
+    "asked for kept? Above the stairs it is not. Below, where there are several cells: "
+    "seconds, and error over accuracy, at the accuracy in the middle."
+)
+
+
+def _picture_told(data: xr.Dataset) -> str:
+    cell = _shown_cell(data)
+    lines = [
+        "Graphs of error against seconds, and of error reached against accuracy asked for, "
+        f"at eps = {float(cell.eps):.4g} m, gamma = {float(cell.gamma):.4g}."
+    ]
+    for solver in map(str, cell.solver.values):
+        runs = cell.sel(solver=solver)
+        known = np.isfinite(runs.error.values) & np.isfinite(runs.seconds.values)
+        if not known.any():
+            lines.append(f"{solver}: no run is known.")
+            continue
+        best = int(np.nanargmin(np.where(known, runs.error.values, np.nan)))
+        lines.append(
+            f"{solver}: at best {float(runs.error[best]):.1e} eps off in "
+            f"{float(runs.seconds[best]):.3g} s."
+        )
+    return " ".join(lines)
+
+
+def _runs(facts: CostFacts) -> list[Section]:
+    blocks = [paragraph(facts.columns)]
+    blocks += [table_region(one.table, f"Runs at {one.title}") for one in facts.cells]
+    return [Section("Every run", blocks)]
+
+
+def _failures(data: xr.Dataset) -> Section:
+    rows = _failed_rows(data)
+    blocks = [paragraph(_trust(data))]
+    if rows:
+        header = ("gamma", "eps/m", "solver", "asked", "status", "why")
+        table = ResultTable(header, tuple(rows), left=3, meanings=1)
+        blocks.append(table_region(table, "Runs that failed"))
+    codes = data.status.values.ravel().tolist()
+    legend = table_region(status_legend(codes), "What statuses mean", as_csv=False)
+    return Section("What failed", [*blocks, legend])
+
+
+_WRONG = "success was reported half an eps or more off, and further than asked for"
+
+
+def _failed_rows(data: xr.Dataset) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = []
+    names = flag_names(data.status)
+    runs = data[["status", "wrong"]].stack(run=("gamma", "eps", "solver", "accuracy"))
+    for place in range(runs.run.size):
+        run = runs.isel(run=place)
+        code, wrong = int(run.status), bool(run.wrong > 0)
+        if code == Status.OK and not wrong:
+            continue
+        gamma, eps, solver, accuracy = run.run.item()
+        status = "wrong" if wrong else names[code]
+        why = _WRONG if wrong else status_of(code).message
+        numbers = f"{gamma:.4g}", f"{eps:.4g}", str(solver), f"{accuracy:.0e}"
+        rows.append((*numbers, status, why))
+    return rows
+
+
+def _judged(facts: CostFacts) -> Section:
+    blocks = [paragraph(_REFERENCE)]
+    lines = [f"{one.title}: {'; '.join(one.judged_by.splitlines())}" for one in facts.cells]
+    return Section("What judges the runs", [*blocks, items(lines)])
+
+
+_REFERENCE = (
+    "Every run is held against the same motion computed in two ways that do not share "
+    "their errors, much more accurately; where these differ by more than a run's error, "
+    "nothing is said about it. The residual of the energy balance, in energies of one "
+    "slip, is a second judge, which needs no reference."
+)
+
+
+def _cost(data: xr.Dataset) -> Section:
+    timed = np.nansum(data.seconds.values * np.maximum(data.runs.values, 1))
+    entries = [
+        ("runs timed", f"{int(np.sum(data.runs.values))}"),
+        ("seconds in them", f"{timed:.3g} s"),
+        ("compilation", f"{np.nansum(data.compile_seconds.values):.3g} s, all first calls"),
+    ]
+    return Section("What it cost to measure", [definitions(entries)])
+
+
+def _origin(facts: CostFacts, asked: ReportRequest) -> Origin:
+    data = facts.data
+    told = [
+        ("methods", ", ".join(map(str, data.solver.values))),
+        ("accuracies", f"{', '.join(f'{v:.0e}' for v in data.accuracy.values)}, in eps"),
+        ("eps", f"{', '.join(f'{v:.4g}' for v in data.eps.values)} m"),
+        ("gamma", ", ".join(f"{v:.4g}" for v in data.gamma.values)),
+    ]
+    return Origin(asked.command, time.perf_counter() - asked.started, told)

@@ -1,0 +1,13 @@
+from .markup import Html as Html
+from .markup import definitions as definitions
+from .markup import items as items
+from .markup import linked_files as linked_files
+from .markup import paragraph as paragraph
+from .markup import preformatted as preformatted
+from .markup import table_region as table_region
+from .mathematics import equation as equation
+from .pictures import Drawn as Drawn
+from .pictures import shown as shown
+from .skeleton import Page as Page
+from .skeleton import Section as Section
+from .skeleton import page_text as page_text

@@ -1,0 +1,50 @@
+"""The numbers of a scene with their units."""
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+from frictionjax._checks import asked_names
+from frictionjax.io import EFFECTS, PARTS, example_lines, example_text
+from frictionjax.io.scene_files import load_study
+from frictionjax.report.sections.part_numbers import MEANINGS, part_rows, unit_of
+
+KINDS = {kind for kinds in (*PARTS.values(), EFFECTS) for kind in kinds.values()}
+
+
+@pytest.mark.parametrize("kind", sorted(KINDS, key=str), ids=lambda kind: kind.__name__)
+def test_every_number_that_a_file_holds_has_a_unit_and_a_meaning(kind):
+    known = MEANINGS[kind.__name__]
+    assert set(asked_names(kind, {})) <= set(known)
+    assert all(unit and meaning for unit, meaning in known.values())
+
+
+def test_a_sine_is_a_surface_or_a_load():
+    assert unit_of(fx.profiles.Sine(0.1), "slope") == "1"
+    assert unit_of(fx.loads.Sine(1.0, 2.0), "amplitude") == "N"
+    assert unit_of(fx.supports.Spring(1.0), "other") == ""
+
+
+@pytest.mark.parametrize("name", sorted(example_lines()))
+def test_scenes_that_ship_are_told_in_full(name, tmp_path):
+    (tmp_path / "mine.toml").write_text(example_text(name))
+    scene = load_study(tmp_path / "mine.toml").scene
+    rows = part_rows(scene).rows
+    told = {(part, number): value for part, _, number, value, _, _ in rows}
+    assert float(told["scene", "duration"]) == pytest.approx(float(scene.duration))
+    for part, kind, number, _, unit, _ in rows:
+        assert unit or not number, (part, kind, number)
+    assert {row[1] for row in rows if row[0] == "effect"} == {
+        type(effect).__name__ for effect in scene.effects
+    }
+
+
+def test_a_load_read_as_a_place_is_in_metres():
+    pulled = fx.loads.Pulled(fx.loads.Ramp(2.0))
+    scene = fx.Scene(
+        *(fx.profiles.Fourier(np.full(9, 1e-3), np.zeros(9)), fx.bristles.Homothetic(1.0)),
+        *(fx.supports.Spring(1.0), pulled, 1.0),
+    )
+    rows = {(row[0], row[2]): row[3:5] for row in part_rows(scene).rows}
+    assert rows["load, position", "rate"] == ("2", "m/s")
+    assert rows["profile", "cos"] == ("9 values, 0.001 to 0.001", "periods")

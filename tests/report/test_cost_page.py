@@ -1,0 +1,91 @@
+"""The report of what accuracy costs: the best run, and those that were wrong."""
+
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+from html_pages import cells_of_table, checked_page
+
+import frictionjax as fx
+from frictionjax.report.cost import measured_cells, run_cost
+from frictionjax.report.cost_page import verdict_of_cost
+from frictionjax.report.job import ReportRequest, read_job
+
+SOLVERS = "auto", "LSODA", "Radau"
+
+
+def measured(eps=(0.01, 0.001)):
+    """As of `work_precision`: LSODA is wrong at the loosest accuracy, Radau never done."""
+    asked, gamma = np.array([1e-2, 1e-3]), [1.0]
+    dims = "gamma", "eps", "solver", "accuracy"
+    shape = 1, len(eps), 3, 2
+    error = np.broadcast_to(0.1 * asked, shape).copy()
+    seconds = np.broadcast_to(np.array([[0.3, 0.5], [0.2, 0.4], [9.0, 9.0]]), shape).copy()
+    status, wrong = np.zeros(shape, dtype=np.int8), np.zeros(shape)
+    status[:, :, 2] = int(fx.Status.TOO_SLOW)
+    error[:, :, 2] = np.nan
+    error[:, :, 1, 0], wrong[:, :, 1, 0] = 31.25, 1.0
+    columns = {"seconds": seconds, "error": error, "status": status, "wrong": wrong}
+    columns |= {"seconds_low": 0.9 * seconds, "seconds_high": 1.5 * seconds}
+    others = ("slip_error", "end_error", "dissipation_error", "residual", "mescd")
+    columns |= dict.fromkeys(others, 0.5 * error)
+    columns |= dict.fromkeys(("runs", "steps", "rejected"), np.full(shape, 3))
+    columns |= dict.fromkeys(("compile_seconds", "calls_share"), np.full(shape, 0.25))
+    data = xr.Dataset({name: (dims, values) for name, values in columns.items()})
+    for name in ("error", "slip_error", "end_error", "dissipation_error", "mescd"):
+        data[f"reference_{name}"] = dims[:2], np.full(shape[:2], 1e-6)
+    data["reference_ways"] = dims[:2], np.full(shape[:2], "one <way> against another")
+    coords = {"gamma": gamma, "eps": list(eps), "solver": list(SOLVERS), "accuracy": asked}
+    data = data.assign_coords(coords)
+    data.status.attrs["flag_values"] = np.array([int(s) for s in fx.Status], dtype=np.int8)
+    data.status.attrs["flag_meanings"] = " ".join(s.name.lower() for s in fx.Status)
+    return data
+
+
+@pytest.fixture
+def page(tmp_path, monkeypatch):
+    monkeypatch.setattr(
+        "frictionjax.report.cost.work_precision", lambda *_, **__: measured()
+    )
+    request = ReportRequest("frictionjax cost --report", time.perf_counter())
+    job = read_job(None)
+    run_cost(job._replace(report=request), tmp_path, None, None, 1.0, False)
+    return checked_page((tmp_path / "report.html").read_text(encoding="utf-8"))
+
+
+def test_every_number_of_every_run_is_in_it(page):
+    words = set(page.text.split())
+    for _, _, table in measured_cells(measured()):
+        for cell in cells_of_table(table):
+            assert set(cell.split()) <= words, cell
+
+
+def test_what_was_wrong_and_what_was_not_done_is_listed(page):
+    assert "Of 12 runs 2 reported success and were half an eps or more off" in page.text
+    assert "LSODA 2" in page.text
+    assert "and 4 were too slow or failed" in page.text
+    assert page.text.count("wrong success was reported half an eps or more off") == 2
+    assert "one <way> against another" in page.text
+    assert "frictionjax cost --report" in page.text
+
+
+def test_the_first_sentence_is_of_the_fastest_run_that_is_right():
+    said = verdict_of_cost(measured())
+    assert said.startswith("To know the motion to 0.001 eps at eps = 0.001 m, gamma = 1")
+    assert "take `auto` and ask it for 1e-02: it took 0.3 s and was 1.0e-03 eps off" in said
+
+
+def test_where_nothing_is_accurate_enough_it_says_so():
+    data = measured()
+    data["error"] = data.error + 1.0
+    assert "no method came within 0.001 eps" in verdict_of_cost(data)
+    assert "none reported success" in verdict_of_cost(data.assign(wrong=0 * data.wrong))
+
+
+def test_its_picture_is_told_method_by_method(page):
+    (told,) = (
+        one["alt"] for one in page.of("img") if "error against seconds" in one["alt"]
+    )
+    assert "auto: at best 1.0e-04 eps off in 0.5 s" in told
+    assert "Radau: no run is known" in told
