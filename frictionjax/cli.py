@@ -389,6 +389,13 @@ def _refuse(beside: str, *names: str) -> None:
     help="After which a run is ended; diffrax's after a million steps for each.",
 )
 @click.option(
+    "--total",
+    type=_POSITIVE,
+    default=30.0,
+    show_default=True,
+    help="Seconds after which nothing more is begun; our methods come first.",
+)
+@click.option(
     "--order-within",
     type=_POSITIVE,
     help="Instead: which eps give the order of convergence to +- this, and in which time.",
@@ -403,6 +410,7 @@ def cost(
     accuracies: str | None,
     methods: str | None,
     seconds: float,
+    total: float,
     order_within: float | None,
     out: str,
     report: bool,
@@ -415,7 +423,7 @@ def cost(
     from .report import chosen_eps, read_job, require_folder, run_cost, run_order_cost
 
     if order_within is not None:
-        others = "methods", "accuracies", "seconds", "out", "report", "progress"
+        others = "methods", "accuracies", "seconds", "total", "out", "report", "progress"
         _refuse("--order-within", *others)
         job = read_job(scene, **surface)
         job = job._replace(study=job.study | _numbers(eps=eps, gamma=gamma))
@@ -430,7 +438,9 @@ def cost(
     if "eps" not in cells:
         cells["eps"] = chosen_eps(job.scene, job.study["eps"])
     job = job._replace(study=job.study | cells, report=_asked(report, started))
-    _write(folder, lambda place: run_cost(job, place, names, asked, seconds, progress))
+    _write(
+        folder, lambda place: run_cost(job, place, names, asked, seconds, progress, total)
+    )
 
 
 @main.command()

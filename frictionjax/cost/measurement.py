@@ -1,6 +1,7 @@
 """What accuracy costs in time: methods, accuracies and cells, measured side by side."""
 
 import itertools
+import time
 from collections.abc import Iterable, Mapping, Set
 from typing import Any, NamedTuple
 
@@ -20,8 +21,10 @@ from ..model import (
 )
 from ..sweeps import origin, set_meanings
 from ..wiggly import ENDED, Status, accuracies_of, is_ours, solver_of
+from .advice import advice
 from .error_measures import MEASURES, errors_of
 from .instants import Instants, instants
+from .meanings import COORDINATES, REFERENCE, RUN
 from .references import LEAST_JUDGED, Reference, reference
 from .scipy_solvers import SCIPY, Run, told
 from .settings import SETTINGS
@@ -30,39 +33,7 @@ from .timed_runs import clocked, runner, timed
 METHODS = ("auto", "windowed", "resolved", "Kvaerno5", "Kvaerno3", "LSODA", "BDF", "Radau")
 MEASURED_ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 
-_RUN = {
-    "seconds": ("s", "median time of a warm run"),
-    "seconds_low": ("s", "fastest warm run"),
-    "seconds_high": ("s", "slowest warm run"),
-    "runs": ("1", "warm runs timed"),
-    "compile_seconds": ("s", "what the first run took longer: tracing and compilation"),
-    "error": ("1", "largest error of z outside slips, in eps"),
-    "slip_error": ("1", "mean error of z over a whole slip period, in eps"),
-    "end_error": ("1", "error of z at the last time asked for, in eps"),
-    "dissipation_error": ("1", "largest error of the dissipation over its last value"),
-    "residual": ("1", "residual of the energy-dissipation balance over that of one slip"),
-    "mescd": ("1", "-log10(|z - z_ref|/(eps + |z_ref|)) at the last time asked for"),
-    "steps": ("1", "steps tried"),
-    "rejected": ("1", "steps rejected"),
-    "calls_share": ("1", "share of the seconds in calls of the field from Python"),
-    "status": (None, "how the run ended"),
-    "wrong": ("1", "1 where success is reported half an eps off, and more than asked"),
-}
-_REFERENCE = {
-    "reference_error": ("1", "distance of the reference from a second one, in eps"),
-    "reference_slip_error": ("1", "the same over a whole slip period"),
-    "reference_end_error": ("1", "the same at the last time asked for"),
-    "reference_dissipation_error": ("1", "the same for the dissipation"),
-    "reference_mescd": ("1", "mescd of the second one"),
-    "reference_ways": (None, "methods of the two references"),
-}
-_COORDINATES = {
-    "eps": ("m", "period of the surface, length scale eps"),
-    "gamma": ("1", "exponent of the viscosity eps^gamma"),
-    "solver": (None, "method"),
-    "accuracy": ("1", "accuracy asked for: error of z in eps; atol of SciPy's"),
-}
-_NOTHING = dict.fromkeys(_RUN, float("nan")) | {
+_NOTHING = dict.fromkeys(RUN, float("nan")) | {
     "status": int(Status.NOT_TRIED),
     "wrong": 0.0,
     "runs": 0,
@@ -91,6 +62,13 @@ class _Effort(NamedTuple):
     accuracies: np.ndarray
     repeats: int
     seconds: float
+    until: float  # on the clock of `perf_counter`: nothing begins later
+
+    def allows(self, method: Any, first: bool) -> bool:
+        """Whether there is time to begin, and to compile what diffrax's solvers need."""
+        foreign = first and not is_ours(method) and method not in SCIPY
+        needs = SETTINGS.compiles if foreign else 0.0
+        return time.perf_counter() + needs < self.until
 
 
 def _is_wrong(errors: dict, of_truth: dict, accuracy: float) -> bool:
@@ -159,6 +137,7 @@ def _measured(
     cells: list[dict[str, float]] = []
     given_up = False
     for accuracy in map(float, effort.accuracies):
+        given_up = given_up or not effort.allows(method, first=not cells)
         if given_up:
             cells.append(_NOTHING)
         else:
@@ -211,6 +190,7 @@ def work_precision(
     *,
     repeats: int = 5,
     seconds: float = 10.0,
+    total: float | None = None,
     progress: bool = False,
 ) -> xr.Dataset:
     """Measure what accuracy costs: time and error of methods, cell by cell.
@@ -222,7 +202,9 @@ def work_precision(
     whole one ahead. `repeats`: at most so many warm runs are timed: three, or as many as
     fit into half a second, and no more than fit into `seconds`. `seconds`: of a method that
     takes longer tighter accuracies are not tried; SciPy's runs are ended then, diffrax's
-    after a million steps for each second, ours, which cannot be, go on.
+    after a million steps for each second, ours, which cannot be, go on. `total`: seconds
+    after which nothing more is begun, for all together; None: no bound. Ours are measured
+    first, in all cells; what is left out is NOT_TRIED.
 
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took
@@ -237,7 +219,8 @@ def work_precision(
     success reported half an eps or more off (1.5 eps at the end where all times lie in
     slips), and further than asked for. Over (gamma, eps) what is known of the reference:
     `reference_error` and so on is its distance from a second one, made otherwise as
-    `reference_ways` says; no error below it means anything.
+    `reference_ways` says; no error below it means anything. The attribute `advice` says in
+    a sentence which method and accuracy to take, by what was measured.
 
     Failures stay in the table with their status and errors of NaN.
 
@@ -249,33 +232,59 @@ def work_precision(
     require_flags(progress=progress)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     names, labels, asked = _required(methods, accuracies, repeats, seconds)
+    if total is not None:
+        require_real("total", total, "seconds > 0, or None", lambda s: s > 0)
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)
     ts = np.asarray(require_times(scene, ts, SETTINGS.times))
-    effort = _Effort(asked, int(repeats), float(seconds))
-    cells, truths = [], []
-    count = gamma.size * eps.size * len(names) * asked.size
-    with tqdm(total=count, disable=not progress, desc="runs") as bar:
-        for g, e in itertools.product(gamma.tolist(), eps.tolist()):
-            when = instants(scene, e, ts)
-            first = _first_calls(scene, e, g, when.ts, names, effort)
-            truth = reference(scene, e, g, when, float(asked[-1]))
-            truths.append(truth)
-            for name, longer in zip(names, first, strict=True):
-                column = _Column(scene, e, g, when, truth, name)
-                cells += _measured(column, effort, longer, bar)
+    until = float("inf") if total is None else time.perf_counter() + float(total)
+    effort = _Effort(asked, int(repeats), float(seconds), until)
+    cells, truths = _all_cells(scene, eps, gamma, ts, names, effort, progress)
     shape = gamma.size, eps.size, len(names), asked.size
     data = _dataset(cells, truths, shape)
     data = data.assign_coords(gamma=gamma, eps=eps, solver=labels, accuracy=asked)
     return _described(data, scene)
 
 
+def _all_cells(
+    scene: Scene,
+    eps: np.ndarray,
+    gamma: np.ndarray,
+    ts: np.ndarray,
+    names: list,
+    effort: _Effort,
+    progress: bool,
+) -> tuple[list[dict], list[Reference]]:
+    """Runs in the order of the data set, and a reference for each (gamma, eps).
+
+    Made in another order: our methods in all cells before the others, which may take all
+    the time there is.
+    """
+    grid = list(itertools.product(gamma.tolist(), eps.tolist()))
+    columns: dict[tuple[int, int], _Column] = {}
+    first: dict[tuple[int, int], float | None] = {}
+    for row, (g, e) in enumerate(grid):
+        when = instants(scene, e, ts)
+        longer = _first_calls(scene, e, g, when.ts, names, effort)
+        truth = reference(scene, e, g, when, float(effort.accuracies[-1]))
+        for index, name in enumerate(names):
+            columns[row, index] = _Column(scene, e, g, when, truth, name)
+            first[row, index] = longer[index]
+    count = len(columns) * effort.accuracies.size
+    found: dict[tuple[int, int], list[dict]] = {}
+    with tqdm(total=count, disable=not progress, desc="runs") as bar:
+        for place in sorted(columns, key=lambda at: not is_ours(names[at[1]])):
+            found[place] = _measured(columns[place], effort, first[place], bar)
+    cells = [run for place in columns for run in found[place]]
+    return cells, [columns[row, 0].truth for row in range(len(grid))]
+
+
 def _dataset(cells: list[dict], truths: list[Reference], shape: tuple) -> xr.Dataset:
     dims = ("gamma", "eps", "solver", "accuracy")
     data = xr.Dataset()
-    for name in _RUN:
+    for name in RUN:
         data[name] = dims, np.array([cell[name] for cell in cells]).reshape(shape)
-    for name in _REFERENCE:
+    for name in REFERENCE:
         known = [_of_reference(truth, name) for truth in truths]
         data[name] = dims[:2], np.array(known).reshape(shape[:2])
     return data
@@ -288,6 +297,6 @@ def _of_reference(truth: Reference, name: str) -> float | str:
 
 def _described(data: xr.Dataset, scene: Scene) -> xr.Dataset:
     data["status"] = data["status"].astype(np.int8)
-    set_meanings(data, _RUN | _REFERENCE | _COORDINATES)
-    data.attrs = origin("What accuracy costs in time", scene)
+    set_meanings(data, RUN | REFERENCE | COORDINATES)
+    data.attrs = origin("What accuracy costs in time", scene) | {"advice": advice(data)}
     return data

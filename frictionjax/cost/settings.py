@@ -26,6 +26,9 @@ class Settings(NamedTuple):
     # had no spread.)
     least_runs: int = 3
     enough: float = 0.5  # after which no more are
+    # That diffrax's solvers compile for before their first run ends: not begun with less.
+    compiles: float = 10.0
+    wanted: float = 1e-3  # accuracy that advice is given for, or the nearest one measured
 
     # References (`references.py`, `scipy_solvers.py`).
     one_by_one: float = 2e4  # slips that lanes one after the other may take, 0.4 ms each

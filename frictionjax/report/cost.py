@@ -59,6 +59,7 @@ def run_cost(
     accuracies: list[float] | None,
     seconds: float,
     progress: bool,
+    total: float | None = None,
 ) -> str:
     """Measure what a job asks for, write it into `folder`, return its tables.
 
@@ -71,9 +72,11 @@ def run_cost(
         methods or METHODS,
         accuracies or MEASURED_ACCURACIES,
         seconds=seconds,
+        total=total,
         progress=progress,
     )
-    text = joined([("", line) for line in job.notes] + cost_sections(data))
+    lines = [*job.notes, str(data.attrs["advice"])]
+    text = joined([("", line) for line in lines] + cost_sections(data))
     toml = scene_document(job.scene, job.study)
     write_record(folder, {"cost": data}, toml, text)
     picture = draw_work_precision(data)

@@ -34,6 +34,7 @@ class Settings(NamedTuple):
     decade: float = 10.0  # of distances from the top, over which its flatness is measured
     whole: float = 0.06  # flatness that is this near an even number is one
     flattest: float = 12.0  # beyond, a top is a straight flank
+    long_flank: float = 0.25  # straight flanks that are looked at from their middle
     nearest_node: float = 1e-13  # nodes between the table's and that distance
     gap_nodes: int = 160
     passage_forces: tuple[float, float, int] = (1e-26, 1e3, 288)  # from, to, how many

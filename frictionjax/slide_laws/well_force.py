@@ -38,7 +38,7 @@ def well_force(
     Below what rounding leaves of `rho - W'` the power law of the top is continued.
     """
     held = sign * force
-    top = int(np.argmax(held))
+    top = _top(phase, held)
     place = sign * (phase - phase[top])
     place = place - np.floor(place + 0.5)
     order = np.argsort(place)
@@ -66,6 +66,22 @@ def well_force(
     )
 
 
+def _top(phase: np.ndarray, held: np.ndarray) -> int:
+    """Index of the top; of a straight flank that is long, of its middle.
+
+    From the end of a flank longer than half a period a side would see nothing else.
+    """
+    top = int(np.argmax(held))
+    level = held >= held[top] - SETTINGS.reliable * np.ptp(held)
+    ahead = np.argsort((phase - phase[top]) % 1.0)
+    down = np.flatnonzero(~level[ahead])
+    run = np.concatenate([ahead[down[-1] + 1 :], ahead[: down[0]]])
+    way = (phase[run] - phase[run[0]]) % 1.0
+    if way[-1] < SETTINGS.long_flank:
+        return top
+    return int(run[np.argmin(np.abs(way - 0.5 * way[-1]))])
+
+
 class _Side(NamedTuple):
     """One side of the top: distances from it that grow, gaps, the power between them."""
 
@@ -88,11 +104,13 @@ def _side(place: np.ndarray, gap: np.ndarray, width: float) -> _Side:
     power = np.inf
     if not flat:
         power = float(np.polyfit(np.log(place[near]), np.log(gap[near]), 1)[0])
+    straight = not np.isfinite(power) or power > SETTINGS.flattest
+    # A flank ends at its last place, not at the first beyond it: nodes are far apart there.
+    flank = straight and first > 0
+    end = place[first - 1] if flank else place[first]
     place, gap = place[first:], gap[first:]
-    inner = np.geomspace(
-        SETTINGS.nearest_node, place[0], SETTINGS.gap_nodes, endpoint=False
-    )
-    if not np.isfinite(power) or power > SETTINGS.flattest:
+    inner = np.geomspace(SETTINGS.nearest_node, end, SETTINGS.gap_nodes, endpoint=flank)
+    if straight:
         inner_gap = np.full(SETTINGS.gap_nodes, SETTINGS.no_gap * width)
     else:
         inner_gap = gap[0] * (inner / place[0]) ** power

@@ -1,5 +1,7 @@
 """What accuracy costs: errors are those of the run, failures keep their place."""
 
+from types import SimpleNamespace
+
 import diffrax
 import numpy as np
 import pytest
@@ -91,6 +93,35 @@ def test_success_in_another_well_is_called_wrong(data):
     assert "wrong" in next(x for x in table.splitlines() if x.startswith("LSODA"))
 
 
+def test_advice_is_among_what_was_measured(data):
+    told = data.attrs["advice"]
+    kept = [f"For 1e-02 eps take method='{name}', a" for name in ("auto", "Kvaerno3")]
+    assert told.startswith(tuple(kept))
+    assert told.endswith("; success reported half an eps or more off: LSODA.")
+
+
+def test_nothing_begins_after_the_total_and_ours_come_first(scene, monkeypatch):
+    begun = []
+
+    def noted(run, *rest):
+        begun.append(rest)
+        clock.append(1.0)  # each run takes a second
+        return measured(run, *rest)
+
+    clock: list[float] = []
+    measured = cost_of_accuracy.timed
+    monkeypatch.setattr(cost_of_accuracy, "timed", noted)
+    counter = SimpleNamespace(perf_counter=lambda: sum(clock))
+    monkeypatch.setattr(cost_of_accuracy, "time", counter)
+    methods = ["LSODA", "Kvaerno3", "auto"]
+    cost = fx.work_precision(scene, EPS, 1.0, methods, [0.5, 1e-2], TIMES, total=2.5)
+    tried = cost.status[0, 0] != fx.Status.NOT_TRIED
+    assert tried.sel(solver="auto").values.tolist() == [True, True]
+    assert tried.sel(solver="LSODA").values.tolist() == [True, False]
+    assert not tried.sel(solver="Kvaerno3").any()
+    assert len(begun) == 3
+
+
 @pytest.mark.parametrize(
     "method", ["Radau", pytest.param("Kvaerno3", marks=pytest.mark.slow)]
 )
@@ -132,6 +163,8 @@ def test_bad_arguments_are_named(scene):
         ({"gamma": [[1.0], [2.0]]}, r"gamma = \[\[1\.\]\n .*a number or a list"),
         ({"gamma": 0.0}, "gamma = 0"),
         ({"seconds": 0.0}, "seconds = 0"),
+        ({"total": 0.0}, "total = 0"),
+        ({"total": "long"}, "total = 'long': needs a number, seconds > 0, or None"),
         ({"repeats": 0}, "repeats = 0"),
         ({"repeats": 2.5}, "repeats = 2.5"),
         ({"progress": "no"}, "progress = 'no'"),

@@ -1,0 +1,69 @@
+"""Which method and accuracy to take, in one sentence, by what was measured."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ..wiggly import Status
+from .settings import SETTINGS
+
+
+class _Choice(NamedTuple):
+    """A method at an accuracy in all cells: `error` in eps, `seconds` of all together."""
+
+    method: str
+    accuracy: float
+    error: float
+    seconds: float
+
+
+def advice(data: xr.Dataset) -> str:
+    """What to take for errors within 1e-3 eps, of the runs of `work_precision`.
+
+    Candidates were asked for no less, ended OK in every cell and came within it there, by a
+    reference that can tell. The fastest is named, and by how much the next method is
+    slower. Where the accuracies are all looser, the tightest of them is what is wanted. At
+    the end those who reported success and were wrong.
+    """
+    asked = data.accuracy.values
+    close = asked <= SETTINGS.wanted
+    wanted = float(asked[close].max() if close.any() else asked.min())
+    choices = sorted(_choices(data, wanted), key=lambda one: one.seconds)
+    cells = data.sizes["gamma"] * data.sizes["eps"]
+    where = f"in all {cells} cells" if cells > 1 else "in the cell"
+    if not choices:
+        start = f"No method was measured to keep {wanted:.0e} eps {where}"
+    else:
+        best = choices[0]
+        start = (
+            f"For {wanted:.0e} eps take method={best.method!r}, "
+            f"accuracy={best.accuracy:.0e}: z within {best.error:.1e} eps {where} "
+            f"in {best.seconds:.2g} s"
+        )
+        others = [one for one in choices if one.method != best.method]
+        if others:
+            times = f"{others[0].seconds / best.seconds:.2g} times as long"
+            start += f", the next method, {others[0].method!r}, takes {times}"
+    return f"{start}{_wrong(data)}."
+
+
+def _choices(data: xr.Dataset, wanted: float) -> list[_Choice]:
+    found = []
+    for accuracy in data.accuracy.values[data.accuracy.values <= wanted]:
+        for name in data.solver.values:
+            run = data.sel(solver=name, accuracy=accuracy)
+            # What the reference cannot tell is no better than the reference.
+            error = float(np.maximum(run.error, data.reference_error).max(skipna=False))
+            if np.all(run.status == Status.OK) and error <= wanted:
+                seconds = float(run.seconds.sum())
+                found.append(_Choice(str(name), float(accuracy), error, seconds))
+    return found
+
+
+def _wrong(data: xr.Dataset) -> str:
+    wrong = data.wrong.sum(["gamma", "eps", "accuracy"])
+    names = [str(name) for name in data.solver.values[wrong.values > 0]]
+    return (
+        f"; success reported half an eps or more off: {', '.join(names)}" if names else ""
+    )
