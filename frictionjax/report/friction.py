@@ -9,7 +9,7 @@ import numpy as np
 from ..contact import Nap, nap
 from ..effects import NapFlip, nap_flip_among
 from ..limit import solve_limit
-from ..model import friction
+from ..model import Scene, friction
 from .job import Job, joined
 from .tables import coefficient_table, coefficients_by_name, errors_by_name, row_table
 
@@ -83,10 +83,8 @@ def nap_figures(job: Job, bending_stiffness: float | None, folder: Path) -> str:
     own = plot.draw_own_nap(job.scene.profile, job.scene.bristle, stiffness)
     pictures = [("nap", own)]
     notes = []
-    found = _nap_of(job, stiffness)
-    if stiffness is not None and found.turns_over:
-        effect = NapFlip(np.asarray(stiffness))  # type: ignore[arg-type]
-        scene = job.scene.replace(effects=(effect,))
+    scene = turning_scene(job, stiffness)
+    if nap_flip_among(scene.effects) is not None:
         ts = np.linspace(0.0, float(scene.duration), _TIMES)
         limit = solve_limit(scene, ts)
         if np.any(np.asarray(limit.mode) != 1):
@@ -96,6 +94,20 @@ def nap_figures(job: Job, bending_stiffness: float | None, folder: Path) -> str:
             notes.append("under the load of the scene the rod does not turn over")
     names = [path.name for path in write_figures(folder, iter(pictures))]
     return "\n".join(names + notes)
+
+
+def turning_scene(job: Job, bending_stiffness: float | None) -> Scene:
+    """The scene of a job with its rod as flexible as asked for, else as in the scene.
+
+    A rod that turns over does so, and that alone; a stiffer one keeps its nap.
+    """
+    stiffness = _stiffness(job, bending_stiffness)
+    if stiffness is None:
+        return job.scene
+    if not _nap_of(job, stiffness).turns_over:
+        return job.scene.replace(effects=())
+    effect = NapFlip(np.asarray(stiffness))  # type: ignore[arg-type]
+    return job.scene.replace(effects=(effect,))
 
 
 def _stiffness(job: Job, asked: float | None) -> float | None:
