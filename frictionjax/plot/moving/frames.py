@@ -3,6 +3,7 @@
 import numpy as np
 
 _TIME = 0.5  # share of the frames that go by time; the others by the way gone
+_LEAST = 1e-9
 
 
 def frame_rows(time: np.ndarray, places: np.ndarray, count: int) -> np.ndarray:
@@ -14,7 +15,8 @@ def frame_rows(time: np.ndarray, places: np.ndarray, count: int) -> np.ndarray:
     """
     if time.size <= count:
         return np.arange(time.size)
-    steps = _TIME * np.diff(time) / (time[-1] - time[0])
+    # No step is 0, or rows at one time and place could be too many to be parted.
+    steps = _TIME * np.diff(time) / (time[-1] - time[0]) + _LEAST
     way = np.hypot(*np.diff(places, axis=0).T)
     if way.sum() > 0:
         steps = steps + (1 - _TIME) * way / way.sum()

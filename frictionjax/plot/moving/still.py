@@ -13,6 +13,8 @@ from .bristle_artist import BristleArtist
 from .close_up import CloseUp
 from .places import Places, places_along
 
+_TIGHT: Any = {"columnspacing": 1.2, "handlelength": 1.5, "handletextpad": 0.5}
+
 
 @styled
 def draw_bristle(
@@ -54,7 +56,7 @@ def draw_bristle(
     for part in parts:
         part.move_to(row)
     handles = [h for h in main.get_legend_handles_labels()[0] if _seen(h)]
-    figure.legend(handles=handles, loc="outside lower left", ncols=6)
+    figure.legend(handles=handles, loc="outside lower left", ncols=7, **_TIGHT)
     return figure
 
 

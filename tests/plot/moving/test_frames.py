@@ -48,3 +48,11 @@ def test_all_rows_where_there_are_no_more():
     np.testing.assert_array_equal(rows, np.arange(7))
     rest = frame_rows(time, np.zeros((7, 2)), 3)  # nothing moves: by time alone
     np.testing.assert_array_equal(rest, [0, 3, 6])
+
+
+def test_rows_that_stand_still_are_parted_too():
+    time = np.linspace(0, 1, 100)
+    time[1:90] = time[1]
+    rows = frame_rows(time, np.zeros((100, 2)), 50)
+    assert rows.size == 50
+    assert np.all(np.diff(rows) >= 1)
