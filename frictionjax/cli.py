@@ -240,24 +240,47 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
     is_flag=True,
     help="Also report.html there, or in frictionjax-nap: one page that tells it all.",
 )
+@click.option(
+    "--movie", metavar="FILE.gif", help="Also the bristle sliding, its force beside it."
+)
+@click.option(
+    "--eps", type=_POSITIVE, help="Of the movie, in m. [of the scene's, slips seen best]"
+)
 def nap(
     scene: str | None,
     bending_stiffness: float | None,
     as_json: bool,
     out: str | None,
     report: bool,
+    movie: str | None,
+    eps: float | None,
     **surface: Any,
 ) -> None:
     """Friction with and against the nap, and whether the bristle turns over."""
     started = time.perf_counter()
     _start()
-    from .report import nap_document, nap_figures, nap_text, read_job, require_folder
+    from .report import (
+        nap_document,
+        nap_figures,
+        nap_text,
+        read_job,
+        require_folder,
+        require_gif,
+        write_movie,
+    )
 
     out = "frictionjax-nap" if report and out is None else out
     folder = None if out is None else require_folder(out)
+    file = None if movie is None else require_gif(movie)
+    if file is None and eps is not None:
+        raise click.UsageError("--eps: needs --movie FILE.gif beside it")
     job = read_job(scene, **surface)._replace(report=_asked(report, started))
     if folder is not None:
         _write(folder, lambda place: nap_figures(job, bending_stiffness, place))
+    if file is not None:
+        film = file
+        told = _interruptible(lambda: write_movie(job, bending_stiffness, eps, film))
+        click.echo(f"Written to {told}", err=as_json)
     if not as_json:
         click.echo(nap_text(job, bending_stiffness))
         return

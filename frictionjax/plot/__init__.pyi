@@ -3,6 +3,8 @@ from .convergence import draw_convergence as draw_convergence
 from .design import draw_profile_fit as draw_profile_fit
 from .design_maps import draw_design_map as draw_design_map
 from .loop import draw_loop as draw_loop
+from .moving import animate as animate
+from .moving import draw_bristle as draw_bristle
 from .nap import draw_nap_loops as draw_nap_loops
 from .nap import draw_own_nap as draw_own_nap
 from .nap import draw_turning as draw_turning

@@ -13,6 +13,8 @@ from .friction import nap_text as nap_text
 from .job import ReportRequest as ReportRequest
 from .job import number_list as number_list
 from .job import read_job as read_job
+from .movie import require_gif as require_gif
+from .movie import write_movie as write_movie
 from .order_cost import run_order_cost as run_order_cost
 from .place import filled as filled
 from .place import require_folder as require_folder

@@ -13,7 +13,7 @@ from ..contact import Nap, nap
 from ..effects import NapFlip, nap_flip_among
 from ..io import scene_document
 from ..limit import solve_limit
-from ..model import friction
+from ..model import Scene, friction
 from ..profiles import AbstractProfile
 from .job import Job, joined
 from .nap_page import NapFacts, nap_page
@@ -123,10 +123,8 @@ def _nap_pictures(job: Job, asked: float | None) -> "tuple[dict[str, Figure], li
     own = plot.draw_own_nap(_profile_of(job), bristle, stiffness)
     pictures = {"nap": own}
     notes = []
-    found = _nap_of(job, stiffness)
-    if stiffness is not None and found.turns_over:
-        effect = NapFlip(np.asarray(stiffness))  # type: ignore[arg-type]
-        scene = job.scene.replace(effects=(effect,))
+    scene = turning_scene(job, stiffness)
+    if nap_flip_among(scene.effects) is not None:
         ts = np.linspace(0.0, float(scene.duration), _TIMES)
         limit = solve_limit(scene, ts)
         if np.any(np.asarray(limit.mode) != 1):
@@ -141,6 +139,20 @@ def _profile_of(job: Job) -> AbstractProfile:
     """`job` always has one."""
     assert job.scene.profile is not None
     return job.scene.profile
+
+
+def turning_scene(job: Job, bending_stiffness: float | None) -> Scene:
+    """The scene of a job with its rod as flexible as asked for, else as in the scene.
+
+    A rod that turns over does so, and that alone; a stiffer one keeps its nap.
+    """
+    stiffness = _stiffness(job, bending_stiffness)
+    if stiffness is None:
+        return job.scene
+    if not _nap_of(job, stiffness).turns_over:
+        return job.scene.replace(effects=())
+    effect = NapFlip(np.asarray(stiffness))  # type: ignore[arg-type]
+    return job.scene.replace(effects=(effect,))
 
 
 def _stiffness(job: Job, asked: float | None) -> float | None:

@@ -1,11 +1,20 @@
 """The shape of a rod that is bent between hinges."""
 
+from typing import Any
+
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
 from .._checks import require
+from .._compile import Program
 from .elastica import parameter_of
+
+
+@Program
+def _parameter(short: Any) -> Any:
+    """Compiled once: pictures ask for one shape after the other."""
+    return parameter_of(short)
 
 
 def bent_shape(
@@ -25,7 +34,7 @@ def bent_shape(
     allowed = f"0 < chord <= {length:.6g}"
     require(0 < chord <= length + slack, "chord", chord, allowed)
     short = jnp.asarray(max(1 - chord / length, 0.0))
-    m = max(float(parameter_of(short)), 0.0)
+    m = max(float(_parameter(short)), 0.0)
     phi = np.linspace(0.5 * np.pi, 1.5 * np.pi, count)
     first, second = ellipkinc(phi, m), ellipeinc(phi, m)
     scale = length / (first[-1] - first[0])

@@ -10,9 +10,9 @@ from ..._checks import require
 from ...contact import mechanics
 from ...effects import nap_flip_among
 from ...model import Scene
-from ...rods import bent_shape
 from ...turning import FlippingRod, flipping_rod
-from ..style import GUIDE, LIMIT, STRIP, Picture, colour, styled
+from ..moving import friction_levels, rod_between
+from ..style import GUIDE, LIMIT, STRIP, Picture, colour, draw_level, styled
 
 _BENT = (0.5, 0.0, -0.5)  # where roots stand ahead of their tips, in reaches
 _PERIODS = 400  # of the surface that are drawn, at most: more would be a grey bar
@@ -57,7 +57,7 @@ def draw_turning(scene: Scene, solution: Any, eps: Any = None) -> Figure:
     way = figure.add_subplot(grid[1, :])
     force = figure.add_subplot(grid[2, :], sharex=way)
     _way(way, data, instants)
-    _force(force, data, law, instants)
+    _force(force, data, scene, instants)
     return figure
 
 
@@ -122,13 +122,9 @@ def _bristle(
             low = np.asarray(eps * profile(ground / eps))
     axes.fill_between(ground - x, low, -depth, color=STRIP, linewidth=0)
     axes.plot(ground - x, low, color=GUIDE, linewidth=0.8)
-    along = np.array([instant.root - x, float(law.bent.height) - foot])
-    chord = float(np.hypot(*along))
-    shape = bent_shape(length, min(chord, length))
-    along = along / chord
-    aside = np.array([-along[1], along[0]])  # to the left
-    points = np.outer(along, shape[0]) + instant.side * np.outer(aside, shape[1])
-    axes.plot(points[0], foot + points[1], color=colour(0), linewidth=2.2)
+    root, tip = np.array([instant.root - x, float(law.bent.height)]), np.array([0.0, foot])
+    points = rod_between(root, tip, length, instant.side)
+    axes.plot(*points, color=colour(0), linewidth=2.2)
     axes.plot([0], [foot], "o", color=colour(1), markersize=4)
     axes.plot([instant.root - x], [float(law.bent.height)], "s", color=LIMIT, markersize=5)
     top = float(law.bent.height) + depth
@@ -164,23 +160,10 @@ def _way(axes: Any, data: xr.Dataset, instants: list[_Instant]) -> None:
     axes.legend(loc="best")
 
 
-def _force(axes: Any, data: xr.Dataset, law: FlippingRod, instants: list[_Instant]) -> None:
+def _force(axes: Any, data: xr.Dataset, scene: Scene, instants: list[_Instant]) -> None:
     axes.plot(data.time, data.support_force, color=LIMIT, linewidth=1.2)
-    levels = (
-        (law.standing.rho_with, "\\rho_{with}"),
-        (-law.turned.rho_with, "-\\rho_{turned}"),
-    )
-    for level, name in levels:
-        axes.axhline(level, color=GUIDE, linewidth=0.9, zorder=1)
-        axes.annotate(
-            f"${name}$ = {level:.3g} N",
-            (1.0, level),
-            xycoords=axes.get_yaxis_transform(),
-            xytext=(4, 0),
-            textcoords="offset points",
-            va="center",
-            color="#555555",
-        )
+    for level, name in friction_levels(scene):
+        draw_level(axes, level, name)
     _shade(axes, data)
     _marks(axes, instants)
     axes.set(xlabel="t (s)", ylabel="force on the root (N)")

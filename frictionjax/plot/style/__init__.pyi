@@ -1,3 +1,4 @@
+from .levels import draw_level as draw_level
 from .look import COLOURS as COLOURS
 from .look import GUIDE as GUIDE
 from .look import LIMIT as LIMIT

@@ -3,7 +3,7 @@
 import io
 from collections.abc import Callable
 from functools import wraps
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import matplotlib
 import numpy as np
@@ -13,6 +13,8 @@ from ..._checks import as_text, require
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_Drawn = TypeVar("_Drawn")
 
 # Told apart by colour-blind readers, in this order: Okabe and Ito's, then Tol's muted
 # indigo, wine and olive, darker than all of those.
@@ -52,11 +54,11 @@ class Picture(Figure):
         return buffer.getvalue()
 
 
-def styled(draw: Callable[..., Figure]) -> Callable[..., Figure]:
+def styled(draw: Callable[..., _Drawn]) -> Callable[..., _Drawn]:
     """Run a drawing function under these settings, whatever the user's own are."""
 
     @wraps(draw)
-    def inside(*args: Any, **kwargs: Any) -> Figure:
+    def inside(*args: Any, **kwargs: Any) -> _Drawn:
         with matplotlib.rc_context():
             matplotlib.rcdefaults()
             matplotlib.rcParams.update(_SETTINGS)

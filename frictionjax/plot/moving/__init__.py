@@ -1,0 +1,5 @@
+"""Bristles over their surface, at one time and moving."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

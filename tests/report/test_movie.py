@@ -1,0 +1,47 @@
+"""A moving picture from the shell."""
+
+import pytest
+from command_line import error_line, run
+from PIL import Image
+
+import frictionjax as fx
+from frictionjax.report import movie
+
+
+def test_a_movie_of_a_rod_that_turns_over(tmp_path, monkeypatch):
+    monkeypatch.setattr(movie, "_FRAMES", 3)
+    monkeypatch.setattr(movie, "_TIMES", 301)
+    run("scenes", "nap-flip", "--out", tmp_path / "mine.toml")
+    path = tmp_path / "turns.gif"
+    told = run("nap", tmp_path / "mine.toml", "--movie", path, "--eps", 0.08).stdout
+    assert f"Written to {path}: 3 frames, eps = 0.08 m, gamma = 1\n" in told
+    assert "turns over, and friction is rho_with and rho_flipped" in told
+    with Image.open(path) as gif:
+        assert gif.n_frames == 3
+
+
+def test_the_eps_whose_slips_can_be_told_apart():
+    scene = fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.Homothetic(1.0),
+        fx.supports.Spring(1.0),
+        fx.loads.Triangle(1.1, 4.0),
+        4.0,
+    )
+    # The limit goes from -1 to 1.
+    assert movie._seen_best(scene, [0.5, 0.1, 0.05, 0.01]) == 0.1
+    assert movie._seen_best(scene, [0.01, 0.001]) == 0.01
+    still = scene.replace(load=fx.loads.Triangle(0.05, 4.0))
+    assert movie._seen_best(still, [0.01, 0.1]) == 0.1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--movie", "x.mp4"], "movie = 'x.mp4': needs a file named *.gif"),
+        (["--movie", "none/x.gif"], "movie = 'none/x.gif': needs a file in a folder"),
+        (["--eps", "0.1"], "--eps: needs --movie FILE.gif beside it"),
+    ],
+)
+def test_what_is_refused(arguments, message):
+    assert message in error_line(run("nap", *arguments))
