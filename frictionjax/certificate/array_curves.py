@@ -8,7 +8,7 @@ from .._checks import exchanged
 from ..effects import CompliantArray
 from ..model import Scene
 from ..turning import SidedSupport
-from .plain_curve import CurveMeasures, plain_certificate, verdict
+from .plain_curve import plain_certificate, together
 from .verdicts import Certificate
 
 
@@ -33,27 +33,4 @@ def array_certificate(
         held = SidedSupport(scene.support, jnp.ones(()), jnp.asarray(shift))
         moved = exchanged(alone, {"support": held})
         found.append(plain_certificate(moved, eps, viscosity, scale, ts, row + shift))
-    return _together(found)
-
-
-def _together(found: list[Certificate]) -> Certificate:
-    worst = CurveMeasures(
-        distance=max(one.distance for one in found),
-        missing_force=max(one.missing_force for one in found),
-        viscosity=_farthest_from_1([one.viscosity for one in found]),
-        spacing=max(one.spacing for one in found),
-    )
-    return Certificate(
-        residual=sum(one.residual for one in found),
-        residual_error=sum(one.residual_error for one in found),
-        scale=found[0].scale,
-        slips=sum(one.slips for one in found),
-        skipped=sum(one.skipped for one in found),
-        status=verdict(worst),
-        **worst._asdict(),
-    )
-
-
-def _farthest_from_1(ratios: list[float]) -> float:
-    """NaN, of bristles that do not slip, where all are."""
-    return max(ratios, key=lambda ratio: -1.0 if np.isnan(ratio) else abs(ratio - 1))
+    return together(found)

@@ -6,7 +6,14 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import as_real, known_numbers, require, require_real, with_nan
-from ..effects import CompliantArray, Engine, Inertia, inertia_among
+from ..effects import (
+    CompliantArray,
+    Engine,
+    Inertia,
+    NapFlip,
+    inertia_among,
+    nap_flip_among,
+)
 from ..model import Scene, coefficients_jit, require_reach, require_times, scene_for
 from .plain_curve import plain_certificate
 from .verdicts import Certificate, CertificateStatus, nothing_known
@@ -16,7 +23,15 @@ __all__ = ["Certificate", "CertificateStatus", "certify"]
 
 @with_nan
 def certify(
-    scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any, *, velocity: Any = None
+    scene: Scene,
+    eps: Any,
+    gamma: Any,
+    ts: Any,
+    z: Any,
+    *,
+    velocity: Any = None,
+    root: Any = None,
+    mode: Any = None,
 ) -> Certificate:
     """Certify any sampled curve, whatever made it, against the scene alone.
 
@@ -52,6 +67,18 @@ def certify(
     that are wrong: both are `UNRESOLVED`. Noise of eps/100, or a shift by it, is not
     accepted everywhere: from states beyond a fold others follow.
 
+    Of a scene with `effects.NapFlip` it needs `root`, u in m, and `mode`, (n,), as `solve`
+    gives them; the curve begins in a mode, 1 or -1. Stretches in a mode are judged as above
+    from their side, turnings by the equation of the root over its pinned tip, and both meet
+    where the compression is the critical load and where the root has come to the other
+    end, energies going on there: `residual` is the sum over all of them, jumps and all.
+    `status` is `TURN` where the rod turns over at a load that differs from that by more
+    than 0.3% of the critical load, or where it should have and did not; `skipped` counts
+    these stretches too. That is told by the load alone, so that noise of eps/100 does not
+    matter. Samples have to come as close in turnings as in slips, and from the last one
+    before a turning to its first one the load may change by 0.3% of the critical load: else
+    it is `UNRESOLVED`.
+
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.
     """
@@ -63,12 +90,14 @@ def certify(
     z = _require_states(ts, z, array)
     inertia = inertia_among(scene.effects)
     speeds = _require_velocity(ts, velocity, inertia)
+    flip = nap_flip_among(scene.effects)
+    roots, modes = _require_root(ts, root, flip), _require_mode(ts, mode, flip)
     require_reach(scene.potential, jnp.asarray(as_real(eps)))
     eps = float(eps)
     viscosity = eps ** float(gamma)
     law = coefficients_jit(scene.potential)
     scale = eps * float(law.rho_plus - law.rho_minus)
-    if not (np.all(np.isfinite(z)) and np.all(np.isfinite(speeds))):
+    if not all(np.all(np.isfinite(column)) for column in (z, speeds, roots)):
         return nothing_known(scale)
     if array is not None:
         from .array_curves import array_certificate  # nothing else needs it
@@ -86,6 +115,20 @@ def certify(
             ts=ts,
             z=z,
             velocity=speeds,
+        )
+    if flip is not None:
+        from .turning_curve import turning_certificate  # nothing else needs it
+
+        return turning_certificate(
+            scene,
+            flip,
+            eps=eps,
+            viscosity=viscosity,
+            scale=scale,
+            ts=ts,
+            z=z,
+            root=roots,
+            mode=modes,
         )
     return plain_certificate(scene, eps, viscosity, scale, ts, z)
 
@@ -119,3 +162,30 @@ def _require_velocity(ts: np.ndarray, velocity: Any, inertia: Inertia | None) ->
     speeds = known_numbers(velocity)
     require(speeds.shape == ts.shape, "velocity", velocity, needs)
     return speeds.astype(float)
+
+
+def _require_root(ts: np.ndarray, root: Any, flip: NapFlip | None) -> np.ndarray:
+    """The root of a rod that turns over; none of others."""
+    if flip is None:
+        require(root is None, "root", root, "None, or a scene with effects.NapFlip")
+        return np.zeros(0)
+    needs = f"u in m of the shape {ts.shape} of ts, as solve gives it"
+    require(root is not None, "root", root, needs)
+    places = known_numbers(root)
+    require(places.shape == ts.shape, "root", root, needs)
+    return places.astype(float)
+
+
+def _require_mode(ts: np.ndarray, mode: Any, flip: NapFlip | None) -> np.ndarray:
+    """The modes of a rod that turns over; none of others."""
+    if flip is None:
+        require(mode is None, "mode", mode, "None, or a scene with effects.NapFlip")
+        return np.zeros(0, int)
+    needs = f"1, -1 and 0 of the shape {ts.shape} of ts, as solve gives them"
+    require(mode is not None, "mode", mode, needs)
+    modes = known_numbers(mode)
+    require(modes.shape == ts.shape, "mode", mode, needs)
+    require(np.all(np.isin(modes, (-1, 0, 1))), "mode", mode, needs)
+    first = "1 or -1: where the tip of a rod in between is, nothing tells"
+    require(modes[0] != 0, "mode[0]", 0, first)
+    return modes.astype(int)

@@ -1,5 +1,6 @@
 """Forces along a sampled curve, and what they integrate to between its samples."""
 
+import abc
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -9,7 +10,7 @@ import numpy as np
 from jaxtyping import Array
 
 from .._checks import Real
-from ..loads import AbstractLoad
+from ..loads import AbstractPull
 from ..model import AbstractPotential, Scene
 from ..numerics import concatenated, rows_of
 from ..supports import AbstractSupport
@@ -49,28 +50,35 @@ class Intervals(NamedTuple):
     residual: Column
 
 
-class Force(eqx.Module):
-    """`f(t, z) = l(t) - Phi'(z) - V_eps'(z)` in N where the tip is at well + y.
+class AbstractForce(eqx.Module):
+    """`f(t, z) = l(t) - Phi'(z) - V'(z)` in N where the tip is at well + y.
 
     In the tip coordinate nothing is inverted between samples, and y counted from a well
     nearby keeps all digits at any z/eps.
     """
 
-    potential: AbstractPotential
-    support: AbstractSupport
-    load: AbstractLoad
-    eps: Real
+    support: eqx.AbstractVar[AbstractSupport]
+    load: eqx.AbstractVar[AbstractPull]
+    eps: eqx.AbstractVar[Real]
 
+    @abc.abstractmethod
+    def tip(self, z: Real) -> tuple[Real, Real]:
+        """Well and y at a state in m."""
+
+    @abc.abstractmethod
     def state(self, well: Real, y: Real) -> Real:
         """z in m."""
-        return self.eps * (well + y) + self.potential.offset(y, self.eps)
+
+    @abc.abstractmethod
+    def pull(self, y: Real) -> tuple[Real, Real]:
+        """`V'` in N, and `dz/dp`."""
 
     def stretch(self, y: Real) -> Real:
         """`dz/dy` in m."""
-        return self.eps * self.potential.tip_force(y, self.eps)[1]
+        return self.eps * self.pull(y)[1]
 
     def __call__(self, t: Real, well: Real, y: Real) -> Real:
-        wiggle, _ = self.potential.tip_force(y, self.eps)
+        wiggle, _ = self.pull(y)
         return self.load(t) - self.support.force(self.state(well, y)) - wiggle
 
     def with_slope(self, t: Real, well: Real, y: Real) -> tuple[Real, Real]:
@@ -80,8 +88,26 @@ class Force(eqx.Module):
         return force, by_tip / self.stretch(y)
 
 
-def _sample(force: Force, t: Real, z: Real) -> CurveSamples:
-    well, inside = force.potential.tip(z, force.eps)
+class Force(AbstractForce):
+    """Of a tip on the surface: V is `V_eps`."""
+
+    potential: AbstractPotential
+    support: AbstractSupport
+    load: AbstractPull
+    eps: Real
+
+    def tip(self, z: Real) -> tuple[Real, Real]:
+        return self.potential.tip(z, self.eps)
+
+    def state(self, well: Real, y: Real) -> Real:
+        return self.eps * (well + y) + self.potential.offset(y, self.eps)
+
+    def pull(self, y: Real) -> tuple[Real, Real]:
+        return self.potential.tip_force(y, self.eps)
+
+
+def _sample(force: AbstractForce, t: Real, z: Real) -> CurveSamples:
+    well, inside = force.tip(z)
 
     def along(y: Array) -> tuple[Array, Array]:
         value, slope = force.with_slope(t, well, y)
@@ -90,7 +116,7 @@ def _sample(force: Force, t: Real, z: Real) -> CurveSamples:
     one = jnp.ones_like(inside)
     slope, by_tip, value = jax.jvp(along, (inside,), (one,), has_aux=True)
     bend = by_tip / force.stretch(inside)
-    wiggle, _ = force.potential.tip_force(inside, force.eps)
+    wiggle, _ = force.pull(inside)
     return CurveSamples(well, inside, value, slope, bend, force.load(t), wiggle)
 
 
@@ -103,7 +129,7 @@ def _hermite(
     return rise, chord + (1 - s) * (1 - 3 * s) * a + s * (3 * s - 2) * b
 
 
-def _along(force: Force, viscosity, ends, first, last):
+def _along(force: AbstractForce, viscosity, ends, first, last):
     """Middle, `int f dt` and residual on the cubic with the end slopes given."""
     t0, t1, left, right = ends
     step = t1 - t0
@@ -121,7 +147,7 @@ def _along(force: Force, viscosity, ends, first, last):
     return impulse, step * jnp.sum(THREE_WEIGHTS * defect) / (2 * viscosity), y[1]
 
 
-def _interval(force: Force, viscosity: Real, ends) -> Intervals:
+def _interval(force: AbstractForce, viscosity: Real, ends) -> Intervals:
     t0, t1, left, right = ends
     step = t1 - t0
     chord = (right.well - left.well) + (right.inside - left.inside)
@@ -142,7 +168,7 @@ def _interval(force: Force, viscosity: Real, ends) -> Intervals:
     return Intervals(jnp.where(stiff, flat, bent), doubt, middle, slope, residual)
 
 
-def _rest_residual(force: Force, viscosity: Real, ends) -> Real:
+def _rest_residual(force: AbstractForce, viscosity: Real, ends) -> Real:
     """Residual from the defects at both samples, moving like the equilibrium branch."""
     t0, t1, *samples = ends
     total = 0.0
@@ -153,7 +179,7 @@ def _rest_residual(force: Force, viscosity: Real, ends) -> Real:
 
 
 @eqx.filter_jit
-def _chunk(force: Force, viscosity: Real, ts, z) -> tuple[CurveSamples, Intervals]:
+def _chunk(force: AbstractForce, viscosity: Real, ts, z) -> tuple[CurveSamples, Intervals]:
     samples = jax.vmap(lambda t, s: _sample(force, t, s))(ts, z)
     left = jax.tree_util.tree_map(lambda v: v[:-1], samples)
     right = jax.tree_util.tree_map(lambda v: v[1:], samples)
@@ -168,10 +194,12 @@ def every_second(count: int) -> np.ndarray:
 
 def force_of(scene: Scene, eps: Real) -> Force:
     """The driving force of a scene at one eps."""
-    return Force(scene.potential, scene.support, scene.load, eps)
+    return Force(potential=scene.potential, support=scene.support, load=scene.load, eps=eps)
 
 
-def along_curve(force: Force, viscosity: float, ts, z) -> tuple[CurveSamples, Intervals]:
+def along_curve(
+    force: AbstractForce, viscosity: float, ts, z
+) -> tuple[CurveSamples, Intervals]:
     """Everything at and between the samples, chunk by chunk; NumPy arrays out.
 
     `viscosity` is `eps^gamma`; ts in s and z in m, shapes (n,), n >= 2.

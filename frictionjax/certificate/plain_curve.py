@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..model import Scene
-from .curve import Force, along_curve, every_second, force_of
+from .curve import AbstractForce, Force, along_curve, every_second, force_of
 from .settings import SETTINGS
 from .transits import folds_of, missing_forces, viscosity_ratio
 from .tube import distance
@@ -26,7 +26,12 @@ def plain_certificate(
     scene: Scene, eps: float, viscosity: float, scale: float, ts, z
 ) -> Certificate:
     """Of finite samples; `viscosity` is `eps^gamma`, `scale` the energy of a slip in J."""
-    force = force_of(scene, jnp.asarray(eps))
+    return certificate_under(force_of(scene, jnp.asarray(eps)), viscosity, scale, ts, z)
+
+
+def certificate_under(force: Force, viscosity: float, scale: float, ts, z) -> Certificate:
+    """The same under a force that is known."""
+    eps = float(force.eps)
     at, on = along_curve(force, viscosity, ts, z)
     residual = float(np.sum(on.residual))
     folds = folds_of(force)
@@ -39,7 +44,7 @@ def plain_certificate(
     )
     return Certificate(
         residual=residual,
-        residual_error=_residual_error(force, viscosity, ts, z, residual),
+        residual_error=residual_error(force, viscosity, ts, z, residual),
         scale=scale,
         slips=missing.size,
         skipped=int(np.sum(missing > SETTINGS.missing_force)),
@@ -48,11 +53,35 @@ def plain_certificate(
     )
 
 
-def _residual_error(force: Force, viscosity: float, ts, z, residual: float) -> float:
+def residual_error(force: AbstractForce, viscosity: float, ts, z, residual: float) -> float:
     """From the residual at every second sample: order 2 is claimed where h^6 can be met."""
     keep = every_second(ts.size)
     _, on = along_curve(force, viscosity, ts[keep], z[keep])
     return abs(float(np.sum(on.residual)) - residual) / 3
+
+
+def together(found: list[Certificate]) -> Certificate:
+    """Of several curves: sums, and the worst of them."""
+    worst = CurveMeasures(
+        distance=max(one.distance for one in found),
+        missing_force=max(one.missing_force for one in found),
+        viscosity=_farthest_from_1([one.viscosity for one in found]),
+        spacing=max(one.spacing for one in found),
+    )
+    return Certificate(
+        residual=sum(one.residual for one in found),
+        residual_error=sum(one.residual_error for one in found),
+        scale=found[0].scale,
+        slips=sum(one.slips for one in found),
+        skipped=sum(one.skipped for one in found),
+        status=verdict(worst),
+        **worst._asdict(),
+    )
+
+
+def _farthest_from_1(ratios: list[float]) -> float:
+    """NaN, of curves that do not slip, where all are."""
+    return max(ratios, key=lambda ratio: -1.0 if np.isnan(ratio) else abs(ratio - 1))
 
 
 def verdict(measured: CurveMeasures) -> CertificateStatus:

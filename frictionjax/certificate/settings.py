@@ -52,5 +52,11 @@ class Settings(NamedTuple):
     hopeless: float = 0.5  # moved that far: there is none nearby
     unsure: float = 0.01  # doubt about it
 
+    # Rods that turn over.
+    turned: float = 3e-3  # of the critical load: by so much they may be early or late
+    places: int = 1024  # of one compiled call: a period is looked at there
+    zooms: int = 4  # each by so many, into where a compression is the critical load
+    aside: float = 0.01  # of a gap, from its ends: where in it a mode may change
+
 
 SETTINGS = Settings()

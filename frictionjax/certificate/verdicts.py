@@ -14,12 +14,14 @@ class CertificateStatus(Outcome):
     NOT_FINITE = 1, "the curve holds values that are not finite"
     UNRESOLVED = (
         2,
-        "samples are more than eps/4 apart, or steps between them do not agree: undecided",
+        "samples are more than eps/4 apart, or far apart where a rod turns over, or steps "
+        "between them do not agree: undecided",
     )
     SKIPPED = 3, "a well was crossed without the force that this takes"
     OFF = 4, "the curve is too far from every solution"
     VISCOSITY = 5, "slips take another time than eps^gamma gives them"
     VELOCITY = 6, "the velocity is not that of the curve"
+    TURN = 7, "the rod turns over at another load than the critical one, or not at it"
 
 
 class _Numbers(NamedTuple):
@@ -46,7 +48,7 @@ class Certificate(ShownNumbers, Result, _Numbers):
     well. `viscosity`: measured in slips, relative to `eps^gamma`; NaN without slips.
     `skipped`: wells crossed without the force. `status`: a `CertificateStatus`; `ok`:
     whether the curve is within about eps/100 of a solution; `message`: the verdict. What
-    some of these are for arrays and for tips with mass, `certify` tells.
+    some of these are for arrays, tips with mass and rods that turn over, `certify` tells.
     """
 
     __slots__ = ()

@@ -41,7 +41,7 @@ _DOES: dict[str, frozenset[Engine]] = {
         {_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP, _E.CERTIFICATE}
     ),
     "Noise": frozenset({_E.RESOLVED, _E.SWEEP, _E.ENSEMBLE, _E.FRICTION_CURVE}),
-    "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS}),
+    "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE}),
     "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE}),
 }
 """Of effects that change what moves: the engines that do them."""
@@ -96,7 +96,6 @@ _STANDS = "a scene without it, of a rod that keeps its nap"
 _INSTEAD |= {
     ("NapFlip", _E.WINDOWED): 'method="auto": where a rod turns over no window holds',
     ("NapFlip", _E.PATH): 'method="auto", and scenes of known numbers',
-    ("NapFlip", _E.CERTIFICATE): "residual of solve, of the balance of energies",
     ("NapFlip", _E.COST): "stats of solve, which tell steps",
     ("NapFlip", _E.TRACE): _STANDS,
     ("NapFlip", _E.ENSEMBLE): _STANDS,

@@ -62,6 +62,8 @@ def curve_for(scene):
     asked = {"z": np.tile(z, (arrays[0].offsets.size, 1)) if arrays else z}
     if any(isinstance(e, fx.effects.Inertia) for e in scene.effects):
         asked["velocity"] = np.gradient(z, TS)
+    if any(isinstance(e, fx.effects.NapFlip) for e in scene.effects):
+        asked |= {"root": z + 1.0, "mode": np.ones(TS.size, int)}
     return asked
 
 

@@ -1,0 +1,58 @@
+"""A root over its pinned tip, the rod between them bent: a curve of its own equation."""
+
+import numpy as np
+
+from .._checks import Real
+from ..loads import AbstractPull
+from ..supports import AbstractSupport
+from ..turning import BentForce
+from .curve import AbstractForce, along_curve
+from .plain_curve import CurveMeasures, residual_error, verdict
+from .tube import distance
+from .verdicts import Certificate
+
+
+class BentForceOnRoot(AbstractForce):
+    """`l(t) - Phi'(z) - U'(x)` in N, `x = z - above` how far the root is ahead of the tip.
+
+    y is z/eps, and there are no wells. `above`: the state in m with the root above the tip.
+    """
+
+    rod: BentForce
+    above: Real
+    support: AbstractSupport
+    load: AbstractPull
+    eps: Real
+
+    def tip(self, z: Real) -> tuple[Real, Real]:
+        return 0.0 * z, z / self.eps
+
+    def state(self, well: Real, y: Real) -> Real:
+        return self.eps * (well + y)
+
+    def pull(self, y: Real) -> tuple[Real, Real]:
+        return self.rod.force(self.eps * y - self.above), 1.0 + 0.0 * y
+
+
+def bent_certificate(
+    force: BentForceOnRoot, viscosity: float, scale: float, ts: np.ndarray, z: np.ndarray
+) -> Certificate:
+    """Of finite samples; `viscosity` is `eps^gamma`, `scale` the energy of a slip in J."""
+    eps = float(force.eps)
+    at, on = along_curve(force, viscosity, ts, z)
+    residual = float(np.sum(on.residual))
+    measured = CurveMeasures(
+        distance=distance(ts, z, at, on, eps, viscosity, 0.5 * scale / eps),
+        missing_force=-np.inf,
+        viscosity=np.nan,
+        spacing=float(np.max(np.abs(np.diff(z)))) / eps,
+    )
+    return Certificate(
+        residual=residual,
+        residual_error=residual_error(force, viscosity, ts, z, residual),
+        scale=scale,
+        slips=0,
+        skipped=0,
+        status=verdict(measured),
+        **measured._asdict(),
+    )
