@@ -40,7 +40,7 @@ FLOORS = {
     ],
     "wiggly": [
         {"stepping"},
-        {"equation", "rosenbrock"},
+        {"equation", "rosenbrock", "solved_scene"},
         {"sequential", "lanes", "limit_path", "settings", "solution", "turning"},
         {"slip_map", "inertial"},
         {"enclosure"},

@@ -14,7 +14,7 @@ from ..studies import flag_names
 from ..wiggly import Status, status_of
 from .job import Job, ReportRequest
 from .page import (
-    Drawn,
+    Captioned,
     Page,
     Section,
     definitions,
@@ -175,7 +175,7 @@ def _trust(data: xr.Dataset) -> str:
 
 
 def _picture_section(facts: CostFacts) -> Section:
-    drawn = Drawn(facts.picture, _picture_told(facts.data), _CAPTION)
+    drawn = Captioned(facts.picture, _picture_told(facts.data), _CAPTION)
     return Section("Error against time", [shown(drawn, "work and precision")])
 
 

@@ -12,7 +12,7 @@ from ..coefficients import Coefficients
 from ..model import Scene
 from .job import Job, ReportRequest
 from .page import (
-    Drawn,
+    Captioned,
     Html,
     Page,
     Section,
@@ -134,7 +134,7 @@ def _pictures(facts: DesignFacts) -> list[Html]:
         f"{float(law.rho_minus):.6g} N to the left."
     )
     return [
-        shown(Drawn(figure, f"{facts.verdict} {gives} {_CAPTIONS[n]}", _CAPTIONS[n]), n)
+        shown(Captioned(figure, f"{facts.verdict} {gives} {_CAPTIONS[n]}", _CAPTIONS[n]), n)
         for n, figure in facts.pictures.items()
     ]
 

@@ -12,7 +12,7 @@ from ..contact import Nap
 from ..model import friction
 from .job import Job, ReportRequest
 from .page import (
-    Drawn,
+    Captioned,
     Page,
     Section,
     items,
@@ -153,7 +153,9 @@ _DIRECTIONS = (
 
 def _pictures(facts: NapFacts) -> Section:
     blocks = [
-        shown(Drawn(figure, _told(name, facts.found), _SAYS[name]), name.replace("_", " "))
+        shown(
+            Captioned(figure, _told(name, facts.found), _SAYS[name]), name.replace("_", " ")
+        )
         for name, figure in facts.pictures.items()
     ]
     return Section("Pictures", blocks or [paragraph(_NO_PICTURE)])

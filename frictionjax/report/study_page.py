@@ -22,7 +22,7 @@ from ..studies import (
 )
 from .job import Job, ReportRequest
 from .page import (
-    Drawn,
+    Captioned,
     Html,
     Page,
     Section,
@@ -175,7 +175,7 @@ def _motion(facts: StudyFacts) -> list[Section]:
 
 def _picture(facts: StudyFacts, name: str, figure: Figure) -> Html:
     told, caption = picture_of(name, facts.found, facts.law, _shown_gamma(facts.data))
-    return shown(Drawn(figure, told, caption), name.replace("_", " "))
+    return shown(Captioned(figure, told, caption), name.replace("_", " "))
 
 
 _ERRORS = ("sup_error", "dissipation_error", "strip_excess")

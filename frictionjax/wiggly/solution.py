@@ -1,14 +1,28 @@
 """What a trajectory of the wiggly system is told as."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from .._checks import CodedResult
+from .._checks import CodedResult, require
 from .._text import Named, ShownNumbers
 from .equation import Status
+from .solved_scene import loads_and_forces, require_one_force
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_COLUMNS = {
+    "z": ("m", "state of the wiggly system"),
+    "dissipation": ("J", "energy dissipated since t = 0, int eps^gamma z'^2"),
+    "residual": ("J", "residual of the energy-dissipation balance"),
+    "velocity": ("m s-1", "velocity z'"),
+    "root": ("m", "root u of the rod"),
+    "tip": ("m", "tip p of the rod"),
+    "mode": ("1", "1: the rod as it stands at first; -1: turned over; 0: in between"),
+}
 
 
 class Solution(ShownNumbers, CodedResult, eqx.Module):
@@ -57,6 +71,36 @@ class Solution(ShownNumbers, CodedResult, eqx.Module):
     @property
     def _codes(self) -> Any:
         return self.status_code
+
+    @property
+    def load(self) -> Float[np.ndarray, " n"]:
+        """The load l(t) in N. Raises `ValueError` of a batch, and of a traced solve."""
+        return loads_and_forces(self)[0]
+
+    @property
+    def force(self) -> Float[np.ndarray, " n"]:
+        """`l - Phi'(z)` in N, what friction (and mass) holds against.
+
+        Raises `ValueError` as `load` does, and of compliant arrays and rods that turn over.
+        """
+        require_one_force(self)
+        return loads_and_forces(self)[1]
+
+    def to_dataset(self) -> "xr.Dataset":
+        """What there is over the dimension `time` (s), with units and how it ended.
+
+        Raises `ValueError` of a batch.
+        """
+        import xarray as xr  # nothing else needs it
+
+        require(np.ndim(self.z) == 1, "solution", "a batch", "one trajectory")
+        data = xr.Dataset(coords={"time": ("time", np.asarray(self.ts), {"units": "s"})})
+        for name, (units, meaning) in _COLUMNS.items():
+            if (values := getattr(self, name)) is not None:
+                told = {"units": units, "long_name": meaning}
+                data[name] = "time", np.asarray(values), told
+        ended = self.status.name, self.message, self.how
+        return data.assign_attrs(zip(("status", "message", "values"), ended, strict=True))
 
     def _in_words(self) -> str:
         ended, steps = self._ended, np.asarray(self.stats["steps"])

@@ -44,6 +44,7 @@ from .arrays import integrate_scene
 from .equation import Status, StepPlan, plan_steps, require_accuracy
 from .sequential import MAX_STEPS, integrate, is_ours, solver_of
 from .solution import Solution
+from .solved_scene import noting_the_scene
 
 _ACCURACY = 1e-3
 
@@ -349,6 +350,7 @@ def _called_for(found: Simulated, *numbers: Any, key: Any, **options: Any) -> So
     return dataclasses.replace(solution, counts=counts, how=how)
 
 
+@noting_the_scene
 @with_nan
 def solve(
     scene: Scene,

@@ -6,7 +6,7 @@ from .markup import paragraph as paragraph
 from .markup import preformatted as preformatted
 from .markup import table_region as table_region
 from .mathematics import equation as equation
-from .pictures import Drawn as Drawn
+from .pictures import Captioned as Captioned
 from .pictures import shown as shown
 from .skeleton import Page as Page
 from .skeleton import Section as Section

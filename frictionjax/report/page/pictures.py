@@ -21,7 +21,7 @@ _DECIMALS = re.compile(r"(\.\d\d)\d+")
 _NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 
 
-class Drawn(NamedTuple):
+class Captioned(NamedTuple):
     """A picture, `told`: what it shows with its numbers, and how to read it."""
 
     figure: Figure
@@ -29,7 +29,7 @@ class Drawn(NamedTuple):
     caption: str
 
 
-def shown(drawn: Drawn, name: str) -> Html:
+def shown(drawn: Captioned, name: str) -> Html:
     """A picture with its caption, for light and for dark pages; `name` for keys alone."""
     light = vector_graphic(drawn.figure)
     width, height = drawn.figure.get_size_inches()

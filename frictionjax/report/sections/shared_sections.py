@@ -9,7 +9,7 @@ from ..._text import ResultTable
 from ...coefficients import Coefficients
 from ...explain import composed_equation
 from ...model import Scene
-from ..page import Drawn, Html, Section, equation, paragraph, shown, table_region
+from ..page import Captioned, Html, Section, equation, paragraph, shown, table_region
 from .part_numbers import part_rows
 
 _TIMES = 1201
@@ -38,10 +38,12 @@ def scene_section(scene: Scene, law: Coefficients, eps: float, gamma: float) -> 
     text = composed_equation(scene, eps, gamma).text()
     blocks: list[Html] = [
         paragraph(scene_sentence(scene)),
-        shown(Drawn(plot.draw_parts(scene), _parts_told(scene), _PARTS), "the scene"),
+        shown(Captioned(plot.draw_parts(scene), _parts_told(scene), _PARTS), "the scene"),
         equation(text),
         paragraph(_EQUATION),
-        shown(Drawn(plot.draw_forces(scene), _forces_told(scene, law), _FORCES), "forces"),
+        shown(
+            Captioned(plot.draw_forces(scene), _forces_told(scene, law), _FORCES), "forces"
+        ),
         table_region(part_rows(scene), "Numbers of the scene"),
     ]
     return Section("The scene", blocks)
