@@ -416,7 +416,7 @@ def _refuse(beside: str, *names: str) -> None:
     type=_POSITIVE,
     default=30.0,
     show_default=True,
-    help="Seconds after which nothing more is begun; our methods come first.",
+    help="Seconds after which no more runs of general solvers are begun; ours come first.",
 )
 @click.option(
     "--order-within",

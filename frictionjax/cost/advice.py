@@ -8,6 +8,8 @@ import xarray as xr
 from ..wiggly import Status
 from .settings import SETTINGS
 
+_SAME = 1.1  # ratio of times that a second run may turn round
+
 
 class _Choice(NamedTuple):
     """A method at an accuracy in all cells: `error` in eps, `seconds` of all together."""
@@ -22,9 +24,9 @@ def advice(data: xr.Dataset) -> str:
     """What to take for errors within 1e-3 eps, of the runs of `work_precision`.
 
     Candidates were asked for no less, ended OK in every cell and came within it there, by a
-    reference that can tell. The fastest is named, and by how much the next method is
-    slower. Where the accuracies are all looser, the tightest of them is what is wanted. At
-    the end those who reported success and were wrong.
+    reference that can tell. The fastest is named, of ties the method that stands first, and
+    by how much the next one is slower. Where the accuracies are all looser, the tightest of
+    them is what is wanted. At the end those who reported success and were wrong.
     """
     asked = data.accuracy.values
     close = asked <= SETTINGS.wanted
@@ -35,7 +37,7 @@ def advice(data: xr.Dataset) -> str:
     if not choices:
         start = f"No method was measured to keep {wanted:.0e} eps {where}"
     else:
-        best = choices[0]
+        best = _first_of_ties(choices, data.solver.values.tolist())
         start = (
             f"For {wanted:.0e} eps take method={best.method!r}, "
             f"accuracy={best.accuracy:.0e}: z within {best.error:.1e} eps {where} "
@@ -43,9 +45,16 @@ def advice(data: xr.Dataset) -> str:
         )
         others = [one for one in choices if one.method != best.method]
         if others:
-            times = f"{others[0].seconds / best.seconds:.2g} times as long"
+            ratio = others[0].seconds / best.seconds
+            times = f"{ratio:.2g} times as long" if ratio >= _SAME else "as long"
             start += f", the next method, {others[0].method!r}, takes {times}"
     return f"{start}{_wrong(data)}."
+
+
+def _first_of_ties(choices: list[_Choice], order: list[str]) -> _Choice:
+    """Of those that are about as fast as the fastest, the first in the order asked for."""
+    ties = [one for one in choices if one.seconds < _SAME * choices[0].seconds]
+    return min(ties, key=lambda one: (order.index(one.method), -one.accuracy))
 
 
 def _choices(data: xr.Dataset, wanted: float) -> list[_Choice]:

@@ -65,9 +65,14 @@ class _Effort(NamedTuple):
     until: float  # on the clock of `perf_counter`: nothing begins later
 
     def allows(self, method: Any, first: bool) -> bool:
-        """Whether there is time to begin, and to compile what diffrax's solvers need."""
-        foreign = first and not is_ours(method) and method not in SCIPY
-        needs = SETTINGS.compiles if foreign else 0.0
+        """Whether there is time to begin, and to compile what diffrax's solvers need.
+
+        Ours always may: what others take is to be held against something.
+        """
+        if is_ours(method):
+            return True
+        compiled = method in SCIPY or not first
+        needs = 0.0 if compiled else SETTINGS.compiles
         return time.perf_counter() + needs < self.until
 
 
@@ -203,8 +208,8 @@ def work_precision(
     fit into half a second, and no more than fit into `seconds`. `seconds`: of a method that
     takes longer tighter accuracies are not tried; SciPy's runs are ended then, diffrax's
     after a million steps for each second, ours, which cannot be, go on. `total`: seconds
-    after which nothing more is begun, for all together; None: no bound. Ours are measured
-    first, in all cells; what is left out is NOT_TRIED.
+    of all together after which no run of a general solver is begun; None: no bound. Ours
+    are measured first, in all cells, in any case; what is left out is NOT_TRIED.
 
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took

@@ -43,6 +43,13 @@ def test_the_fastest_of_all_that_kept_it_and_the_next_one(data):
     assert "in all 2 cells in 0.002 s" in told
     assert "the next method, 'auto', takes 1e+02 times as long" in told
     assert "off" not in told
+    alike = data.assign(seconds=data.seconds * 0 + 0.1)
+    faster = changed(alike, "seconds", 0.095, solver="resolved")
+    for tied in (alike, faster):
+        assert "take method='auto', accuracy=1e-03" in advice(tied)
+        assert advice(tied).endswith(
+            "in 0.2 s, the next method, 'resolved', takes as long."
+        )
 
 
 @pytest.mark.parametrize(

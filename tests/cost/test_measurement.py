@@ -100,7 +100,10 @@ def test_advice_is_among_what_was_measured(data):
     assert told.endswith("; success reported half an eps or more off: LSODA.")
 
 
-def test_nothing_begins_after_the_total_and_ours_come_first(scene, monkeypatch):
+@pytest.mark.parametrize(("total", "others"), [(2.5, [True, False]), (0.5, [False, False])])
+def test_no_other_begins_after_the_total_and_ours_come_first(
+    scene, monkeypatch, total, others
+):
     begun = []
 
     def noted(run, *rest):
@@ -114,12 +117,12 @@ def test_nothing_begins_after_the_total_and_ours_come_first(scene, monkeypatch):
     counter = SimpleNamespace(perf_counter=lambda: sum(clock))
     monkeypatch.setattr(cost_of_accuracy, "time", counter)
     methods = ["LSODA", "Kvaerno3", "auto"]
-    cost = fx.work_precision(scene, EPS, 1.0, methods, [0.5, 1e-2], TIMES, total=2.5)
+    cost = fx.work_precision(scene, EPS, 1.0, methods, [0.5, 1e-2], TIMES, total=total)
     tried = cost.status[0, 0] != fx.Status.NOT_TRIED
     assert tried.sel(solver="auto").values.tolist() == [True, True]
-    assert tried.sel(solver="LSODA").values.tolist() == [True, False]
+    assert tried.sel(solver="LSODA").values.tolist() == others
     assert not tried.sel(solver="Kvaerno3").any()
-    assert len(begun) == 3
+    assert len(begun) == 2 + sum(others)
 
 
 @pytest.mark.parametrize(
