@@ -4,6 +4,7 @@ import numpy as np
 
 _TIME = 0.5  # share of the frames that go by time; the others by the way gone
 _LEAST = 1e-9
+_ROUNDING = 1e-9  # of a frame
 
 
 def frame_rows(time: np.ndarray, places: np.ndarray, count: int) -> np.ndarray:
@@ -22,7 +23,7 @@ def frame_rows(time: np.ndarray, places: np.ndarray, count: int) -> np.ndarray:
         steps = steps + (1 - _TIME) * way / way.sum()
     share = _largest_share(steps, count - 1)
     passed = np.concatenate([[0.0], np.cumsum(np.minimum(steps, share) / share)])
-    rows = np.searchsorted(passed, np.arange(count))
+    rows = np.searchsorted(passed, np.arange(count) - _ROUNDING)
     rows[0], rows[-1] = 0, time.size - 1
     spread = np.arange(count)  # where rounding puts two into one step
     rows = np.maximum.accumulate(rows - spread) + spread
