@@ -3,8 +3,21 @@
 Batched convergence studies of the systems of P. Gidoni and A. DeSimone, "On the genesis
 of directional friction through bristle-like mediating elements" (2017), in JAX.
 
-Names are imported when first used, so `import frictionjax` costs nothing. `__init__.pyi`
-lists them.
+Names are imported when first used, so `import frictionjax` costs nothing.
+
+A scene: `Scene` of parts from `profiles`, `bristles`, `supports`, `loads`, with `effects`;
+`GivenPotential` in place of the first two; `potential`, `load_scene`, `save_scene`.
+
+- Which friction? `friction`, `nap`, `steady_slide`, `friction_curve`.
+- How does it move? `solve`, `solve_limit`, `mechanics`; with noise `ensemble`, `histogram`.
+- Can I trust it? `Status`, `certify`.
+- How fast is the limit reached? `sweep`, `study`.
+- What does accuracy cost? `work_precision`, `predict_cost`, `fit_budget`, `order_cost`.
+- Which effects does it call for? `explain`.
+- Which surface or bristle do I need? `Target`, `fit_profile`, `fit_angle`, `fit_slide`,
+  `fit_slide_profile`, `design_map`, `tolerance`, `check_design`.
+- Which surface is behind a measurement? `measured`, `Trace`, `fit_trace`, `simulate_trace`.
+- Pictures: `plot`. Speed: `use_fast_cpu`, `keep_compiled`.
 """
 
 import lazy_loader

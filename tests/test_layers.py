@@ -259,6 +259,7 @@ CUTTING_ACROSS = {
     "test_layers",
     "test_notebooks",
     "test_pages",
+    "test_promises",
     "test_shapes",
     "_checks/test_arrays",
     "_checks/test_inside_jit",

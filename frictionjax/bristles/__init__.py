@@ -1,4 +1,10 @@
-"""Bristles: tip offset `A(eta)` and energy `F(eta)`, nothing else."""
+"""Bristles: tip offset `A(eta)` and energy `F(eta)`, nothing else.
+
+- `VerticalSpring`, `SlantedSpring`, `AngularSpring`: the three models of the paper.
+- `Homothetic`: the surface's shape as it is (Prandtl-Tomlinson); `Linear`: any bristle to
+  leading order.
+- `Custom(offset, energy)`: your own two functions; or derive from `AbstractBristle`.
+"""
 
 from .angular_spring import AngularSpring as AngularSpring
 from .bristle import AbstractBristle as AbstractBristle

@@ -1,4 +1,11 @@
-"""Effects: what a scene may call for beyond the plain system, one a file."""
+"""Effects: what a scene may call for beyond the plain system, one a file.
+
+- `LeadingOrder`: without what is of higher order in eps.
+- `Inertia(mass)`: slips that run on; `Noise(temperature)`: thermal noise.
+- `RigidArray(offsets)`, `CompliantArray(offsets)`: many bristles on one root.
+- `AxialLoad(bending_stiffness)`: how near a rod is to buckling; `NapFlip`: it turns over.
+- Your own: derive from `AbstractEffect`.
+"""
 
 from .abstract import AbstractEffect as AbstractEffect
 from .abstract import Stage as Stage

@@ -1,4 +1,10 @@
-"""Loads `l(t)`: what pulls the far end of the support, as a force."""
+"""Loads `l(t)`: what pulls the far end of the support, as a force.
+
+- `Sine`, `Triangle`, `Ramp`, `PiecewiseLinear`: the usual ones.
+- `Pulled(position, rest_length)`: given by where the far end of the spring is.
+- `Custom(fn)`: your own function, whose turning points are found (`UnprovedLoad` warns
+  where a short pulse may have gone unseen); or derive from `AbstractLoad`.
+"""
 
 from .custom import Custom as Custom
 from .custom import UnprovedLoad as UnprovedLoad

@@ -1,4 +1,10 @@
-"""Surface profiles `w`: 1-periodic, C^2, dimensionless (height and y in periods)."""
+"""Surface profiles `w`: 1-periodic, C^2, dimensionless (height and y in periods).
+
+- `Sine(slope)`, `Fourier(cos, sin)`: waves; `Polyline`: straight flanks with round corners.
+- `Spline(heights)`, `Fourier.from_heights(x, heights)`: surfaces known by samples, which
+  say how well these determine the steepest slopes (`SlopeErrors`, `SlopesUndetermined`).
+- `Custom(fn)`: your own function; or derive from `AbstractProfile`.
+"""
 
 from .custom import Custom as Custom
 from .fourier import Fourier as Fourier
