@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from command_line import error_line, run
+from html_pages import checked_page
 
 import frictionjax as fx
 from frictionjax.cost.machine_cost import MachineCost
@@ -99,12 +100,16 @@ def test_a_study_has_the_effects_of_its_scene(tmp_path):
     scene = fx.Scene(fx.profiles.Sine(0.1), bristle, *parts, effects=effects)
     fx.save_scene(scene, tmp_path / "mine.toml")
     options = ["--eps", "0.05,0.04,0.03", "--gamma", "1", "--no-progress"]
-    result = run("study", tmp_path / "mine.toml", *options, "--out", tmp_path / "made")
+    options += ["--report", "--out", tmp_path / "made"]
+    result = run("study", tmp_path / "mine.toml", *options)
     assert result.exit_code == 0, result.stderr
     assert "Inertia\ngamma = 1: the mass does not fall faster" in result.stdout
     assert "as nobody has measured scenes with such effects" in result.stderr
     data = xr.load_dataset(tmp_path / "made" / "study.nc", engine="h5netcdf")
     assert np.all(data.beta > 0)
+    page = checked_page((tmp_path / "made" / "report.html").read_text(encoding="utf-8"))
+    assert "the mass does not fall faster" in page.text
+    assert "Inertia mass 1 kg/m^exponent" in page.text
     assert fx.load_scene(tmp_path / "made" / "scene.toml").effects
 
 
@@ -202,7 +207,7 @@ def test_study_of_a_measured_map(tmp_path):
 def test_study_of_every_row_of_a_map(tmp_path):
     folder = tmp_path / "out"
     options = ["--heights", grooves(tmp_path), "--harmonics", "2", "--rows"]
-    result = run("study", *SMALL, *options, "--out", folder)
+    result = run("study", *SMALL, *options, "--report", "--out", folder)
     assert result.exit_code == 0, result.stderr
     assert result.stderr.startswith("Expected: 3 rows, each about ")
     assert "Orders over the rows of the map" in result.stdout
@@ -212,6 +217,10 @@ def test_study_of_every_row_of_a_map(tmp_path):
     with xr.open_dataset(folder / "orders.nc", engine="h5netcdf") as orders:
         assert orders.order.sizes == {"scene": 3, "gamma": 2}
     assert {"spread.nc", "convergence.png"} <= {path.name for path in folder.iterdir()}
+    page = checked_page((folder / "report.html").read_text(encoding="utf-8"))
+    assert "Over 3 rows of the map the motion comes" in page.text
+    assert "The energy balance of the worst that did not fail closes to" in page.text
+    assert "study scene.toml" not in page.text  # which holds their mean
 
 
 def test_figures(tmp_path):

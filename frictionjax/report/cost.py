@@ -85,7 +85,7 @@ def run_cost(
         coefficients = coefficient_table(friction(job.scene), job.error)
         columns = _COLUMNS + _calls(data)
         cells = [MeasuredCell(*cell) for cell in measured_cells(data)]
-        facts = CostFacts(job, data, cells, columns, coefficients, picture, toml)
+        facts = CostFacts(job, data, cells, columns, coefficients, picture, toml, seconds)
         write_whole(folder / "report.html", cost_page(facts, job.report))
     return text
 

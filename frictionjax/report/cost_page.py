@@ -47,7 +47,8 @@ class MeasuredCell(NamedTuple):
 
 
 class CostFacts(NamedTuple):
-    """What was measured; `columns`: what those of the tables mean."""
+    """What was measured; `columns`: what those of the tables mean; `seconds`: after which
+    a run was ended."""
 
     job: Job
     data: xr.Dataset
@@ -56,6 +57,7 @@ class CostFacts(NamedTuple):
     coefficients: ResultTable
     picture: Figure
     toml: str
+    seconds: float
 
 
 class _Best(NamedTuple):
@@ -77,7 +79,6 @@ _ABOUT = (
     "are timed side by side, and are judged by a reference that is more accurate than all "
     "of them: their own word that they have succeeded is not taken for it."
 )
-_AGAIN = "frictionjax cost scene.toml --out again --report"
 _PYTHON = """\
 import frictionjax as fx
 import xarray as xr
@@ -113,13 +114,27 @@ def cost_page(facts: CostFacts, asked: ReportRequest) -> str:
                 coefficient_section(law, facts.coefficients),
                 _cost(data),
                 origin_section(origin),
-                reproduction_section(origin, facts.toml, [_AGAIN], _FILES, _PYTHON),
+                reproduction_section(origin, facts.toml, [_again(facts)], _FILES, _PYTHON),
                 words_section(_WORDS),
             ],
             made_by=f"Written by {data.attrs.get('source', 'frictionjax')}. "
             f"{scene_sentence(job.scene)}",
         )
     )
+
+
+def _again(facts: CostFacts) -> str:
+    """The command with everything in it: the scene file does not hold all."""
+    data = facts.data
+    lists = {
+        "eps": [f"{float(v)!r}" for v in data.eps.values],
+        "gamma": [f"{float(v)!r}" for v in data.gamma.values],
+        "accuracies": [f"{float(v)!r}" for v in data.accuracy.values],
+        "methods": map(str, data.solver.values),
+    }
+    options = " ".join(f"--{name} {','.join(values)}" for name, values in lists.items())
+    rest = f"--seconds {facts.seconds:g} --out again --report"
+    return f"frictionjax cost scene.toml {options} {rest}"
 
 
 def _shown_cell(data: xr.Dataset) -> xr.Dataset:

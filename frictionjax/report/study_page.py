@@ -30,6 +30,7 @@ from .page import (
     items,
     page_text,
     paragraph,
+    preformatted,
     shown,
     table_region,
 )
@@ -46,6 +47,7 @@ from .sections import (
     words_section,
 )
 from .study_words import picture_of, verdict_sentence
+from .tables import row_table
 
 
 class StudyFacts(NamedTuple):
@@ -93,14 +95,14 @@ def study_page(facts: StudyFacts, asked: ReportRequest) -> str:
         notes.append(f"Effects left out: {facts.data.attrs['left_out']}")
     sections = [
         scene_section(job.scene, facts.law, eps, gamma),
-        coefficient_section(facts.law, facts.coefficients),
+        _friction(facts),
         *_motion(facts),
         _orders(facts),
         *_cells(facts),
         _failures(facts),
         _cost(facts, asked),
         origin_section(origin),
-        reproduction_section(origin, facts.toml, _AGAIN, _files(facts), _PYTHON),
+        reproduction_section(origin, facts.toml, _again(facts), _files(facts), _PYTHON),
         words_section(_WORDS),
     ]
     return page_text(
@@ -116,7 +118,15 @@ def study_page(facts: StudyFacts, asked: ReportRequest) -> str:
     )
 
 
-_AGAIN = ("frictionjax study scene.toml --out again --report",)
+def _again(facts: StudyFacts) -> list[str]:
+    """The command with the scene file; of all rows of a map it holds the mean alone."""
+    if facts.found.spread is not None:
+        return []
+    method = str(facts.data.attrs.get("method", "auto"))
+    option = "" if method == "auto" else f" --method {method}"
+    return [f"frictionjax study scene.toml{option} --out again --report"]
+
+
 _PYTHON = """\
 import frictionjax as fx
 import xarray as xr
@@ -164,6 +174,14 @@ def _origin(facts: StudyFacts, asked: ReportRequest) -> Origin:
 
 def _range(values: np.ndarray) -> str:
     return f"{values.max():.4g} to {values.min():.4g}"
+
+
+def _friction(facts: StudyFacts) -> Section:
+    section = coefficient_section(facts.law, facts.coefficients)
+    if facts.job.rows is None:
+        return section
+    rows = [paragraph("Over the rows of the map:"), preformatted(row_table(facts.job.rows))]
+    return section._replace(blocks=[*section.blocks, *rows])
 
 
 def _motion(facts: StudyFacts) -> list[Section]:
@@ -244,7 +262,7 @@ def _panel(facts: StudyFacts, name: str) -> Figure:
 
 def _cells(facts: StudyFacts) -> list[Section]:
     if facts.found.spread is not None:
-        return []  # rows times cells: they are in study.nc
+        return [Section("What proves them", [paragraph(_worst_sentence(facts.data))])]
     cells = Section(
         "Every computation",
         [paragraph(_CELLS), table_region(sweep_table(facts.data), "Cells")],
@@ -256,6 +274,23 @@ def _cells(facts: StudyFacts) -> list[Section]:
         else [paragraph(_PROOFS), table_region(proofs, "Certificates")]
     )
     return [cells, Section("What proves them", blocks)]
+
+
+def _worst_sentence(data: xr.Dataset) -> str:
+    """Of all rows of a map together, whose cells nobody would read one by one."""
+    told = [f"{data.status.size} computations are in `study.nc`, one by one, each with how"]
+    told.append("its values were obtained.")
+    if "residual" in data and "dissipation" in data:
+        share = data.residual / data.dissipation.isel(time=-1)
+        worst = float(np.nanmax(np.where(data.status == 0, share, np.nan)))
+        told.append(
+            f"The energy balance of the worst that did not fail closes to {worst:.1e} of "
+            "the energy dissipated."
+        )
+    if "bracket" in data and bool((data.how == 1).any()):
+        widest = float(np.nanmax(data.bracket.where(data.how == 1)))
+        told.append(f"The widest bracket used is {widest:.1e} eps wide.")
+    return " ".join(told)
 
 
 _CELLS = (

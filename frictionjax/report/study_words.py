@@ -102,6 +102,11 @@ _CAPTIONS = {
     "strip_excess": (
         f"How far the state goes beyond the strip, at most; the limit never does. {_SIGNS}."
     ),
+    "rows": (
+        "Left: largest distance of the state from the limit against eps, median of the "
+        "rows and a band that holds 90% of them. Right: the order of each row, a line at "
+        "the median; crosses are what the law of theory says."
+    ),
     "convergence": (
         "Largest distances from the limit against eps. Of scenes with jumps, distances of "
         "graphs with jumps filled."
@@ -120,7 +125,7 @@ def picture_of(name: str, found: Study, law: Coefficients, gamma: float) -> tupl
     """What a picture tells, with its numbers, and how to read it."""
     data = found.dataset
     if found.spread is not None:
-        return _over_rows(found), _CAPTIONS["convergence"]
+        return _over_rows(found), _CAPTIONS["rows"]
     if name in _WHAT:
         return _errors_told(found, name), _CAPTIONS[name]
     if name == "trajectories":

@@ -68,6 +68,10 @@ def test_what_was_wrong_and_what_was_not_done_is_listed(page):
     assert page.text.count("wrong success was reported half an eps or more off") == 2
     assert "one <way> against another" in page.text
     assert "frictionjax cost --report" in page.text
+    again = (
+        "--eps 0.01,0.001 --gamma 1.0 --accuracies 0.01,0.001 --methods auto,LSODA,Radau"
+    )
+    assert f"frictionjax cost scene.toml {again} --seconds 1 --out again" in page.text
 
 
 def test_the_first_sentence_is_of_the_fastest_run_that_is_right():

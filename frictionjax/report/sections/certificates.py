@@ -60,7 +60,7 @@ def _ways(cell: "xr.Dataset") -> tuple[str, ...]:
     """Values in time by how each was obtained."""
     if "how" not in cell:
         return ("-",) * 3
-    how = np.atleast_1d(cell.how.values)
+    how = _over_time(cell, "how")
     return tuple(str(int(np.sum(how == way))) for way in range(3))
 
 
@@ -68,9 +68,14 @@ def _widest(cell: "xr.Dataset") -> float:
     """Of the brackets that values were read from, in eps."""
     if "bracket" not in cell or "how" not in cell:
         return float("nan")
-    used = np.atleast_1d(cell.bracket.values)[np.atleast_1d(cell.how.values) == 1]
+    used = _over_time(cell, "bracket")[_over_time(cell, "how") == 1]
     used = used[np.isfinite(used)]
     return float(used.max()) if used.size else float("nan")
+
+
+def _over_time(cell: "xr.Dataset", name: str) -> np.ndarray:
+    """At every time kept, also of what is the same at all of them."""
+    return np.atleast_1d(cell[name].broadcast_like(cell.z).values)
 
 
 def _share(cell: "xr.Dataset") -> float:

@@ -62,16 +62,20 @@ def reproduction_section(
 ) -> Section:
     """The command as typed, the scene file, commands that make the same again, files.
 
-    `again`: commands, run in the folder of the report. `python`: lines that read the data.
+    `again`: commands, run in the folder of the report; none where the scene file does not
+    hold all that is needed. `python`: lines that read the data.
     """
     blocks = [
         paragraph("The command, as it was typed:"),
         preformatted(origin.command),
         paragraph("The scene, as a file; it is in the folder beside this page too:"),
         preformatted(toml.rstrip()),
-        paragraph("In that folder this makes the same numbers again:"),
-        preformatted("\n".join(again)),
     ]
+    if again:
+        blocks += [
+            paragraph("In that folder this makes the same numbers again:"),
+            preformatted("\n".join(again)),
+        ]
     if python:
         blocks += [
             paragraph("In Python the data are read like this:"),

@@ -16,6 +16,8 @@ def test_the_force_of_a_well_ends_at_the_friction_coefficients():
     assert t[-1] == 3.0
     law, force = fx.friction(scene), right.lines[0].get_ydata()
     assert force.max() == pytest.approx(float(law.rho_plus), rel=1e-4)
+    assert force[0] == pytest.approx(force[-1])  # one whole period, with one lowest place
+    assert np.count_nonzero(np.diff(np.sign(np.diff(force)))) == 1
     assert force.min() == pytest.approx(float(law.rho_minus), rel=1e-4)
     levels = [line.get_ydata()[0] for line in right.lines[1:]]
     assert levels == pytest.approx([float(law.rho_plus), float(law.rho_minus)])

@@ -26,6 +26,13 @@ def test_values_are_counted_by_how_they_were_found():
     assert rows[7][5] == "0.002"  # the widest, of those used
 
 
+def test_cells_of_one_way_have_it_at_all_times():
+    """As those of tips with mass, of which every slip is followed."""
+    cells = "gamma", "eps"
+    data = certified().assign(how=(cells, np.zeros((2, 6), dtype=np.int8)))
+    assert certificate_rows(data).rows[6][2:6] == ("61", "0", "0", "-")
+
+
 def test_residuals_are_told_in_joule_and_as_a_share():
     data = certified()
     spent = float(data.dissipation[0, 0, -1])
