@@ -38,16 +38,16 @@ def write_movie(
 ) -> str:
     """A GIF of the bristle of a job as it slides; what it shows, in a line.
 
-    `eps` in m; None: that of the scene's list whose slips can be told apart best. The rod
-    turns over where `bending_stiffness` (N m^2), or that of the scene, makes it.
+    `eps` in m; None: that of the scene's list whose slips can be told apart best; gamma is
+    the largest of its list. The rod turns over where `bending_stiffness` (N m^2), or that
+    of the scene, makes it.
 
     Raises `ValueError` as `plot.animate` does.
     """
     scene = turning_scene(job, bending_stiffness)
     if eps is None:
         eps = _seen_best(scene, job.study["eps"])
-    gammas = np.asarray(job.study["gamma"], dtype=float)
-    gamma = float(gammas[np.argmin(np.abs(gammas - 1))])
+    gamma = float(np.max(job.study["gamma"]))  # least drag: slips look like slips
     ts = np.linspace(0.0, float(scene.duration), _TIMES)
     found = solve(scene, eps, gamma, ts)
     film = plot.animate(scene, found, eps, frames=_FRAMES)
