@@ -55,6 +55,8 @@ class Settings(NamedTuple):
     # Rods that turn over.
     turned: float = 3e-3  # of the critical load: by so much they may be early or late
     places: int = 1024  # of one compiled call: a period is looked at there
+    approach: float = 0.1  # periods from which tips come to a place
+    approaching: int = 65  # steps on that way
     zooms: int = 4  # each by so many, into where a compression is the critical load
     aside: float = 0.01  # of a gap, from its ends: where in it a mode may change
 

@@ -4,25 +4,15 @@ import math
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
-from .._checks import Real
-from .._compile import Program, in_chunks
 from ..effects import NapFlip
 from ..model import BristlePotential, Scene, known_turning_points
 from ..turning import FlippingRod, SceneParts, bent_force, flipping_rod
 from .bent_root import BentForceOnRoot, bent_certificate
-from .critical_places import (
-    Beside,
-    CriticalPlaces,
-    critical_places,
-    force_of_side,
-    overloads,
-)
-from .curve import Force
+from .critical_places import Beside, RodSide
 from .plain_curve import certificate_under, together
 from .settings import SETTINGS
 from .verdicts import Certificate, CertificateStatus, nothing_known
@@ -45,28 +35,6 @@ class TurningSamples(NamedTuple):
         """Stretches of samples in one mode."""
         edges = [0, *(np.flatnonzero(np.diff(self.mode)) + 1).tolist(), self.mode.size]
         return [slice(*pair) for pair in pairwise(edges)]
-
-
-class _Side(NamedTuple):
-    """As seen from a side, 1 or -1: see `turning.sides`. `shift` in m."""
-
-    side: int
-    force: Force
-    places: CriticalPlaces
-    shift: float
-
-    def seen(self, z: Any) -> Any:
-        """A state of this side, in m."""
-        return self.side * (z + self.shift)
-
-    def meant(self, z: float) -> float:
-        """The state in m that one of this side means."""
-        return self.side * z - self.shift
-
-    def standing_at(self, well: float, y: float) -> float:
-        """The state in m with the tip at well + y of this side."""
-        state = _state(self.force, np.asarray(well), np.asarray(y))
-        return self.meant(float(state))
 
 
 class _Change(NamedTuple):
@@ -101,7 +69,7 @@ class _Found(NamedTuple):
 class _Course(NamedTuple):
     law: FlippingRod
     parts: SceneParts
-    sides: dict[int, _Side]
+    sides: dict[int, RodSide]
     eps: float
     viscosity: float
     scale: float
@@ -112,18 +80,16 @@ class _Course(NamedTuple):
     ) -> _Found:
         """A stretch in one mode; `later`: the first time in s at which it is left."""
         side = self.sides[int(some.mode[0])]
-        tips = in_chunks(_tips, SETTINGS.steps, (side.force,), (side.seen(some.z),))
-        near = side.places.beside(*tips)
-        over = overloads(side.force, self.viscosity, side.places, near, some.ts)
+        near = side.beside(some.z)
+        over = side.overloads(self.viscosity, near, some.ts)
         wrong = bool(np.any(near.past & (over > SETTINGS.turned)))
         unseen = self._between_samples(side, some.ts, near)
         ends, pinned = None, None
         if later is not None:
             last = near.at(slice(-1, None))
-            at = np.array([later])
-            after = float(overloads(side.force, self.viscosity, side.places, last, at)[0])
-            wrong |= after < -SETTINGS.turned
-            unseen |= after - float(over[-1]) > SETTINGS.turned
+            (after,) = side.overloads(self.viscosity, last, np.array([later]))
+            wrong |= bool(after < -SETTINGS.turned)
+            unseen |= bool(after - over[-1] > SETTINGS.turned)
             pinned = self._pinned(side, last)
             time = _reached(some.ts[-1], later, -over[-1], after - over[-1])
             ends = _Change(time, side.standing_at(pinned.well, pinned.y))
@@ -164,24 +130,23 @@ class _Course(NamedTuple):
             found = bent_certificate(force, self.viscosity, self.scale, ts, z)
         return _Found(found, apart / self.eps, change=ends)
 
-    def _between_samples(self, side: _Side, ts: _Column, near: Beside) -> bool:
+    def _between_samples(self, side: RodSide, ts: _Column, near: Beside) -> bool:
         """Whether the load turns back past what turns the rod, and no sample tells."""
         turns = self.turning_points
         turns = turns[(turns > ts[0]) & (turns < ts[-1])]
         before = near.at(np.searchsorted(ts, turns) - 1)
-        over = overloads(side.force, self.viscosity, side.places, before, turns)
+        over = side.overloads(self.viscosity, before, turns)
         return bool(np.any(over > SETTINGS.turned))
 
-    def _pinned(self, side: _Side, last: Beside) -> _Pinned:
+    def _pinned(self, side: RodSide, last: Beside) -> _Pinned:
         well, y = float(last.well[0]), float(side.places.place[last.which[0]])
         tip = side.side * self.eps * (well + y)
         return _Pinned(side.side, well, y, tip - self.law.reach)
 
     def _height(self, pinned: _Pinned) -> Any:
         """Of the root above its tip, in m."""
-        force = self.sides[pinned.side].force
-        low = _height(force, np.asarray(pinned.y))
-        return np.asarray(float(self.law.bent.height) - float(low))
+        low = self.sides[pinned.side].surface_at(pinned.y)
+        return np.asarray(float(self.law.bent.height) - low)
 
 
 def turning_certificate(
@@ -241,11 +206,7 @@ def _course(
         reach=jnp.asarray(law.reach),
         critical=jnp.asarray(law.critical),
     )
-    sides = {}
-    for side in (1, -1):
-        force = force_of_side(parts, side, eps)
-        places = critical_places(force, law.critical)
-        sides[side] = _Side(side, force, places, (1 - side) * law.reach)
+    sides = {side: RodSide.of(parts, side, eps) for side in (1, -1)}
     turns = known_turning_points(scene.load, scene.duration, scene.turns)
     return _Course(law, parts, sides, eps, viscosity, scale, turns)
 
@@ -303,21 +264,3 @@ def _reached(first: float, last: float, way: float, made: float) -> float:
     share = min(max(share, SETTINGS.aside), 1 - SETTINGS.aside)
     time = first + share * (last - first)
     return time if first < time < last else math.nan
-
-
-@Program
-def _tips(force: Force, z: Array) -> tuple[Array, Array]:
-    return jax.vmap(force.tip)(z)
-
-
-@Program
-def _state(force: Force, well: Real, y: Real) -> Real:
-    return force.state(well, y)
-
-
-@Program
-def _height(force: Force, y: Real) -> Real:
-    """Of the surface, in m."""
-    potential = force.potential
-    assert isinstance(potential, BristlePotential)
-    return force.eps * potential.profile(y)

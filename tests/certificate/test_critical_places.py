@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 from rods_that_turn import REACH, ROD, SURFACE, turning_scene
 
-from frictionjax.certificate.critical_places import (
-    Beside,
-    critical_places,
-    force_of_side,
-    overloads,
-)
+from frictionjax.certificate.critical_places import Beside, RodSide
 from frictionjax.turning import SceneParts, compression, flipping_rod
 
 EPS = 0.03
@@ -29,8 +24,8 @@ sides = pytest.mark.parametrize("side", [1, -1])
 
 
 def places_of(side):
-    force = force_of_side(PARTS, side, EPS)
-    return force, critical_places(force, LAW.critical)
+    seen = RodSide.of(PARTS, side, EPS)
+    return seen.force, seen.places
 
 
 def compressions(force, y):
@@ -74,7 +69,7 @@ def test_overloads_are_shares_of_the_critical_load():
     force, places = places_of(1)
     near = Beside(*(np.array(v) for v in ([0.0], [0], [False])))
     ts = np.array([1.2])
-    over = overloads(force, 1e-9, places, near, ts)[0]
+    (over,) = RodSide.of(PARTS, 1, EPS).overloads(1e-9, near, ts)
     load = float(SCENE.load(1.2))
     at_rest = float(force.state(0.0, places.place[0])) + float(places.pull[0])
     # A load as much larger than the tip needs there, over what it changes with the share.
