@@ -7,9 +7,9 @@ import numpy as np
 
 from .._checks import as_real, known_numbers, require, require_real, with_nan
 from ..effects import (
+    AbstractEffect,
     CompliantArray,
     Engine,
-    Inertia,
     NapFlip,
     inertia_among,
     nap_flip_among,
@@ -89,9 +89,10 @@ def certify(
     ts = _require_instants(scene, ts)
     z = _require_states(ts, z, array)
     inertia = inertia_among(scene.effects)
-    speeds = _require_velocity(ts, velocity, inertia)
+    speeds = _require_column("velocity", velocity, inertia, "Inertia", "z' in m/s", ts)
     flip = nap_flip_among(scene.effects)
-    roots, modes = _require_root(ts, root, flip), _require_mode(ts, mode, flip)
+    roots = _require_column("root", root, flip, "NapFlip", "u in m", ts)
+    modes = _require_mode(ts, mode, flip)
     require_reach(scene.potential, jnp.asarray(as_real(eps)))
     eps = float(eps)
     viscosity = eps ** float(gamma)
@@ -151,41 +152,26 @@ def _require_states(ts: np.ndarray, z: Any, array: CompliantArray | None) -> np.
     return states.astype(float)
 
 
-def _require_velocity(ts: np.ndarray, velocity: Any, inertia: Inertia | None) -> np.ndarray:
-    """The velocities of a curve with mass; none of others."""
-    if inertia is None:
-        needs = "None, or a scene with effects.Inertia"
-        require(velocity is None, "velocity", velocity, needs)
+def _require_column(
+    name: str, values: Any, effect: AbstractEffect | None, kind: str, needs: str, ts: Any
+) -> np.ndarray:
+    """Values at the times, which curves with an effect of a kind have, and others not."""
+    if effect is None:
+        require(values is None, name, values, f"None, or a scene with effects.{kind}")
         return np.zeros(0)
-    needs = f"z' in m/s of the shape {ts.shape} of ts, as solve gives it"
-    require(velocity is not None, "velocity", velocity, needs)
-    speeds = known_numbers(velocity)
-    require(speeds.shape == ts.shape, "velocity", velocity, needs)
-    return speeds.astype(float)
-
-
-def _require_root(ts: np.ndarray, root: Any, flip: NapFlip | None) -> np.ndarray:
-    """The root of a rod that turns over; none of others."""
-    if flip is None:
-        require(root is None, "root", root, "None, or a scene with effects.NapFlip")
-        return np.zeros(0)
-    needs = f"u in m of the shape {ts.shape} of ts, as solve gives it"
-    require(root is not None, "root", root, needs)
-    places = known_numbers(root)
-    require(places.shape == ts.shape, "root", root, needs)
-    return places.astype(float)
+    needs = f"{needs} of the shape {ts.shape} of ts, as solve gives it"
+    require(values is not None, name, values, needs)
+    known = known_numbers(values)
+    require(known.shape == ts.shape, name, values, needs)
+    return known.astype(float)
 
 
 def _require_mode(ts: np.ndarray, mode: Any, flip: NapFlip | None) -> np.ndarray:
     """The modes of a rod that turns over; none of others."""
-    if flip is None:
-        require(mode is None, "mode", mode, "None, or a scene with effects.NapFlip")
-        return np.zeros(0, int)
-    needs = f"1, -1 and 0 of the shape {ts.shape} of ts, as solve gives them"
-    require(mode is not None, "mode", mode, needs)
-    modes = known_numbers(mode)
-    require(modes.shape == ts.shape, "mode", mode, needs)
-    require(np.all(np.isin(modes, (-1, 0, 1))), "mode", mode, needs)
-    first = "1 or -1: where the tip of a rod in between is, nothing tells"
-    require(modes[0] != 0, "mode[0]", 0, first)
+    needs = "1, -1 and 0"
+    modes = _require_column("mode", mode, flip, "NapFlip", needs, ts)
+    if modes.size:
+        require(np.all(np.isin(modes, (-1, 0, 1))), "mode", mode, needs)
+        first = "1 or -1: where the tip of a rod in between is, nothing tells"
+        require(modes[0] != 0, "mode[0]", 0, first)
     return modes.astype(int)

@@ -1,4 +1,5 @@
 from .design_result import DesignResult as DesignResult
+from .design_result import named_forces as named_forces
 from .free_numbers import FreeParameter as FreeParameter
 from .free_numbers import entries_of as entries_of
 from .free_numbers import free_parameter as free_parameter

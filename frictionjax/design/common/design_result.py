@@ -2,7 +2,8 @@
 
 from typing import Any, ClassVar, Self
 
-from ..._checks import Result
+from ..._checks import Result, as_text
+from ..._text import Named
 from ...io import Document, written
 
 
@@ -29,3 +30,14 @@ class DesignResult(Result):
         Raises `ValueError` for what is no such JSON.
         """
         return cls(**cls.document.parse(source))
+
+
+def named_forces(kind: str, forces: Any, targets: Any) -> list[Named]:
+    """Forces (targets, 2) to the right and to the left in N, beside those wanted."""
+    told = []
+    for index, (found, wanted) in enumerate(zip(forces, targets, strict=True)):
+        which = f" {index + 1}" if len(targets) > 1 else ""
+        for side, name in enumerate(("plus", "minus")):
+            asked = f"wanted {as_text(wanted[side])} N"
+            told.append(Named(f"{kind}_{name}{which}", found[side], "N", asked))
+    return told

@@ -12,7 +12,7 @@ from ...bristles import AbstractBristle
 from ...io import ARRAY, AS_IS, TOLD, Document, by_name, nested, several
 from ...profiles import Fourier
 from ...supports import Spring
-from ..common import DesignResult, Target, require_targets
+from ..common import DesignResult, Target, named_forces, require_targets
 from ..surface import MET, ProfileFit, ProfileStatus, fit_profile
 from .settings import SETTINGS
 from .slide_friction import (
@@ -102,14 +102,7 @@ class SlideProfileFit(ShownNumbers, DesignResult):
         return draw_slide_profile_fit(self)
 
     def _numbers(self) -> list[Named]:
-        told = []
-        for index, (wanted, shown) in enumerate(
-            zip(self.targets, self.achieved, strict=True)
-        ):
-            which = f" {index + 1}" if len(self.targets) > 1 else ""
-            for side, name in enumerate(("plus", "minus")):
-                asked = f"wanted {as_text(wanted[side])} N"
-                told.append(Named(f"{self.force}_{name}{which}", shown[side], "N", asked))
+        told = named_forces(self.force, self.achieved, self.targets)
         bending = self.fit.bending_energy
         return [
             *told,

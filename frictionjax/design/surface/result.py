@@ -16,7 +16,7 @@ from ...contact import Nap, nap
 from ...effects import AbstractEffect, Engine, nap_flip_among
 from ...io import ARRAY, AS_IS, NUMBER, PART, TOLD, Document, Form, by_name, record, several
 from ...profiles import Fourier
-from ..common import EFFECT_FORM, DesignResult, effects_of_scene
+from ..common import EFFECT_FORM, DesignResult, effects_of_scene, named_forces
 from .barrier import heights_of_waves, waves_of_heights
 from .history import History, Start
 from .open_directions import CoefficientIdentifiability, members
@@ -195,14 +195,8 @@ class ProfileFit(ShownNumbers, DesignResult):
         return draw_profile_fit(self)
 
     def _numbers(self) -> list[Named]:
-        told = []
-        for index, (wanted, found) in enumerate(
-            zip(self.targets, self.coefficients, strict=True)
-        ):
-            which = f" {index + 1}" if len(self.targets) > 1 else ""
-            for side, name in enumerate(("rho_plus", "rho_minus")):
-                asked = f"wanted {as_text(wanted[side])} N"
-                told.append(Named(f"{name}{which}", getattr(found, name), "N", asked))
+        forces = [(found.rho_plus, found.rho_minus) for found in self.coefficients]
+        told = named_forces("rho", forces, self.targets)
         told += [Named(name, value, "", "free") for name, value in self.free.items()]
         bound = f"int w''^2; at least {as_text(self.bending_bound)}, proven"
         return [
