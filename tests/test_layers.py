@@ -179,11 +179,7 @@ def test_every_name_of_a_face_can_be_imported(path):
 def test_no_folder_holds_many_files():
     sizes = Counter(package_of(path) for path in FILES if path.name != "__init__.py")
     assert max(sizes.values()) <= MOST_FILES, sizes.most_common(3)
-    assert {path.name for path in ROOT.glob("*.py")} == {
-        "__init__.py",
-        "__main__.py",
-        "cli.py",
-    }
+    assert {path.name for path in ROOT.glob("*.py")} == {"__init__.py", "__main__.py"}
 
 
 def public_names(path):

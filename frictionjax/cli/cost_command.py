@@ -1,0 +1,90 @@
+"""What accuracy costs in time."""
+
+import time
+from typing import Any
+
+import click
+
+from .options import (
+    POSITIVE,
+    numbers_of,
+    out_option,
+    progress_option,
+    refuse_beside,
+    report_option,
+    scene_argument,
+    surface_options,
+)
+from .running import interruptible, report_asked, start, write_folder
+
+
+@click.command()
+@scene_argument
+@surface_options
+@click.option("--eps", help="In m: a list or START:STOP:N. [three of the scene's list]")
+@click.option("--gamma", help="A list or START:STOP:N. [1]")
+@click.option("--accuracies", help="In eps: a list or START:STOP:N. [1e-1 to 1e-6]")
+@click.option(
+    "--methods",
+    help="A list: auto, resolved, windowed, a diffrax solver, LSODA, BDF, Radau.",
+)
+@click.option(
+    "--seconds",
+    type=POSITIVE,
+    default=2.0,
+    show_default=True,
+    help="After which a run is ended; diffrax's after a million steps for each.",
+)
+@click.option(
+    "--total",
+    type=POSITIVE,
+    default=30.0,
+    show_default=True,
+    help="Seconds after which no more runs of general solvers are begun; ours come first.",
+)
+@click.option(
+    "--order-within",
+    type=POSITIVE,
+    help="Instead: which eps give the order of convergence to +- this, and in which time.",
+)
+@out_option("cost")
+@report_option
+@progress_option
+def cost(
+    scene: str | None,
+    eps: str | None,
+    gamma: str | None,
+    accuracies: str | None,
+    methods: str | None,
+    seconds: float,
+    total: float,
+    order_within: float | None,
+    out: str,
+    report: bool,
+    progress: bool,
+    **surface: Any,
+) -> None:
+    """What accuracy costs in time: this library's methods and general solvers."""
+    started = time.perf_counter()
+    start()
+    from ..report import chosen_eps, read_job, require_folder, run_cost, run_order_cost
+
+    if order_within is not None:
+        others = "methods", "accuracies", "seconds", "total", "out", "report", "progress"
+        refuse_beside("--order-within", *others)
+        job = read_job(scene, **surface)
+        job = job._replace(study=job.study | numbers_of(eps=eps, gamma=gamma))
+        within = order_within
+        click.echo(interruptible(lambda: run_order_cost(job, within)))
+        return
+    folder = require_folder(out)
+    cells = {"gamma": [1.0]} | numbers_of(gamma=gamma, accuracies=accuracies, eps=eps)
+    asked = cells.pop("accuracies", None)
+    names = None if methods is None else [name.strip() for name in methods.split(",")]
+    job = read_job(scene, **surface)
+    if "eps" not in cells:
+        cells["eps"] = chosen_eps(job.scene, job.study["eps"])
+    job = job._replace(study=job.study | cells, report=report_asked(report, started))
+    write_folder(
+        folder, lambda place: run_cost(job, place, names, asked, seconds, progress, total)
+    )
