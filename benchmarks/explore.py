@@ -4,11 +4,14 @@
 does for a frame, from the browser's message to bytes that are ready to go: new numbers,
 checked, solved, packed. `--browser` also draws such frames on the page's canvas in
 Chromium without a window (the extra `browser`), a slider being dragged once a frame.
+`--kernel` sends the same messages to a Jupyter kernel, one after the other, and then 60 a
+second, whatever comes back: how many are answered, how many dropped, how late answers are.
 """
 
 import argparse
 import base64
 import shutil
+import threading
 import time
 from pathlib import Path
 
@@ -91,6 +94,84 @@ def drawn_in_browser(frames):
     return 1e-3 * np.array(waits)
 
 
+OPEN = """
+import jax
+jax.config.update("jax_enable_x64", True)
+import frictionjax as fx
+fx.use_fast_cpu()
+fx.keep_compiled()
+page = fx.explore()
+print(page.model_id)
+"""
+
+
+class Kernel:
+    """A page in a Jupyter kernel, as a browser talks to it."""
+
+    def __init__(self):
+        from jupyter_client.manager import start_new_kernel
+
+        self._manager, self._client = start_new_kernel(kernel_name="python3")
+        self._client.execute(OPEN)
+        self._page = self._next("stream")["text"].strip()
+
+    def close(self):
+        self._manager.shutdown_kernel(now=True)
+
+    def _next(self, kind):
+        while True:
+            message = self._client.get_iopub_msg(timeout=120)
+            if message["msg_type"] == "error":
+                raise RuntimeError(message["content"]["evalue"])
+            if message["msg_type"] == kind:
+                return message["content"]
+
+    def ask(self, angle):
+        setting = PageSetting(angle=float(angle))._asdict()
+        content = {"view": "benchmark", "setting": setting}
+        data = {"comm_id": self._page, "data": {"method": "custom", "content": content}}
+        message = self._client.session.msg("comm_msg", data)
+        self._client.shell_channel.send(message)
+
+    def heard(self):
+        """The angle of the next answer."""
+        while True:
+            state = self._next("comm_msg")["data"].get("state", {})
+            if "told" in state:
+                return state["told"]["setting"]["angle"]
+
+
+def one_by_one(kernel, angles):
+    """Seconds from each message to its answer."""
+    seconds = []
+    for angle in angles:
+        before = time.perf_counter()
+        kernel.ask(angle)
+        assert kernel.heard() == angle
+        seconds.append(time.perf_counter() - before)
+    return np.array(seconds)
+
+
+def in_a_hurry(kernel, angles, rate=60):
+    """Messages at a rate, answered or not: seconds between answers, and how late."""
+    start = time.perf_counter()
+
+    def send():
+        for index, angle in enumerate(angles):
+            time.sleep(max(0.0, start + index / rate - time.perf_counter()))
+            kernel.ask(angle)
+
+    sender = threading.Thread(target=send)
+    sender.start()
+    times, late, angle = [start], [], None
+    while angle != angles[-1]:
+        angle = kernel.heard()
+        times.append(time.perf_counter())
+        late.append(times[-1] - start - np.searchsorted(angles, angle) / rate)
+    sender.join()
+    return np.diff(times), np.array(late)
+
+
 def row(name, seconds):
     """A line of the table: medians, worst, frames a second by their sum."""
     median, worst = 1e3 * np.median(seconds), 1e3 * np.max(seconds)
@@ -102,6 +183,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--browser", action="store_true")
+    parser.add_argument("--kernel", action="store_true")
     options = parser.parse_args()
     jax.config.update("jax_enable_x64", True)
     fx.use_fast_cpu()
@@ -115,8 +197,19 @@ def main():
         row(slider.name, seconds)
         if slider.name == "angle":
             recorded = frames
+    if options.kernel:
+        angles = np.linspace(*ENDS["angle"], options.count)
+        kernel = Kernel()
+        one_by_one(kernel, angles[:5])
+        row("angle, through a kernel", one_by_one(kernel, angles))
+        between, late = in_a_hurry(kernel, angles)
+        row("angle, 60 messages a second", between)
+        kernel.close()
     if options.browser:
         row("canvas alone, in Chromium", drawn_in_browser(recorded))
+    if options.kernel:
+        told = f"{late.size} of {angles.size} messages answered, others dropped"
+        print(f"\n{told}; late by {np.median(late):.2f} s, at most {late.max():.2f} s")
 
 
 if __name__ == "__main__":

@@ -203,15 +203,17 @@ function slider(parent, { label, unit, low, high, step, logarithmic }, moved) {
   const row = document.createElement("label");
   const name = document.createElement("span");
   name.textContent = label;
-  const output = document.createElement("output");
+  const shown = document.createElement("span"); // an <output> would be read out each time
+  shown.className = "value";
   const input = document.createElement("input");
   Object.assign(input, { type: "range", min: toPlace(low), max: toPlace(high), step });
-  row.append(name, output, input);
+  input.setAttribute("aria-label", label); // without the value: aria-valuetext has it
+  row.append(name, shown, input);
   parent.append(row);
   let value = low;
   const tell = () => {
-    output.textContent = `${Number(value.toPrecision(3))} ${unit}`.trim();
-    input.setAttribute("aria-valuetext", output.textContent);
+    shown.textContent = `${Number(value.toPrecision(3))} ${unit}`.trim();
+    input.setAttribute("aria-valuetext", shown.textContent);
   };
   input.addEventListener("input", () => {
     value = toValue(Number(input.value));
