@@ -17,7 +17,7 @@ A scene: `Scene` of parts from `profiles`, `bristles`, `supports`, `loads`, with
 - Which surface or bristle do I need? `Target`, `fit_profile`, `fit_angle`, `fit_slide`,
   `fit_slide_profile`, `design_map`, `tolerance`, `check_design`.
 - Which surface is behind a measurement? `measured`, `Trace`, `fit_trace`, `simulate_trace`.
-- Pictures: `plot`. Speed: `use_fast_cpu`, `keep_compiled`.
+- Pictures: `plot`, and `explore`, by sliders. Speed: `use_fast_cpu`, `keep_compiled`.
 """
 
 import lazy_loader

@@ -27,6 +27,7 @@ from .design import simulate_trace as simulate_trace
 from .design import steady_slide as steady_slide
 from .design import tolerance as tolerance
 from .explain import explain as explain
+from .explore import explore as explore
 from .io import load_scene as load_scene
 from .io import save_scene as save_scene
 from .limit import solve_limit as solve_limit

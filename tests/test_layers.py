@@ -33,7 +33,7 @@ FLOORS = {
         {"cost", "explain"},
         {"plot"},
         {"design"},
-        {"studies", "rate_dependence"},
+        {"studies", "rate_dependence", "explore"},
         {"report"},
         {"cli"},
         {"__main__"},
@@ -243,7 +243,9 @@ def test_packages_that_the_library_imports_are_declared():
     extras = project["optional-dependencies"]
     declared = {
         re.split(r"[^\w-]", requirement)[0].replace("-", "_")
-        for requirement in [*project["dependencies"], *extras["instruments"]]
+        for requirement in sum(
+            (extras[name] for name in ("instruments", "notebooks")), project["dependencies"]
+        )
     }
     needed = set().union(*(imported(path)[1] for path in FILES))
     assert needed - set(sys.stdlib_module_names) <= declared

@@ -17,6 +17,9 @@ from .parts import draw_forces as draw_forces
 from .parts import draw_parts as draw_parts
 from .scenes import draw_scenes as draw_scenes
 from .slide_profile import draw_slide_profile_fit as draw_slide_profile_fit
+from .style import colour as colour
+from .style import new_figure as new_figure
+from .style import styled as styled
 from .trace_fit import draw_trace_fit as draw_trace_fit
 from .trajectories import draw_dissipation as draw_dissipation
 from .trajectories import draw_trajectories as draw_trajectories

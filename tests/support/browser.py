@@ -11,7 +11,7 @@ _ARGUMENTS = [
     *("--no-sandbox", "--disable-gpu", "--disable-background-networking"),
     *("--disable-component-update", "--disable-sync", "--no-first-run"),
 ]
-_RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]
 _SHOWN = """Promise.all([...document.images].map(async image => {
     try { await image.decode(); } catch (error) { return false; }
     const place = image.getBoundingClientRect();
@@ -69,7 +69,7 @@ def look_at(browser, path, colours="light", width=1100, medium="screen"):
     sources = page.evaluate("[...document.images].map(image => image.currentSrc)")
     wider = page.evaluate(_WIDER)
     page.evaluate(files("axe_playwright_python").joinpath("axe.min.js").read_text())
-    found = page.evaluate("rules => axe.run({runOnly: rules})", _RULES)
+    found = page.evaluate("rules => axe.run({runOnly: rules})", RULES)
     context.close()
     told = [
         (one["id"], [node["html"][:90] for node in one["nodes"]])
