@@ -171,7 +171,8 @@ def _require_mode(ts: np.ndarray, mode: Any, flip: NapFlip | None) -> np.ndarray
     needs = "1, -1 and 0"
     modes = _require_column("mode", mode, flip, "NapFlip", needs, ts)
     if modes.size:
-        require(np.all(np.isin(modes, (-1, 0, 1))), "mode", mode, needs)
+        told = f"{needs} of the shape {ts.shape} of ts, as solve gives them"
+        require(np.all(np.isin(modes, (-1, 0, 1))), "mode", mode, told)
         first = "1 or -1: where the tip of a rod in between is, nothing tells"
         require(modes[0] != 0, "mode[0]", 0, first)
     return modes.astype(int)

@@ -104,7 +104,7 @@ def cost_page(facts: CostFacts, asked: ReportRequest) -> str:
             title="What accuracy costs",
             about=_ABOUT,
             verdict=verdict_of_cost(data),
-            first=[items(job.notes)] if job.notes else [],
+            first=[items([str(data.attrs["advice"]), *job.notes])],
             sections=[
                 _picture_section(facts),
                 *_runs(facts),

@@ -40,6 +40,7 @@ def measured(eps=(0.01, 0.001)):
     data = data.assign_coords(coords)
     data.status.attrs["flag_values"] = np.array([int(s) for s in fx.Status], dtype=np.int8)
     data.status.attrs["flag_meanings"] = " ".join(s.name.lower() for s in fx.Status)
+    data.attrs["advice"] = "For 1e-3 eps take <this>."
     return data
 
 
@@ -64,6 +65,7 @@ def test_every_number_of_every_run_is_in_it(page):
 def test_what_was_wrong_and_what_was_not_done_is_listed(page):
     assert "Of 12 runs 2 reported success and were half an eps or more off" in page.text
     assert "LSODA 2" in page.text
+    assert "For 1e-3 eps take <this>." in page.text
     assert "and 4 were too slow or failed" in page.text
     assert page.text.count("wrong success was reported half an eps or more off") == 2
     assert "one <way> against another" in page.text

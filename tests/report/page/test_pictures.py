@@ -7,7 +7,7 @@ import pytest
 from html_pages import PageParts
 from matplotlib.figure import Figure
 
-from frictionjax.report.page.pictures import Drawn, shown, vector_graphic
+from frictionjax.report.page.pictures import Captioned, shown, vector_graphic
 
 
 def figure_of(width):
@@ -23,7 +23,7 @@ def opened(url):
 
 
 def test_a_picture_has_two_looks_and_words():
-    drawn = Drawn(figure_of(3.0), 'rises from 1 to 3 N <b> "', "Force `F`")
+    drawn = Captioned(figure_of(3.0), 'rises from 1 to 3 N <b> "', "Force `F`")
     page = PageParts(shown(drawn, "force"))
     ((image,), (dark,)) = page.of("img"), page.of("source")
     assert image["alt"] == drawn.told
@@ -39,7 +39,7 @@ def test_a_picture_has_two_looks_and_words():
 
 @pytest.mark.parametrize(("width", "regions"), [(5.0, 0), (9.0, 1)])
 def test_wide_pictures_are_moved_instead_of_made_small(width, regions):
-    page = PageParts(shown(Drawn(figure_of(width), "told", "caption"), "a name"))
+    page = PageParts(shown(Captioned(figure_of(width), "told", "caption"), "a name"))
     assert [div["aria-label"] for div in page.of("div")] == ["Picture: a name"] * regions
     assert ("min-width" in page.of("img")[0].get("style", "")) == bool(regions)
 
