@@ -3,10 +3,11 @@
 import math
 from typing import Any
 
+from .._checks import as_text
 from .._text import ResultTable
 from ..bristles import pulling_text
 
-LAW = (
+COEFFICIENTS = (
     ("rho_plus", "N", "friction against motion to the right"),
     ("rho_minus", "N", "friction against motion to the left"),
     ("ratio", "", "-rho_plus/rho_minus"),
@@ -19,7 +20,7 @@ LAW = (
     ("omega_plus", "", "largest slope of the surface, friction/normal force"),
     ("omega_minus", "", "smallest slope of the surface, friction/normal force"),
 )
-BRISTLE = ("alpha", "a")  # the bristle's own, the same on every surface
+OF_THE_BRISTLE = ("alpha", "a")  # the bristle's own, the same on every surface
 # alpha < 0: rho_plus, of a slide to the right, is made by the smallest slope.
 _SLOPES = {"omega_plus": "left", "omega_minus": "right"}
 
@@ -31,11 +32,11 @@ def coefficients_by_name(found: Any) -> dict[str, float]:
     """
     left = float(found.rho_minus)
     numbers = {"ratio": -float(found.rho_plus) / left} if left else {}
-    for name, _, _ in LAW:
+    for name, _, _ in COEFFICIENTS:
         value = getattr(found, name, None)
         if value is not None:
             numbers[name] = float(value)
-    return {name: numbers[name] for name, _, _ in LAW if name in numbers}
+    return {name: numbers[name] for name, _, _ in COEFFICIENTS if name in numbers}
 
 
 def errors_by_name(
@@ -79,12 +80,12 @@ def coefficient_table(found: Any, error: dict[str, float] | None = None) -> Resu
     rows = [
         (
             name,
-            as_number(numbers[name]),
+            as_text(numbers[name]),
             *_plus_minus(name, error),
             unit,
             meaning_of(name, meaning, pulls),
         )
-        for name, unit, meaning in LAW
+        for name, unit, meaning in COEFFICIENTS
         if name in numbers
     ]
     added = ("+-",) if error else ()
@@ -113,10 +114,5 @@ def meaning_of(name: str, meaning: str, pulls: bool) -> str:
 def _plus_minus(name: str, error: dict[str, float] | None) -> tuple[str, ...]:
     if not error:
         return ()
-    known = name in error and name not in BRISTLE
+    known = name in error and name not in OF_THE_BRISTLE
     return (f"{error[name]:.2g}" if known else "",)
-
-
-def as_number(value: float) -> str:
-    """Six digits, as coefficients are shown."""
-    return f"{value:.6g}"

@@ -48,8 +48,8 @@ class Explored(NamedTuple):
 
     def packed(self) -> bytes:
         """All arrays in this order, one after the other, in 32 bits."""
-        arrays = self[self._fields.index("wells") :]
-        return np.concatenate(arrays).astype("<f4").tobytes()  # type: ignore[arg-type]
+        arrays: Any = self[self._fields.index("wells") :]
+        return np.concatenate(arrays).astype("<f4").tobytes()
 
 
 @lru_cache(maxsize=16)
@@ -70,8 +70,8 @@ def scene_at(angle: Any, slope: Any, asymmetry: Any) -> Scene:
 
 @Program
 def _drawn(scene: Scene, eps: Real, gamma: Real) -> dict[str, Any]:
-    # Of traced numbers everything is one program: 10 ms where calls one by one take 40,
-    # most of them in Python (benchmarks/explore.py).
+    # Of traced numbers everything is one program: calls one by one spend most of their
+    # time in Python.
     law = friction(scene)
     motion = solve(scene, eps, gamma, _TIMES, accuracy=_ACCURACY, dissipation=False)
     limit = solve_limit(scene, _TIMES)

@@ -1,7 +1,8 @@
 """Plain-text tables with aligned columns."""
 
+from .._checks import as_text
 from .._text import in_columns
-from ..coefficients import BRISTLE, LAW, as_number, meaning_of
+from ..coefficients import COEFFICIENTS, OF_THE_BRISTLE, meaning_of
 from ..measured import RowCoefficients
 
 _NOISE = (
@@ -17,13 +18,13 @@ def row_table(rows: RowCoefficients) -> str:
     lines = [
         (
             name,
-            as_number(mean[name]),
+            as_text(mean[name]),
             f"{std[name]:.2g}",
             unit,
             meaning_of(name, meaning, mean.get("alpha", 0.0) < 0),
         )
-        for name, unit, meaning in (*LAW, _FITTED)
-        if name not in BRISTLE
+        for name, unit, meaning in (*COEFFICIENTS, _FITTED)
+        if name not in OF_THE_BRISTLE
     ]
     header = ("coefficient", "mean", "std", "unit", "meaning")
     count = f"{len(rows.used)} rows, period {rows.period:.4g} m"

@@ -5,7 +5,7 @@ As a field it would be a leaf of every trajectory, and functions of a scene can 
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import jax
 import numpy as np
@@ -33,7 +33,7 @@ def noting_the_scene(solve: _Solver) -> _Solver:
             _SCENES.put(solution, scene)
         return solution
 
-    return noted  # type: ignore[return-value]
+    return cast(_Solver, noted)
 
 
 def scene_of(solution: Any) -> Scene:

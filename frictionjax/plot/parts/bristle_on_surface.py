@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 from ..._checks import require
 from ...bristles import AngularSpring, Stance
 from ...model import Scene
+from ..moving import coil
 from ..style import LIMIT, STRIP, colour, new_figure, styled
 
 _PERIOD = 0.22  # of the surface as drawn, in heights of the root
 _POINTS = 1201
-_TURNS = 7  # of a spring
 
 
 @styled
@@ -43,10 +43,10 @@ def draw_parts(scene: Scene) -> Figure:
     _surface(axes, profile, height, left, right)
     tip = np.array([0.0, _PERIOD * height * float(profile(jnp.zeros(())))])
     rod = seen is None or isinstance(bristle, AngularSpring)
-    _line(axes, tip, root, 0.05 * height, rod, colour(0), 2.2)
+    _line(axes, tip, root, 0.1 * height, rod, colour(0), 2.2)
     axes.plot(*tip, "o", color=colour(1), markersize=6)
     axes.plot(*root, "s", color=LIMIT, markersize=8)
-    _line(axes, root, end, 0.05 * height, False, LIMIT, 1.2)
+    _line(axes, root, end, 0.1 * height, False, LIMIT, 1.2)
     arrow = {"arrowstyle": "-|>", "color": colour(2), "linewidth": 2}
     axes.annotate("", pulled, end, arrowprops=arrow)
     _words(axes, scene, root, end, height, seen)
@@ -67,16 +67,8 @@ def _surface(axes: Any, profile: Any, height: float, left: float, right: float) 
 
 def _line(axes: Any, a, b, wide: float, straight: bool, shade: Any, width: float) -> None:
     """A rod, or a spring, from one point to another."""
-    if straight:
-        axes.plot(*zip(a, b, strict=True), color=shade, linewidth=width)
-        return
-    along = b - a
-    aside = np.array([-along[1], along[0]]) / np.hypot(*along)
-    shares = np.concatenate([[0.0], np.linspace(0.2, 0.8, 2 * _TURNS + 1), [1.0]])
-    swing = np.zeros(shares.size)
-    swing[2:-2] = np.where(np.arange(shares.size - 4) % 2, -1.0, 1.0)
-    points = a + np.outer(shares, along) + wide * np.outer(swing, aside)
-    axes.plot(*points.T, color=shade, linewidth=width, solid_joinstyle="round")
+    points = np.stack([a, b], axis=1) if straight else coil(a, b, wide)
+    axes.plot(*points, color=shade, linewidth=width, solid_joinstyle="round")
 
 
 def _words(axes: Any, scene: Scene, root, end, height: float, known: Stance | None) -> None:
