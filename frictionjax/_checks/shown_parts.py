@@ -30,6 +30,23 @@ def part_text(part: Any, names: list[str]) -> str:
     return _call(type(part).__name__, given)
 
 
+def exact_text(value: Any) -> str:
+    """Any part with all of its fields, to the last digit of every number."""
+    if isinstance(value, eqx.Module):
+        names = [field.name for field in dataclasses.fields(value)]
+        shown = {name: exact_text(getattr(value, name)) for name in names}
+        return _call(type(value).__name__, shown)
+    if isinstance(value, tuple | list):
+        comma = "," if isinstance(value, tuple) and len(value) == 1 else ""
+        inside = ", ".join(exact_text(v) for v in value) + comma
+        return f"({inside})" if isinstance(value, tuple) else f"[{inside}]"
+    if eqx.is_array_like(value):
+        return repr(np.asarray(value).tolist())
+    if callable(value):
+        return getattr(value, "__qualname__", None) or repr(value)
+    return repr(value)
+
+
 def _value_text(value: Any) -> str:
     """One argument: numbers to six digits, parts as calls, functions by their names."""
     if isinstance(value, tuple | list) and any(isinstance(v, eqx.Module) for v in value):

@@ -6,10 +6,9 @@ from functools import lru_cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-import equinox as eqx
-import jax
 import numpy as np
 
+from .._checks import exact_text
 from ..model import Scene
 from ..wiggly import FLAGS
 
@@ -77,14 +76,6 @@ def _versions(*packages: str) -> list[str]:
     return [version(name) for name in packages]
 
 
-def scene_text(scene: Scene) -> str:
-    """The scene's parts and numbers, readable."""
-    numbers = jax.tree_util.tree_map(
-        lambda leaf: np.asarray(leaf).tolist() if eqx.is_array_like(leaf) else leaf, scene
-    )
-    return eqx.tree_pformat(numbers, short_arrays=False, width=88)
-
-
 def set_meanings(data: "xr.Dataset", meanings: dict[str, tuple[str | None, str]]) -> None:
     """Attach units and long names, and CF flags to `status`."""
     for name, variable in data.variables.items():
@@ -103,7 +94,7 @@ def origin(title: str, scene: Scene | str, **facts: Any) -> dict[str, Any]:
     return {
         "title": title,
         "source": f"frictionjax {_versions('frictionjax')[0]}",
-        "scene": scene if isinstance(scene, str) else scene_text(scene),
+        "scene": scene if isinstance(scene, str) else exact_text(scene),
         "dtype": "float64",
         "versions": ", ".join(map(" ".join, zip(_PACKAGES, known, strict=True))),
         "python": platform.python_version(),

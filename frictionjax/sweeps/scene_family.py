@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._checks import as_text, require
+from .._checks import exact_text, require
 from ..called_for import Simulated
 from ..effects import Engine, require_done
 from ..limit import require_start_in_strip
@@ -18,7 +18,6 @@ from ..model import (
     scene_for,
 )
 from ..slide_laws import LAW_DIMS
-from .provenance import scene_text
 from .scene_columns import Columns, SceneColumns
 
 
@@ -66,7 +65,7 @@ def family_of(
         asked, labels = list(given), list(range(len(given)))
     else:
         asked, labels = [given], None
-    require(asked, "scene", as_text(given), "a Scene, or several")
+    require(asked, "scene", given, "a Scene, or several")
     family = SceneFamily(asked, labels, asked)
     found = family.each(simulate)
     family = family._replace(
@@ -130,5 +129,5 @@ def columns_of_family(found: list[SceneColumns], scenes: list[Scene]) -> Columns
         if room:
             filled = [np.pad(r, (0, room - r.size), constant_values=np.nan) for r in rows]
             columns[name] = (("scene", dim), np.stack(filled))
-    columns["parts"] = (("scene",), np.array([scene_text(scene) for scene in scenes]))
+    columns["parts"] = (("scene",), np.array([exact_text(scene) for scene in scenes]))
     return columns

@@ -86,10 +86,11 @@ def _lags(scene: TabulatedScene, path: Path, eps, gamma, folds: WiggleFolds):
     the power p, 1 where flanks are straight or lags larger than the well's forces.
     """
     drag = path.speed * viscosity_of(eps, gamma)
-    lags, slower = (
-        np.stack(lag_forces(scene.potential, eps, folds, share * drag))
-        for share in (1.0, SETTINGS.slower)
-    )
+    # Both speeds at once: the way through a well, which takes longest, is found once.
+    twice = jax.tree_util.tree_map(lambda each: np.tile(each, 2), folds)
+    drags = np.concatenate([drag, SETTINGS.slower * drag])
+    both = np.stack(lag_forces(scene.potential, np.tile(eps, 2), twice, drags))
+    lags, slower = np.split(both, 2, axis=1)
     powers = np.log(lags / slower) / -np.log(SETTINGS.slower)
     return lags, np.where(powers > SETTINGS.square, 2.0, np.maximum(powers, 1.0))
 
