@@ -23,7 +23,7 @@ from scenes import AMPLITUDE, EDGES, PERIOD, SLOPE, TWO_PI, scene
 
 import frictionjax as fx
 from frictionjax.wiggly.equation.field import TipField
-from frictionjax.wiggly.lanes.lane import LaneCells, LaneScene, Sums
+from frictionjax.wiggly.lanes.lane import LaneCells, LaneScene
 from frictionjax.wiggly.lanes.loops import march
 from frictionjax.wiggly.lanes.queue import Lanes, Segments
 from frictionjax.wiggly.lanes.settings import SETTINGS
@@ -131,9 +131,7 @@ def whole() -> None:
     edge = AMPLITUDE * np.sin(TWO_PI * start / PERIOD) - SLOPE
     ends = edge, edge + SLIPS * EPS, 2 * ones, 2 * ones
     legs = Segments(start, end, *ends, friction=SLOPE * ones, budget=1e6 * ones)
-    found, seconds = best(
-        lambda: march(parts, cells, jobs, legs, SCHEME, Sums(energies=False))
-    )
+    found, seconds = best(lambda: march(parts, cells, jobs, legs, SCHEME, True))
     steps = found.steps.sum()
     scalar = best(lambda: scalar_whole(start, end, well, EPS, 1 / DRAG, TOLERANCE))
     (y, (scalar_steps, *_)), scalar_seconds = scalar

@@ -14,7 +14,7 @@ import numpy as np
 from scenes import AMPLITUDE, EDGES, PERIOD, SLOPE, TWO_PI, scene
 
 import frictionjax as fx
-from frictionjax.wiggly.lanes.lane import LaneCells, LaneScene, Sums
+from frictionjax.wiggly.lanes.lane import LaneCells, LaneScene
 from frictionjax.wiggly.lanes.loops import march
 from frictionjax.wiggly.lanes.queue import Lanes, Segments
 from frictionjax.wiggly.rosenbrock.rodas4p2 import RODAS4P2
@@ -92,7 +92,7 @@ def run(tableau: Tableau, eps: float, gamma: float, tolerance: float):
     seconds = []
     for _ in range(3):
         begin = time.perf_counter()
-        found = march(parts, cells, jobs, legs, tableau, Sums(energies=False))
+        found = march(parts, cells, jobs, legs, tableau, True)
         seconds.append(time.perf_counter() - begin)
     steps = found.steps.sum()
     shares = steps / LANES / SLIPS, found.rejected.sum() / steps

@@ -18,10 +18,10 @@ from .enclosure import (
     no_effort,
 )
 from .equation import Status
-from .lanes import LaneCells, LaneScene, Sums
+from .lanes import LaneCells, LaneScene
 from .limit_path import Path
 from .rosenbrock import Tableau
-from .sums import CellResults, evaluate
+from .sums import CellResults, Sums, evaluate
 
 
 class Cellwise(NamedTuple):
@@ -105,7 +105,7 @@ class AttemptContext(NamedTuple):
             ground=some.ground,
             cells=some.cells,
             tableau=self.tableau,
-            wanted=self.wanted,
+            summed=any(self.wanted),
             accuracy=self.accuracy,
             report=self.report,
             effort=no_effort(some.eps.size),

@@ -14,7 +14,7 @@ from .attempts import AttemptContext, Cellwise, SoFar, merged
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import Report, find_fast_slides
 from .equation import Status
-from .lanes import LaneCells, LaneScene, Room, Sums, prepare
+from .lanes import LaneCells, LaneScene, Room, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, path_of
 from .plan import Planned, in_phases, lane_scene
@@ -22,7 +22,7 @@ from .plans_ahead import plan_of_cells
 from .rosenbrock import Tableau
 from .settings import SETTINGS
 from .slip_map import none_known
-from .sums import CellResults
+from .sums import CellResults, Sums
 from .ways import Way
 
 
@@ -101,7 +101,7 @@ def _integrated(
         return None
     accuracy = min(accuracy, SETTINGS.loosest)
     lanes = lane_scene(tables)
-    _prepare(lanes, eps.size, ts.size, wanted, tableau)
+    _prepare(lanes, eps.size, ts.size, any(wanted), tableau)
     # Bristles of a cell have one plan.
     own = whose = np.arange(eps.size)
     if phase is not None:
@@ -242,7 +242,7 @@ def _by_slip_maps(
 def prepare_cells(scene: Scene, eps: np.ndarray, times: int) -> None:
     """Have the loop for cells of these eps compiled, before `integrate_cells` asks."""
     lanes = lane_scene(tabulated_scene(scene, eps))
-    _prepare(lanes, eps.size, times, _sums(balanced=True, suprema=True))
+    _prepare(lanes, eps.size, times, summed=True)
 
 
 def _sums(balanced: bool, suprema: bool) -> Sums:
@@ -253,13 +253,13 @@ def _prepare(
     lanes: LaneScene,
     cells: int,
     times: int,
-    wanted: Sums,
+    summed: bool,
     tableau: Tableau = SETTINGS.tableau,
 ) -> None:
     """Have the loop compiled beside the planning."""
     if cells * times > SETTINGS.few_values:
         segments = cells * times // WORKERS
-        prepare(lanes, tableau, Room(cells, segments // 2, segments), wanted)
+        prepare(lanes, tableau, Room(cells, segments // 2, segments), summed)
 
 
 def _affordable(path: Path, cells: Cellwise) -> np.ndarray:

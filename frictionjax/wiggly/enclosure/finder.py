@@ -72,7 +72,7 @@ def find_fast_slides(rounds: BracketContext, needs: Requirements) -> FoundSlides
 def _finder_of(rounds: BracketContext, needs: Requirements) -> FastSlideFinder:
     """What slip maps need to know of the cells."""
     ground, folds = rounds.ground, rounds.ground.folds
-    tail = MAP_SETTINGS.tail if any(rounds.wanted) else MAP_SETTINGS.bare_tail
+    tail = MAP_SETTINGS.tail if rounds.summed else MAP_SETTINGS.bare_tail
     return FastSlideFinder(
         scene=rounds.scene,
         path=rounds.path,

@@ -10,7 +10,7 @@ from ...model import TabulatedScene
 from ...numerics import concatenated, rows_of
 from ..equation import Status
 from ..lanes import SETTINGS as LANE_SETTINGS
-from ..lanes import LaneCells, Lanes, LaneScene, SegmentEnds, Segments, Sums, march
+from ..lanes import LaneCells, Lanes, LaneScene, SegmentEnds, Segments, march
 from ..limit_path import Path
 from ..rosenbrock import Tableau
 from .brackets import BracketPlan, Brackets, plan_brackets
@@ -88,7 +88,7 @@ class BracketContext(NamedTuple):
     ground: CellBounds
     cells: LaneCells
     tableau: Tableau
-    wanted: Sums
+    summed: bool
     accuracy: float
     report: Report
     effort: Effort
@@ -239,6 +239,6 @@ class BracketContext(NamedTuple):
             mine,
             chosen_segments,
             self.tableau,
-            self.wanted,
+            self.summed,
             work[chosen],
         )

@@ -1,6 +1,5 @@
 from .lane import LaneCells as LaneCells
 from .lane import LaneScene as LaneScene
-from .lane import Sums as Sums
 from .loops import Room as Room
 from .loops import march as march
 from .loops import prepare as prepare

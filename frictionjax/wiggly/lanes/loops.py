@@ -9,7 +9,7 @@ from jaxtyping import Array, Shaped
 
 from ..._compile import ARRAYS, flattened, in_background
 from ..rosenbrock import Tableau
-from .lane import LaneCells, LaneScene, Sums
+from .lane import LaneCells, LaneScene
 from .queue import Lanes, SegmentEnds, Segments, Tables, run_queue
 from .settings import SETTINGS
 
@@ -121,9 +121,9 @@ def _kind(program: tuple) -> tuple:
 _LOOPS = _Loops()
 
 
-def prepare(scene: LaneScene, tableau: Tableau, needed: Room, wanted: Sums) -> None:
+def prepare(scene: LaneScene, tableau: Tableau, needed: Room, summed: bool) -> None:
     """Compile the loop that `march` will want, in the background; a guess may be wrong."""
-    _LOOPS.load((scene, tableau, wanted, SETTINGS.width), needed)
+    _LOOPS.load((scene, tableau, summed, SETTINGS.width), needed)
 
 
 def march(
@@ -132,7 +132,7 @@ def march(
     jobs: Lanes,
     legs: Segments,
     tableau: Tableau,
-    wanted: Sums,
+    summed: bool,
     work: Shaped[np.ndarray, " jobs"] | None = None,
 ) -> SegmentEnds:
     """Run all jobs side by side; each lane takes the next job when it is through.
@@ -150,7 +150,7 @@ def march(
         rows = (_padded(t, size) for t, size in zip(tables, room, strict=True))
         return Tables(*rows, waiting=np.asarray(needed.jobs))
 
-    program = scene, tableau, wanted
+    program = scene, tableau, summed
     width, wells = SETTINGS.width, _wells(cells, jobs, legs)
     of_jobs = wells if work is None else work
     narrow, wide = loop_times(of_jobs.max(), of_jobs.sum())

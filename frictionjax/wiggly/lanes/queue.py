@@ -15,7 +15,6 @@ from .lane import (
     LaneScene,
     LaneState,
     LaneTask,
-    Sums,
     field_of_lane,
     keep,
     step_of_lane,
@@ -220,9 +219,9 @@ def _written(
 
 @Program
 def run_queue(
-    scene: LaneScene, tableau: Tableau, wanted: Sums, width: int, tables: Tables
+    scene: LaneScene, tableau: Tableau, summed: bool, width: int, tables: Tables
 ) -> Float[Array, "legs 14"]:
-    step = jax.vmap(lambda task, motion: step_of_lane(scene, tableau, wanted, task, motion))
+    step = jax.vmap(lambda task, motion: step_of_lane(scene, tableau, summed, task, motion))
     point = jax.vmap(lambda task, time, tip: field_of_lane(scene, task).point(time, tip))
 
     def under_way(task: LaneTask, motion: LaneState) -> Int[Array, ""]:

@@ -8,7 +8,6 @@ from ...model import TabulatedScene
 from ...numerics import stacked
 from ..enclosure import BracketValues, CellBounds, Layout
 from ..equation import Status
-from ..lanes import Sums
 from ..limit_path import Path, states_at
 from .cell_sums import (
     NOT_ASKED,
@@ -20,6 +19,13 @@ from .cell_sums import (
 )
 from .settings import SETTINGS
 from .stop_values import sampled_slides_at, stop_values_of
+
+
+class Sums(NamedTuple):
+    """What cells have besides states: `energies`, and `extremes` of the way."""
+
+    energies: bool
+    extremes: bool
 
 
 class CellResults(NamedTuple):

@@ -11,7 +11,7 @@ import pytest
 import frictionjax as fx
 from frictionjax.model import tabulated_scene
 from frictionjax.wiggly.enclosure.marching import _batches, _seats
-from frictionjax.wiggly.lanes.lane import LaneCells, Sums
+from frictionjax.wiggly.lanes.lane import LaneCells
 from frictionjax.wiggly.lanes.loops import (
     Room,
     _kind,
@@ -87,7 +87,7 @@ def test_loops_are_compiled_as_one_function(width):
         fx.loads.Ramp(1.0, 0.0),
         duration=1.0,
     )
-    fixed = lane_scene(tabulated_scene(scene, 0.1)), SWEEP_SETTINGS.tableau, Sums(), width
+    fixed = lane_scene(tabulated_scene(scene, 0.1)), SWEEP_SETTINGS.tableau, True, width
     columns = len(LaneCells._fields), len(Lanes._fields), len(Segments._fields)
     tables = [np.ones((n, w)) for n, w in zip(FEW, columns, strict=True)]
     program = jax.make_jaxpr(
