@@ -67,6 +67,7 @@ def test_too_little_room_is_told(point):
     assert not bool(fits)
 
 
+@pytest.mark.slow
 def test_derivatives_are_those_of_the_steps_made_once_more(point):
     stepper, _, stop = point
     now, log = stepped(stepper, jnp.asarray(0.0), stop)
