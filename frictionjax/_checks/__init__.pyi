@@ -20,6 +20,11 @@ from .arguments import require_x64 as require_x64
 from .arguments import without_masked as without_masked
 from .grids import cells_of as cells_of
 from .grids import grid_of as grid_of
+from .noted_origins import eps_of as eps_of
+from .noted_origins import note_origin as note_origin
+from .noted_origins import noting_the_scene as noting_the_scene
+from .noted_origins import origin_of as origin_of
+from .noted_origins import scene_of as scene_of
 from .parts import ByIdentity as ByIdentity
 from .parts import Part as Part
 from .parts import asked_names as asked_names

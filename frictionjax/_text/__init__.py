@@ -1,5 +1,5 @@
-"""Tables of numbers in text files, with the units that their headings name; and tables
-that results show themselves as."""
+"""Tables of numbers in text files, with the units that their headings name; tables and
+pictures that results show themselves as."""
 
 import lazy_loader
 

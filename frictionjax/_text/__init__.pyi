@@ -1,3 +1,4 @@
+from .drawn_results import SelfDrawn as SelfDrawn
 from .encoding import decoded as decoded
 from .result_table import ResultTable as ResultTable
 from .result_table import in_columns as in_columns

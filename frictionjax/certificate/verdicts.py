@@ -4,7 +4,8 @@ import math
 from typing import NamedTuple
 
 from .._checks import Outcome, Result
-from .._text import Named, ShownNumbers
+from .._text import Named, SelfDrawn, ShownNumbers
+from .settings import SETTINGS
 
 
 class CertificateStatus(Outcome):
@@ -37,7 +38,7 @@ class _Numbers(NamedTuple):
     status: CertificateStatus
 
 
-class Certificate(ShownNumbers, Result, _Numbers):
+class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
     """What was found about a curve.
 
     `residual` of the energy-dissipation balance in J, `int (eps^gamma z' + D E)^2 /
@@ -52,6 +53,21 @@ class Certificate(ShownNumbers, Result, _Numbers):
     """
 
     __slots__ = ()
+    _picture = "draw_certificate"
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Numbers that decide, over the most of each that is accepted: above 1 is refused.
+
+        `viscosity` by its distance from 1. NaN: of a curve that has none, without slips.
+        What else decides of tips with mass and rods that turn over, `status` tells.
+        """
+        return {
+            "spacing": self.spacing / SETTINGS.coarsest,
+            "missing_force": self.missing_force / SETTINGS.missing_force,
+            "viscosity": abs(self.viscosity - 1) / SETTINGS.viscosity,
+            "distance": self.distance / SETTINGS.farthest,
+        }
 
     def _numbers(self) -> list[Named]:
         return [

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import Real, as_text, is_known, require
-from .._text import ResultTable
+from .._text import ResultTable, SelfDrawn
 from ..bristles import pulling_text
 from .named_numbers import coefficient_table
 
@@ -17,7 +17,7 @@ OfBristle = Any
 """A traced real scalar, or None in the abstract setting, where there is no bristle."""
 
 
-class Coefficients(eqx.Module):
+class Coefficients(SelfDrawn, eqx.Module):
     """Coefficients of the limit friction law; all but rho are None without a bristle.
 
     `rho_plus` > 0 > `rho_minus`: friction forces in N against motion to the right and to
@@ -54,6 +54,7 @@ class Coefficients(eqx.Module):
     rho_minus_error: OfBristle = None
     omega_plus_taken: OfBristle = None
     omega_minus_taken: OfBristle = None
+    _picture = "draw_coefficients"
 
     def __repr__(self) -> str:
         if not is_known(self):

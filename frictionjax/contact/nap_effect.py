@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import as_real, is_concrete, require, require_real, with_nan
-from .._text import ResultTable
+from .._text import ResultTable, SelfDrawn
 from ..bristles import AbstractBristle, AngularSpring, Stance
 from ..coefficients import Coefficients
 from ..model import friction
@@ -26,7 +26,19 @@ _NO_GEOMETRY = "the bristle has no geometry: its nap and the force along it are 
 _UPRIGHT = "it stands upright and has no nap: a slide to the right is taken as with it"
 
 
-class Nap(NamedTuple):
+class _NapNumbers(NamedTuple):
+    rho_with: float
+    rho_against: float
+    ratio: float
+    axial_with: float
+    axial_against: float
+    flipped: NapSlides | None
+    window: TurningWindow | None
+    critical_load: float | None
+    message: str
+
+
+class Nap(SelfDrawn, _NapNumbers):
     """What `nap` found. Forces in N, friction > 0, traction positive.
 
     `rho_with`, `rho_against`: friction of slides with and against the nap, of the bristle
@@ -38,15 +50,8 @@ class Nap(NamedTuple):
     `message`: what that means.
     """
 
-    rho_with: float
-    rho_against: float
-    ratio: float
-    axial_with: float
-    axial_against: float
-    flipped: NapSlides | None
-    window: TurningWindow | None
-    critical_load: float | None
-    message: str
+    __slots__ = ()
+    _picture = "draw_strokes"
 
     @property
     def axial_flipped(self) -> float:

@@ -26,7 +26,8 @@ def advice(data: xr.Dataset) -> str:
     Candidates were asked for no less, ended OK in every cell and came within it there, by a
     reference that can tell. The fastest is named, of ties the method that stands first, and
     by how much the next one is slower. Where the accuracies are all looser, the tightest of
-    them is what is wanted. At the end those who reported success and were wrong.
+    them is what is wanted. At the end those who reported success and were wrong, and those
+    that there was no time for.
     """
     asked = data.accuracy.values
     close = asked <= SETTINGS.wanted
@@ -48,7 +49,7 @@ def advice(data: xr.Dataset) -> str:
             ratio = others[0].seconds / best.seconds
             times = f"{ratio:.2g} times as long" if ratio >= _SAME else "as long"
             start += f", the next method, {others[0].method!r}, takes {times}"
-    return f"{start}{_wrong(data)}."
+    return f"{start}{_wrong(data)}{_untried(data)}."
 
 
 def _first_of_ties(choices: list[_Choice], order: list[str]) -> _Choice:
@@ -76,3 +77,15 @@ def _wrong(data: xr.Dataset) -> str:
     return (
         f"; success reported half an eps or more off: {', '.join(names)}" if names else ""
     )
+
+
+def _untried(data: xr.Dataset) -> str:
+    """Who was not even asked for the loosest accuracy, nowhere or not in every cell."""
+    loosest = data.status.isel(accuracy=int(data.accuracy.values.argmax()))
+    missing = (loosest == Status.NOT_TRIED).sum(["gamma", "eps"]).values
+    cells = data.sizes["gamma"] * data.sizes["eps"]
+    names = [str(name) for name in data.solver.values]
+    never = [name for name, n in zip(names, missing, strict=True) if n == cells]
+    some = [name for name, n in zip(names, missing, strict=True) if 0 < n < cells]
+    told = ", ".join(never + [f"{name} (in some cells)" for name in some])
+    return f"; not run, for want of time: {told}" if told else ""

@@ -14,7 +14,7 @@ from .._checks import (
     require_real,
     with_nan,
 )
-from .._text import Named, ShownNumbers
+from .._text import Named, SelfDrawn, ShownNumbers
 from ..effects import Engine
 from ..limit import require_start_in_strip
 from ..model import Scene, require_reach, require_times, require_told_apart, scene_for
@@ -38,7 +38,7 @@ class _Costs(NamedTuple):
     measured: bool
 
 
-class CostPrediction(ShownNumbers, _Costs):
+class CostPrediction(ShownNumbers, SelfDrawn, _Costs):
     """Predicted cost of a sweep on this machine.
 
     `seconds`: of the warm sweep, NaN where the load turns more often than lanes have room
@@ -50,6 +50,7 @@ class CostPrediction(ShownNumbers, _Costs):
     """
 
     __slots__ = ()
+    _picture = "draw_cost_prediction"
 
     @property
     def low(self) -> float:

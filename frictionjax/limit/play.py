@@ -15,11 +15,12 @@ from .._checks import (
     is_concrete,
     no_less,
     no_more,
+    noting_the_scene,
     require,
     with_nan,
 )
 from .._compile import Program, padded_size
-from .._text import Named, ShownNumbers
+from .._text import Named, SelfDrawn, ShownNumbers
 from ..coefficients import Coefficients
 from ..effects import Engine, NapFlip, nap_flip_among
 from ..loads import AbstractPull
@@ -46,7 +47,7 @@ class LimitStatus(Outcome):
     NOT_FINITE = 1, "not finite, or the load turns more often than there is room for"
 
 
-class LimitSolution(ShownNumbers, CodedResult, eqx.Module):
+class LimitSolution(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
     """Limit trajectory: times `ts` (s), states `z` (m), `dissipation` (J), shapes (n,).
 
     `dissipation` is cumulative, `int_0^ts R(z')`. `ok`, `status`: not finite only where
@@ -62,6 +63,7 @@ class LimitSolution(ShownNumbers, CodedResult, eqx.Module):
     mode: Int[Array, " n"] | None = None
     tip: Float[Array, " n"] | None = None
     _outcomes = LimitStatus
+    _picture = "draw_solution"
 
     @property
     def _codes(self) -> Array:
@@ -179,6 +181,7 @@ def _with_turning(scene: Scene, effect: NapFlip, ts: Float[Array, " n"]) -> Limi
     return LimitSolution(ts, *map(jnp.asarray, columns))
 
 
+@noting_the_scene
 @with_nan
 def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     """Solve `0 in dR(z') + Phi'(z) - l(t)` (eq. 2.3), exactly up to rounding.

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import Real, checked, require, require_x64, with_nan
+from .._checks import Real, checked, note_origin, require, require_x64, with_nan
 from ..bristles import AbstractBristle
 from ..coefficients import Coefficients, with_errors
 from ..profiles import AbstractSampled
@@ -49,7 +49,11 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
     else:
         wiggle = potential(scene_or_profile, bristle)
     require_x64(wiggle)
-    return _with_errors_of_samples(wiggle, admissible_coefficients(wiggle))
+    found = _with_errors_of_samples(wiggle, admissible_coefficients(wiggle))
+    # A copy: a potential's own coefficients are a note on it, which must not hold it.
+    found = dataclasses.replace(found)
+    note_origin(found, wiggle)
+    return found
 
 
 def _with_errors_of_samples(wiggle: AbstractPotential, found: Coefficients) -> Coefficients:

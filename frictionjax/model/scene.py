@@ -31,6 +31,7 @@ from .._checks import (
     require_x64,
 )
 from .._compile import Program
+from .._text import SelfDrawn
 from ..bristles import AbstractBristle, pulling_text
 from ..effects import AbstractEffect, require_bristle, require_together
 from ..loads import AbstractLoad, AbstractPull, Pulled
@@ -47,7 +48,7 @@ _FAR = ByIdentity()  # the largest |z| in m that the load reaches
 _ALPHA = ByIdentity()  # the normal force in N that was computed when it was checked
 
 
-class Scene(eqx.Module):
+class Scene(SelfDrawn, eqx.Module):
     """A bristle on a wiggly surface, pulled through a support by a load.
 
     `Scene(profile, bristle, support, load, duration, z0=0.0, effects=())`, or
@@ -77,6 +78,7 @@ class Scene(eqx.Module):
     z0: Real
     effects: tuple
     turns: int = eqx.field(static=True, init=False)
+    _picture = "draw_parts"
 
     def __init__(
         self,

@@ -3,13 +3,12 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from .._checks import require
 from .design_maps import number_label
-from .style import GUIDE, LIMIT, colour, new_figure, styled
+from .style import GUIDE, LIMIT, axes_of, colour, styled
 
-_LABELS = {
+QUANTITY_LABELS = {
     "ratio": "friction ratio $-\\rho_+/\\rho_-$ (1)",
     "rho_plus": "friction to the right $\\rho_+$ (N)",
     "rho_minus": "friction to the left $\\rho_-$ (N)",
@@ -19,24 +18,19 @@ _ABOVE = 4.0  # times the target, and the middle of the curve: poles go on out o
 
 
 @styled
-def draw_angle_fit(fit: Any) -> Figure:
+def draw_angle_fit(fit: Any, ax: Any = None) -> Any:
     """Draw a `fit_angle`: the quantity over all admissible values, target and solutions.
 
     One line for each admissible interval; between them alpha = 0, or nothing is
-    admissible. Filled: the bristle returned; hollow: the other solutions.
+    admissible. Filled: the bristle returned; hollow: the other solutions. A Figure, or `ax`
+    where it is drawn into that.
 
     Raises `ValueError` for a batch: pick one with `fit[i]`.
     """
     require(np.ndim(fit.code) == 0, "fit", f"{np.size(fit.code)} fits", "one: fit[i]")
-    figure, grid = new_figure(1, 1, 6.4, 4.6)
-    axes = grid[0, 0]
-    numbers, quantities = (np.asarray(part) for part in fit.curve())
-    there = ~np.isnan(numbers[:, 0])
-    curves = list(zip(numbers[there], quantities[there], strict=True))
-    for index, (x, y) in enumerate(curves):
-        label = "admissible bristles" if index == 0 else None
-        axes.plot(x, y, color=colour(0), label=label)
+    drawn, axes = axes_of(ax, 6.4, 4.6)
     target = float(fit.target)
+    family_on(axes, fit, [target], "admissible bristles")
     axes.axhline(target, color=GUIDE, linestyle="--", label=f"wanted: {target:.4g}")
     others = [v for v in np.asarray(fit.solutions) if v != float(fit.value)]
     look: dict[str, Any] = {"color": LIMIT, "linestyle": "none", "marker": "o", "zorder": 3}
@@ -46,13 +40,23 @@ def draw_angle_fit(fit: Any) -> Figure:
     value = f"{fit.free} = {float(fit.value):.5g}"
     told = value if fit.success else f"nearest: {value}"
     axes.plot([float(fit.value)], [float(fit.achieved)], **look, label=told)
-    axes.set(xlabel=number_label(fit.free), ylabel=_LABELS[fit.quantity])
-    if fit.free in ("stiffness", "rest_length", "height") and numbers[there].min() > 0:
-        axes.set_xscale("log")
-    axes.set_ylim(*_window(quantities[there], target))
+    axes.set(xlabel=number_label(fit.free), ylabel=QUANTITY_LABELS[fit.quantity])
     axes.set_title("Inverse design of the bristle")
     axes.legend(loc="best")
-    return figure
+    return drawn
+
+
+def family_on(axes: Any, fit: Any, shown: list[float], label: str) -> None:
+    """The quantity of all admissible bristles, in a window that holds what is `shown`."""
+    numbers, quantities = (np.asarray(part) for part in fit.curve())
+    there = ~np.isnan(numbers[:, 0])
+    curves = list(zip(numbers[there], quantities[there], strict=True))
+    for index, (x, y) in enumerate(curves):
+        axes.plot(x, y, color=colour(0), label=label if index == 0 else None)
+    if fit.free in ("stiffness", "rest_length", "height") and numbers[there].min() > 0:
+        axes.set_xscale("log")
+    windows = [_window(quantities[there], one) for one in shown]
+    axes.set_ylim(min(low for low, _ in windows), max(high for _, high in windows))
 
 
 def _window(quantities: np.ndarray, target: float) -> tuple[float, float]:

@@ -67,20 +67,29 @@ def _panel(axes: Any, dataset: xr.Dataset, gamma: float, lines: dict[float, Any]
 def _slips(dataset: xr.Dataset, gamma: float, chosen) -> tuple[float, float] | None:
     """A window of a few slips: of the largest eps that slides and is resolved by `time`."""
     t, z = dataset.time.values, dataset.z_limit.values
+    windows = (window_of_slips(t, z, float(eps)) for eps in chosen)
+    return next((window for window in windows if window is not None), None)
+
+
+def window_of_slips(t: np.ndarray, z: np.ndarray, eps: float) -> tuple[float, float] | None:
+    """Times in s around a few slips where the limit `z` (m) is fastest.
+
+    None where it does not slide, slips are finer than the times `t`, or it is all one
+    window.
+    """
     if t.size < 3:
         return None
     speed = np.abs(np.gradient(z, t)) if np.all(np.diff(t) > 0) else np.zeros(t.size)
     middle = int(np.argmax(speed))
-    for eps in chosen:
-        if speed[middle] == 0:
-            break
-        slip = eps / speed[middle]
-        half = 0.5 * _SLIPS * slip
-        fine = slip >= _RESOLVED * float(np.median(np.diff(t)))
-        if fine and 2 * half < 0.5 * (t[-1] - t[0]):
-            centre = float(np.clip(t[middle], t[0] + half, t[-1] - half))
-            return centre - half, centre + half
-    return None
+    if speed[middle] == 0:
+        return None
+    slip = eps / speed[middle]
+    half = 0.5 * _SLIPS * slip
+    fine = slip >= _RESOLVED * float(np.median(np.diff(t)))
+    if not (fine and 2 * half < 0.5 * (t[-1] - t[0])):
+        return None
+    centre = float(np.clip(t[middle], t[0] + half, t[-1] - half))
+    return centre - half, centre + half
 
 
 def _zoom(main: Any, axes: Any, dataset: xr.Dataset, gamma: float, lines, window) -> None:
@@ -88,6 +97,11 @@ def _zoom(main: Any, axes: Any, dataset: xr.Dataset, gamma: float, lines, window
     _panel(axes, inside, gamma, lines)
     shown = [inside.z.sel(gamma=gamma, eps=eps).values for eps in lines]
     values = np.concatenate([*shown, inside.z_limit.values])
+    frame_window(main, axes, window, values)
+
+
+def frame_window(main: Any, axes: Any, window: Any, values: np.ndarray) -> None:
+    """Make `axes` the close-up of a window of `main`, which gets a frame there."""
     pad = 0.06 * np.ptp(values)
     low, high = float(values.min() - pad), float(values.max() + pad)
     axes.set(xlim=window, ylim=(low, high), title="A few slips, in the frame on the left")

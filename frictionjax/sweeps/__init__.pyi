@@ -1,3 +1,4 @@
+from .noiseless import without_noise as without_noise
 from .provenance import origin as origin
 from .provenance import set_meanings as set_meanings
 from .selected_cells import one_scene as one_scene

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from .._checks import CodedResult, require
-from .._text import Named, ShownNumbers
+from .._text import Named, SelfDrawn, ShownNumbers
 from .equation import Status
 from .solved_scene import loads_and_forces, require_one_force
 
@@ -25,7 +25,7 @@ _COLUMNS = {
 }
 
 
-class Solution(ShownNumbers, CodedResult, eqx.Module):
+class Solution(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
     """Trajectory of the wiggly system.
 
     `ts` in s, `z` in m, shapes (n,). `dissipation`: `int_0^ts eps^gamma z'^2` in J.
@@ -62,6 +62,7 @@ class Solution(ShownNumbers, CodedResult, eqx.Module):
     mode: Int[Array, " n"] | None = None
     tip: Float[Array, " n"] | None = None
     _outcomes = Status
+    _picture = "draw_solution"
 
     @property
     def stats(self) -> dict[str, Any]:

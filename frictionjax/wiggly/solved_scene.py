@@ -1,47 +1,18 @@
-"""Which scene a trajectory is of: kept as a note beside it, for as long as it lives.
+"""What pulls at a trajectory, read from the scene that it is of."""
 
-As a field it would be a leaf of every trajectory, and functions of a scene can be none.
-"""
-
-from collections.abc import Callable
-from functools import wraps
-from typing import Any, TypeVar, cast
+from typing import Any
 
 import jax
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._checks import ByIdentity, is_concrete, require
+from .._checks import require, scene_of
 from .._compile import Program, in_chunks
 from ..effects import CompliantArray, NapFlip
 from ..loads import AbstractPull
-from ..model import SETTINGS, Scene
+from ..model import SETTINGS
 from ..supports import AbstractSupport
 from ..tables import load_table
-
-_Solver = TypeVar("_Solver", bound=Callable)
-_SCENES = ByIdentity()
-
-
-def noting_the_scene(solve: _Solver) -> _Solver:
-    """A solver whose solutions know their scene, where nothing of it is traced."""
-
-    @wraps(solve)
-    def noted(scene: Scene, *args: Any, **kwargs: Any) -> Any:
-        solution = solve(scene, *args, **kwargs)
-        if is_concrete(scene, solution):
-            _SCENES.put(solution, scene)
-        return solution
-
-    return cast(_Solver, noted)
-
-
-def scene_of(solution: Any) -> Scene:
-    """The scene of a trajectory. Raises `ValueError` where nothing is known of it."""
-    scene = _SCENES.get(solution)
-    needs = "one that solve has returned, not made of its leaves: fx.mechanics reads it"
-    require(scene is not None, "solution", "of no scene that is known", needs)
-    return scene
 
 
 @Program

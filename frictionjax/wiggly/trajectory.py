@@ -14,6 +14,7 @@ from .._checks import (
     Real,
     as_real,
     is_concrete,
+    noting_the_scene,
     require,
     require_flags,
     require_numbers,
@@ -44,7 +45,6 @@ from .arrays import integrate_scene
 from .equation import Status, StepPlan, plan_steps, require_accuracy
 from .sequential import MAX_STEPS, integrate, is_ours, solver_of
 from .solution import Solution
-from .solved_scene import noting_the_scene
 
 _ACCURACY = 1e-3
 

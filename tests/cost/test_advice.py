@@ -83,3 +83,14 @@ def test_nothing_is_promised_beyond_the_reference_or_where_nothing_was_measured(
     one = data.isel(eps=[0]).sel(accuracy=[1e-1])
     assert "For 1e-01 eps" in advice(one)  # the tightest that was asked for
     assert "eps in the cell in" in advice(one)
+
+
+def test_who_was_not_run_is_said(data):
+    nowhere = changed(data, "status", int(Status.NOT_TRIED), solver="BDF")
+    assert advice(nowhere).endswith("; not run, for want of time: BDF.")
+    some = {"solver": "resolved", "eps": 1e-3}
+    once = changed(nowhere, "status", int(Status.NOT_TRIED), **some)
+    assert advice(once).endswith(": BDF, resolved (in some cells).")
+    slow = {"solver": "resolved", "accuracy": 1e-5}  # the loosest took too long
+    given_up = changed(data, "status", int(Status.NOT_TRIED), **slow)
+    assert "want of time" not in advice(given_up)

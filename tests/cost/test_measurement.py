@@ -125,6 +125,30 @@ def test_no_other_begins_after_the_total_and_ours_come_first(
     assert len(begun) == 2 + sum(others)
 
 
+def test_within_a_total_others_of_ours_wait_their_turn(scene, monkeypatch):
+    """Only the first is measured in any case, and compiles before the reference."""
+    first, begun = [], []
+
+    def noted(to, call, place):
+        def noting(*args):
+            to.append(args[place] if place is not None else None)
+            return call(*args)
+
+        return noting
+
+    clocked, made = cost_of_accuracy.clocked, cost_of_accuracy.runner
+    monkeypatch.setattr(cost_of_accuracy, "clocked", noted(first, clocked, None))
+    monkeypatch.setattr(cost_of_accuracy, "runner", noted(begun, made, 5))
+    methods = ["LSODA", "auto", "resolved"]
+    asked = {"repeats": 1, "total": cost_of_accuracy.SETTINGS.compiles}
+    cost = fx.work_precision(scene, EPS, 1.0, methods, 1e-2, TIMES, **asked)
+    assert len(first) == 1
+    assert begun == ["auto", "auto", "LSODA"]  # there is no time for `resolved` to compile
+    assert int(cost.status.sel(solver="resolved").item()) == fx.Status.NOT_TRIED
+    assert cost.attrs["advice"].endswith("not run, for want of time: resolved.")
+    assert {solver for solver, _ in table_of(cost)[1]} == {"auto", "LSODA"}
+
+
 @pytest.mark.parametrize(
     "method", ["Radau", pytest.param("Kvaerno3", marks=pytest.mark.slow)]
 )

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._checks import CodedResult, Real, as_text, is_concrete, is_known, require_whole
 from ..._compile import Program
-from ..._text import Named, ShownNumbers
+from ..._text import Named, SelfDrawn, ShownNumbers
 from ...bristles import AbstractBristle, pulling_text
 from ...contact import Nap, nap
 from ...effects import AbstractEffect, Engine
@@ -47,7 +47,7 @@ _EFFECTS = EFFECT_FORM._replace(
 _PULLED = record(PulledParts, PulledParts._fields, LEAF)
 
 
-class AngleFit(ShownNumbers, DesignResult, CodedResult, eqx.Module):
+class AngleFit(ShownNumbers, SelfDrawn, DesignResult, CodedResult, eqx.Module):
     """A bristle that gives a wanted friction; every array has the shape of the target.
 
     `bristle`: the one given, with the number called `free` set to `value`: of all
@@ -81,6 +81,7 @@ class AngleFit(ShownNumbers, DesignResult, CodedResult, eqx.Module):
     scene: SceneEffects = SceneEffects()
 
     _outcomes, _good = FitStatus, GOOD
+    _picture = "draw_angle_fit"
     document = Document(
         "frictionjax.AngleFit",
         {"message": TOLD}
@@ -185,12 +186,6 @@ class AngleFit(ShownNumbers, DesignResult, CodedResult, eqx.Module):
             Named("alpha", self.alpha, "N", "normal force without friction"),
             Named("solutions", count, "", "in the admissible range"),
         ]
-
-    def plot(self) -> Any:
-        """What the free number reaches, and the solutions, as a matplotlib Figure."""
-        from ...plot import draw_angle_fit
-
-        return draw_angle_fit(self)
 
 
 def _message(fit: AngleFit) -> str:

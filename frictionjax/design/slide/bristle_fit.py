@@ -10,7 +10,7 @@ from jaxtyping import Array
 
 from ..._checks import Real, as_real, as_text, is_concrete, require, require_real, with_nan
 from ..._compile import Program, in_chunks
-from ..._text import Named, ShownNumbers
+from ..._text import Named, SelfDrawn, ShownNumbers
 from ...bristles import AbstractBristle, normal_force, pulling_text
 from ...io import AS_IS, LEAF, PART, TOLD, Document, Form, by_name, nested
 from ...model import BristlePotential, smallest_stretch
@@ -33,7 +33,7 @@ from .slide_friction import (
 _PAIRS = Form(read=lambda rows: jnp.asarray(np.array(rows, float).reshape(-1, 2)))
 
 
-class SlideFit(ShownNumbers, DesignResult, eqx.Module):
+class SlideFit(ShownNumbers, SelfDrawn, DesignResult, eqx.Module):
     """A bristle whose steady slide at `eps` gives a wanted quantity.
 
     As `AngleFit`, with the quantity made of the slide's forces, `force` "mean" or "peak":
@@ -60,6 +60,7 @@ class SlideFit(ShownNumbers, DesignResult, eqx.Module):
     force: str = eqx.field(static=True)
 
     _good = FitStatus.OK, FitStatus.TANGENT
+    _picture = "draw_slide_fit"
     document = Document(
         "frictionjax.SlideFit",
         {"message": TOLD}

@@ -1,2 +1,3 @@
 from .bristle_on_surface import draw_parts as draw_parts
 from .load_and_well import draw_forces as draw_forces
+from .well import draw_coefficients as draw_coefficients

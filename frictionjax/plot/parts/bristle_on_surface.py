@@ -4,33 +4,33 @@ from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
-from matplotlib.figure import Figure
 
 from ..._checks import require
 from ...bristles import AngularSpring, Stance
 from ...model import Scene
 from ..moving import coil
-from ..style import LIMIT, STRIP, colour, new_figure, styled
+from ..style import LIMIT, STRIP, axes_of, colour, styled
 
 _PERIOD = 0.22  # of the surface as drawn, in heights of the root
 _POINTS = 1201
 
 
 @styled
-def draw_parts(scene: Scene) -> Figure:
+def draw_parts(scene: Scene, ax: Any = None) -> Any:
     """Draw the bristle as it stands at first, and its support, over bumps not to scale.
 
-    Of a bristle without a geometry: a rod, upright and 1 m long. Of an array one of them.
+    Of a bristle without a geometry: a rod, upright and 1 m long. Of an array one of them. A
+    Figure, or `ax` where it is drawn into that.
 
     Raises `ValueError` for a scene without a bristle.
     """
-    figure, grid = new_figure(1, 1, 7.2, 3.1)
-    axes: Any = grid[0, 0]
     profile, bristle = scene.profile, scene.bristle
+    needs = "a profile and a bristle: fx.friction(scene).plot() draws the potential's force"
     known = profile is not None and bristle is not None
-    require(known, "scene", "one of a potential alone", "a profile and a bristle")
+    require(known, "scene", "one of a potential alone", needs)
     assert profile is not None
     assert bristle is not None
+    drawn, axes = axes_of(ax, 7.2, 3.1)
     seen = bristle.geometry(jnp.zeros(()))
     stance = Stance(jnp.zeros(()), jnp.ones(())) if seen is None else seen
     angle, length = float(stance.angle), float(stance.length)
@@ -54,7 +54,7 @@ def draw_parts(scene: Scene) -> Figure:
     axes.set_ylim(-0.22 * height, 1.42 * height)
     axes.set_aspect("equal")
     axes.set_axis_off()
-    return figure
+    return drawn
 
 
 def _surface(axes: Any, profile: Any, height: float, left: float, right: float) -> None:

@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ...model import Scene, composed, friction
-from ..style import GUIDE, colour, new_figure, styled
+from ..style import colour, new_figure, styled
+from .well import draw_well
 
 _POINTS = 1201
-_SMALL = 1e-6  # m: eps at which the force of a well is its limit's
 
 
 @styled
@@ -25,24 +25,8 @@ def draw_forces(scene: Scene) -> Figure:
     left.plot(t, load, color=colour(2))
     left.set(xlabel="t (s)", ylabel="load $\\ell$ (N)", title="How it is pulled")
     left.margins(x=0)
-    Y = np.linspace(0.0, 1.0, _POINTS)
-    right.plot(Y, _well_force(scene, Y), color=colour(0))
-    for name, value in (("\\rho_+", law.rho_plus), ("\\rho_-", law.rho_minus)):
-        level = float(value)
-        right.axhline(level, color=GUIDE, linewidth=1, linestyle="--")
-        right.annotate(
-            f"${name}$ = {level:.3g} N",
-            (0.98, level),
-            xycoords=right.get_yaxis_transform(),
-            xytext=(0, 4 if level > 0 else -4),
-            textcoords="offset points",
-            ha="right",
-            va="bottom" if level > 0 else "top",
-            color="#444444",
-        )
-    right.set(xlabel="place Y (periods)", ylabel="force W'(Y) (N)")
+    draw_well(right, composed(scene).potential, law)
     right.set_title("Force of the surface over one period")
-    right.margins(x=0, y=0.14)
     return figure
 
 
@@ -50,9 +34,3 @@ def _load_over_time(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Times (s) and loads (N) of the scene."""
     t = np.linspace(0.0, float(scene.duration), _POINTS)
     return t, np.asarray(jax.vmap(scene.load)(jnp.asarray(t)))
-
-
-def _well_force(scene: Scene, Y: np.ndarray) -> np.ndarray:
-    """`W'(Y)` in N, effects of the potential worked in."""
-    potential = composed(scene).potential
-    return np.asarray(potential.force(_SMALL * Y, _SMALL))

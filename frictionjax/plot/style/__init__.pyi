@@ -5,6 +5,7 @@ from .look import LIMIT as LIMIT
 from .look import MARKERS as MARKERS
 from .look import STRIP as STRIP
 from .look import Picture as Picture
+from .look import axes_of as axes_of
 from .look import choose_eps as choose_eps
 from .look import choose_gamma as choose_gamma
 from .look import colour as colour

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..._checks import as_text, require
@@ -71,6 +72,21 @@ def new_figure(rows: int, columns: int, width: float, height: float) -> tuple[Fi
     """A figure (inches) and its axes, an array of shape (rows, columns)."""
     figure = Picture(figsize=(width, height), layout="constrained")
     return figure, figure.subplots(rows, columns, squeeze=False)
+
+
+def axes_of(ax: Any, width: float, height: float) -> tuple[Any, Any]:
+    """What a picture of one axis returns, and the axis that it draws into.
+
+    A new figure (inches) and its only axis where `ax` is None, else `ax` twice: a figure of
+    the user's own is shown by whoever made it.
+
+    Raises `ValueError` for an `ax` that is none.
+    """
+    if ax is None:
+        figure, grid = new_figure(1, 1, width, height)
+        return figure, grid[0, 0]
+    require(isinstance(ax, Axes), "ax", ax, "matplotlib Axes, or None")
+    return ax, ax
 
 
 def colour(index: int) -> str:

@@ -1,0 +1,30 @@
+"""Results that draw themselves, by pictures that stand on a floor above them."""
+
+import sys
+from typing import Any, ClassVar
+
+from .._checks import is_known, require
+
+
+class SelfDrawn:
+    """Base of results with a picture of one axis.
+
+    An implementer names in `_picture` the function of `frictionjax.plot` that draws it,
+    and is given the result and `ax`. It is looked up when somebody draws, on the library's
+    face, which imports what is used and when: results know nothing of pictures.
+    """
+
+    __slots__ = ()
+    _picture: ClassVar[str]
+
+    def plot(self, ax: Any = None) -> Any:
+        """The picture, as a matplotlib Figure; drawn into `ax`, where there is one, which
+        is then returned.
+
+        What is drawn, and what is refused with `ValueError`: `fx.plot`, whose functions
+        have the results' names. Of a trace there is none.
+        """
+        kind = type(self).__name__
+        require(is_known(self), kind, "a trace", "known numbers")
+        pictures = sys.modules[__name__.partition(".")[0]].plot
+        return getattr(pictures, self._picture)(self, ax=ax)
