@@ -259,6 +259,7 @@ CUTTING_ACROSS = {
     "test_pages",
     "test_promises",
     "test_shapes",
+    "test_wheel",
     "_checks/test_arrays",
     "_checks/test_inside_jit",
     "_checks/test_precision",

@@ -3,44 +3,33 @@
 import contextlib
 import io
 import re
-from pathlib import Path
 
-import numpy as np
 import pytest
+from readme import (
+    HOME,
+    README,
+    blocks,
+    require_what_ten_lines_print,
+    shell_lines,
+    ten_lines,
+)
 
 import frictionjax as fx
 from frictionjax.cli import main
 
-HOME = Path(__file__).parents[1]
-README = HOME / "README.md"
 PAGES = [
     README,
     *sorted(HOME.glob("frictionjax/**/*.md")),
     *sorted(HOME.glob("benchmarks/*.md")),
     *sorted(HOME.glob(".github/*.md")),
 ]
-NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-
-
-def blocks(page, language):
-    return re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL)
-
-
-def words_and_numbers(text):
-    """The words of a text, and its numbers."""
-    return NUMBER.sub("#", text).split(), [float(n) for n in NUMBER.findall(text)]
 
 
 def test_the_ten_lines_print_what_the_readme_says():
-    (code,), (told,) = blocks(README, "python"), blocks(README, "text")
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
-        exec(compile(code, "README.md", "exec"), {})
-    words, numbers = words_and_numbers(printed.getvalue())
-    words_told, numbers_told = words_and_numbers(told)
-    assert words == words_told
-    # Ends of intervals hang on the last digits of errors; steps on the machine.
-    np.testing.assert_allclose(numbers, numbers_told, rtol=0.02)
+        exec(compile(ten_lines(), "README.md", "exec"), {})
+    require_what_ten_lines_print(printed.getvalue())
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(HOME)))
@@ -59,25 +48,16 @@ def test_names_exist(page):
             assert found is not None, name
 
 
-def shell_lines():
-    for page in PAGES:
-        text = page.read_text()
-        for line in re.findall(
-            r"(?<![\w/.])frictionjax ([a-z]+(?: [^`\n|&]*)?)[`\n|&]", text
-        ):
-            yield page.name, line
-
-
 def test_commands_and_their_options_exist():
     seen = set()
-    for page, line in shell_lines():
+    for line in (line for page in PAGES for line in shell_lines(page)):
         name, *rest = line.split()
         command = main.commands.get(name)
         if command is None:
             continue  # a word of a sentence
         known = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}
         for option in (word for word in rest if word.startswith("--")):
-            assert option.strip("[],.)") in known | {"--help"}, f"{page}: {line}"
+            assert option.strip("[],.)") in known | {"--help"}, line
         seen.add(name)
     assert seen == set(main.commands)
 

@@ -12,11 +12,11 @@ from pathlib import Path
 _LOOPS = "--xla_backend_extra_options=xla_cpu_small_while_loop_byte_threshold=1000000000"
 # LLVM's first level and XLA's older emitters compile a first solve in 4.4 s for 7.6 (the
 # level alone 5.4, the emitters alone 6.1, level 0 with both 2.8); steps take as long, at
-# level 0 four times. Later versions may know no older emitters, and end at flags that they
-# do not know.
+# level 0 four times. Of the older emitters 0.11.0 knows, 0.11.2, 0.12.0 and 0.12.0.1 end
+# the process at the flag, as at all that they do not know.
 _QUICK = "--xla_backend_optimization_level=1"
 _OLDER = "--xla_cpu_use_fusion_emitters=false"
-_OLDER_UNTIL = (0, 13)  # jaxlib
+_OLDER_UNTIL = (0, 11, 1)  # jaxlib
 _WORTH_KEEPING = 0.0  # s of compilation: small programs add up to 2 s of a study
 
 
@@ -24,7 +24,7 @@ def fast_cpu_flags() -> list[str]:
     """What `use_fast_cpu` adds to `XLA_FLAGS`, for the jaxlib that is installed."""
     from importlib.metadata import version  # 50 ms, which jax takes anyway
 
-    early = tuple(int(n) for n in version("jaxlib").split(".")[:2]) < _OLDER_UNTIL
+    early = tuple(int(n) for n in version("jaxlib").split(".")[:3]) < _OLDER_UNTIL
     flags = [_LOOPS, "--xla_cpu_prefer_vector_width=512", _QUICK]
     return [*flags, _OLDER] if early else flags
 

@@ -171,7 +171,7 @@ def _of_window(bristle: Any, loads: TurningWindow) -> str:
     if not loads.open:
         return (
             "no critical load turns it over against the nap and only then: it would have "
-            f"to be above {least:.6g} N and below {greatest:.6g} N"
+            f"to be above {least:.6g} N and below {greatest:.6g} N, as no load is"
         )
     soft, stiff = stiffnesses(loads, bristle.length)
     return (

@@ -31,7 +31,7 @@ def draw_trajectories(
     """Draw `z_eps` for a few eps of one gamma over the limit `z`, the strip shaded.
 
     `gamma`: the nearest to 1 where None; `eps`: largest, middle and smallest where None.
-    A panel below follows a few slips of the largest eps whose slips the times resolve.
+    A panel beside it follows a few slips of the largest eps whose slips the times resolve.
     """
     dataset = whole_grid(dataset)
     gamma = choose_gamma(dataset, gamma)

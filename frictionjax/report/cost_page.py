@@ -176,8 +176,8 @@ def _trust(data: xr.Dataset) -> str:
     count, wrong = data.status.size, int(np.sum(data.wrong.values > 0))
     undone = int(np.sum(data.status.values != int(Status.OK)))
     said = (
-        f"Of {count} runs {wrong or 'none'} reported success and were half an eps or more "
-        "off"
+        f"Of {count} runs {wrong or 'none'} reported success and {_were(wrong)} half an "
+        "eps or more off"
     )
     if wrong:
         named = [
@@ -186,7 +186,11 @@ def _trust(data: xr.Dataset) -> str:
             if np.any(data.wrong.sel(solver=name).values > 0)
         ]
         said += f" ({', '.join(named)})"
-    return f"{said}, and {undone or 'none'} were too slow or failed."
+    return f"{said}, and {undone or 'none'} {_were(undone)} too slow or failed."
+
+
+def _were(count: int) -> str:
+    return "was" if count == 1 else "were"
 
 
 def _picture_section(facts: CostFacts) -> Section:

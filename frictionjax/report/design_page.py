@@ -69,8 +69,11 @@ _ABOUT = (
 )
 _CAPTIONS = {
     "design": (
-        "The design found: what it gives against what can be chosen, or the surface with "
-        "its slopes, other surfaces that would do as well in grey."
+        "What bristles give, over the number that can be chosen: the dot is the design "
+        "found, the dashed line what was wanted."
+    ),
+    "surface": (
+        "The surface found, and its slopes; other surfaces that would do as well in grey."
     ),
     "map": (
         "Friction over a plane of designs: across the number that is free, up the "
@@ -133,8 +136,11 @@ def _pictures(facts: DesignFacts) -> list[Html]:
         f"The design gives {float(law.rho_plus):.6g} N to the right and "
         f"{float(law.rho_minus):.6g} N to the left."
     )
+    captions = dict(_CAPTIONS)
+    if set(facts.wanted) == {"rho_plus", "rho_minus"}:
+        captions["design"] = captions["surface"]
     return [
-        shown(Captioned(figure, f"{facts.verdict} {gives} {_CAPTIONS[n]}", _CAPTIONS[n]), n)
+        shown(Captioned(figure, f"{facts.verdict} {gives} {captions[n]}", captions[n]), n)
         for n, figure in facts.pictures.items()
     ]
 

@@ -76,8 +76,8 @@ _ABOUT = (
     "Dry friction does not depend on the speed; viscosity does. Yet a bristle that moves "
     "through a viscous medium over a surface with ever smaller bumps ends up with dry "
     "friction, and more of it in one direction than in the other. This report follows such "
-    "a bristle for smaller and smaller bumps, of a distance eps, and measures how fast its "
-    "motion comes to that of dry friction."
+    "a bristle for smaller and smaller bumps, a distance eps apart, and measures how fast "
+    "its motion comes to that of dry friction."
 )
 _SOLVERS = (
     "Another solver than the library's own has made these values: nothing bounds them. "
@@ -192,7 +192,9 @@ def _motion(facts: StudyFacts) -> list[Section]:
 
 
 def _picture(facts: StudyFacts, name: str, figure: Figure) -> Html:
-    told, caption = picture_of(name, facts.found, facts.law, _shown_gamma(facts.data))
+    told, caption = picture_of(
+        name, facts.found, facts.law, _shown_gamma(facts.data), len(figure.axes)
+    )
     return shown(Captioned(figure, told, caption), name.replace("_", " "))
 
 
@@ -262,7 +264,7 @@ def _panel(facts: StudyFacts, name: str) -> Figure:
 
 def _cells(facts: StudyFacts) -> list[Section]:
     if facts.found.spread is not None:
-        return [Section("What proves them", [paragraph(_worst_sentence(facts.data))])]
+        return [Section(_PROOFS_OF, [paragraph(_worst_sentence(facts.data))])]
     cells = Section(
         "Every computation",
         [paragraph(_CELLS), table_region(sweep_table(facts.data), "Cells")],
@@ -273,7 +275,7 @@ def _cells(facts: StudyFacts) -> list[Section]:
         if proofs is None
         else [paragraph(_PROOFS), table_region(proofs, "Certificates")]
     )
-    return [cells, Section("What proves them", blocks)]
+    return [cells, Section(_PROOFS_OF, blocks)]
 
 
 def _worst_sentence(data: xr.Dataset) -> str:
@@ -297,14 +299,17 @@ _CELLS = (
     "One line for each eps and gamma. The largest error of the state is in m and in units "
     "of eps, that of the dissipated energy in J; steps are those of the integrator."
 )
+_PROOFS_OF = "What proves the numbers"
 _PROOFS = (
     "Computations that follow every slip from the start are checked by their energy "
     "balance. Where there are too many slips, states are proven by brackets: one "
     "computation from provably below and one from provably above, which cannot cross; the "
-    "widest bracket says how near they have come. `sampled` is the share of the way that "
-    "is known from some of its slips. The residual says by how much the energy balance of "
-    "the whole motion fails to close, in J and as a share of the energy dissipated. A "
-    "status other than `ok` means that the numbers of its line cannot be trusted."
+    "widest bracket says how near they have come. `from every slip`, `by brackets` and `by "
+    "slip map` count the times kept by how the state there was found; `sampled` is the "
+    "share of the way whose energies and largest distances are known from some of its "
+    "slips. The residual says by how much the energy balance of the whole motion fails to "
+    "close, in J and as a share of the energy dissipated. A status other than `ok` means "
+    "that the numbers of its line cannot be trusted."
 )
 
 

@@ -83,8 +83,9 @@ _CAPTIONS = {
     "trajectories": (
         "The state over time for a large, a middle and a small eps. The dashed line is "
         "the limit, dry friction; the shaded strip holds all states at which friction "
-        "can hold the bristle. Right, where it is: a few slips from hollow to hollow."
+        "can hold the bristle."
     ),
+    "close trajectories": "Right: a few slips from hollow to hollow, framed on the left.",
     "loop": (
         "The friction force against the state, once to and fro. The smaller eps, the "
         "nearer the loop is to the two levels of dry friction."
@@ -121,8 +122,10 @@ _WHAT = {
 }
 
 
-def picture_of(name: str, found: Study, law: Coefficients, gamma: float) -> tuple[str, str]:
-    """What a picture tells, with its numbers, and how to read it."""
+def picture_of(
+    name: str, found: Study, law: Coefficients, gamma: float, panels: int = 1
+) -> tuple[str, str]:
+    """What a picture tells, with its numbers, and how to read it, its `panels` all."""
     data = found.dataset
     if found.spread is not None:
         return _over_rows(found), _CAPTIONS["rows"]
@@ -130,6 +133,8 @@ def picture_of(name: str, found: Study, law: Coefficients, gamma: float) -> tupl
         return _errors_told(found, name), _CAPTIONS[name]
     if name == "trajectories":
         told = _trajectories_told(data, gamma)
+        if panels > 1:
+            return told, f"{_CAPTIONS[name]} {_CAPTIONS['close trajectories']}"
     elif name == "dissipation":
         told = _dissipation_told(data, gamma)
     elif name == "loop":

@@ -53,7 +53,9 @@ def test_flags_of_your_own_are_left_alone(monkeypatch):
     assert "--xla_cpu_prefer_vector_width" in names
 
 
-@pytest.mark.parametrize(("installed", "known"), [("0.12.0.1", True), ("0.13.0", False)])
+@pytest.mark.parametrize(
+    ("installed", "known"), [("0.11.0", True), ("0.11.2", False), ("0.12.0.1", False)]
+)
 def test_later_versions_are_told_nothing_that_they_may_not_know(
     installed, known, monkeypatch
 ):

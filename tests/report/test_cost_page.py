@@ -89,6 +89,13 @@ def test_where_nothing_is_accurate_enough_it_says_so():
     assert "none reported success" in verdict_of_cost(data.assign(wrong=0 * data.wrong))
 
 
+def test_one_run_is_no_plural():
+    data = measured()
+    one = data.wrong.dims, np.arange(data.wrong.size).reshape(data.wrong.shape) == 0
+    said = verdict_of_cost(data.assign(wrong=one))
+    assert "Of 12 runs 1 reported success and was half an eps or more off" in said
+
+
 def test_its_picture_is_told_method_by_method(page):
     (told,) = (
         one["alt"] for one in page.of("img") if "error against seconds" in one["alt"]

@@ -56,6 +56,8 @@ def test_a_bristle_for_a_ratio(tmp_path):
     assert float(scene.duration) == float(before.duration)
     page = checked_page((folder / "report.html").read_text(encoding="utf-8"))
     _require_told(page, names, float(scene.bristle.angle))
+    assert "the dot is the design found" in page.text
+    assert "The surface found" not in page.text
     lines = {line.split("  ")[0]: line for line in result.stdout.splitlines()}
     assert "1.5" in lines["achieved"]
     assert f"{float(scene.bristle.angle):.8g}"[:8] in lines["angle"]
@@ -98,8 +100,11 @@ def test_a_surface_within_bounds_and_its_rod(tmp_path):
     folder = tmp_path / "bounded"
     asked = ("--rho-plus", 0.12, "--rho-minus", -0.05, "--harmonics", 8)
     bounds = ("--free", "angle", "--bounds", 0.9, 1.3, "--smallest-radius", 0.4)
-    result = run("design", *asked, *bounds, "--out", folder)
+    result = run("design", *asked, *bounds, "--report", "--out", folder)
     assert result.exit_code == 0, result.output
+    page = checked_page((folder / "report.html").read_text(encoding="utf-8"))
+    assert "The surface found, and its slopes" in page.text
+    assert "the dot is the design found" not in page.text
     scene = fx.load_scene(folder / "design.toml")
     law = fx.friction(scene)
     assert float(law.rho_plus) == pytest.approx(0.12, rel=1e-6)

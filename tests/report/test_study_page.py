@@ -74,7 +74,10 @@ def test_failures_are_told_first_and_by_name(written):
 
 
 def test_where_none_failed_it_says_so(tmp_path):
-    text = checked_page(report_of(tmp_path, sweep_like(failed=False))).text
+    resolved = sweep_like(failed=False).interp(time=np.linspace(0.0, 3.0, 601))
+    resolved["status"] = resolved.status.astype(np.int8)
+    text = checked_page(report_of(tmp_path, resolved)).text
+    assert "Right: a few slips from hollow to hollow" in text
     assert "None of the 12 computations failed" in text
     assert "No cell failed, of 12." in text
     assert "Failed cells" not in text
@@ -102,6 +105,20 @@ def test_pictures_are_told_with_their_numbers(written):
     assert "eps^0.500" in errors
     (loop,) = (one for one in told if one.startswith("Loop"))
     assert "0.1204 N" in loop
+
+
+def test_letters_of_the_equation_are_explained(written):
+    text = checked_page(written[1]).text
+    assert "F(ε w(y))" in text.replace("( ", "(").replace(" )", ")")
+    for letter in ("z is the state", "w is the height", "F is the", "A by how many m"):
+        assert letter in text
+
+
+def test_captions_tell_of_no_panel_that_is_not_there(written):
+    """These times resolve no slip; where none failed they do."""
+    text = checked_page(written[1]).text
+    assert "at which friction can hold the bristle." in text
+    assert "Right: a few slips" not in text
 
 
 def test_the_verdict_is_that_of_the_gamma_nearest_to_one():

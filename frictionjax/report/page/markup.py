@@ -14,11 +14,12 @@ Html = NewType("Html", str)
 
 _CODE = re.compile("`([^`]+)`")
 _POWER = re.compile(r"\^(-?\w+(?:\.\d+)?)")
+_TO_ZERO = "eps\u00a0\u2192\u00a00"  # browsers break a line inside of `->`
 
 
 def inline(text: str) -> Html:
-    """A text, with code where backticks are, and powers raised."""
-    raised = _POWER.sub(r"<sup>\1</sup>", html.escape(text))
+    """A text, with code where backticks are, powers raised, and `eps -> 0` in one piece."""
+    raised = _POWER.sub(r"<sup>\1</sup>", html.escape(text.replace("eps -> 0", _TO_ZERO)))
     return Html(_CODE.sub(r"<code>\1</code>", raised))
 
 

@@ -20,6 +20,11 @@ _EQUATION = (
     "the load is large enough, and then slips into the next one: that is what becomes dry "
     "friction as eps -> 0."
 )
+_GEOMETRY = (
+    "`w` is the height of the surface at the place `y` of the tip, both in periods. `F` is "
+    "the bristle's energy in J and `A` by how many m its root is ahead of where it stands "
+    "on level ground, each for the height of the surface under the tip."
+)
 
 
 def scene_sentence(scene: Scene) -> str:
@@ -40,7 +45,7 @@ def scene_section(scene: Scene, law: Coefficients, eps: float, gamma: float) -> 
         paragraph(scene_sentence(scene)),
         shown(Captioned(plot.draw_parts(scene), _parts_told(scene), _PARTS), "the scene"),
         equation(text),
-        paragraph(_EQUATION),
+        paragraph(f"{_EQUATION} {_GEOMETRY}" if "A(eps w(y))" in text else _EQUATION),
         shown(
             Captioned(plot.draw_forces(scene), _forces_told(scene, law), _FORCES), "forces"
         ),

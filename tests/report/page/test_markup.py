@@ -36,6 +36,10 @@ def test_texts_are_escaped_everywhere():
         assert "alert(1)" in page.text
 
 
+def test_no_line_ends_inside_of_an_arrow():
+    assert inline("as eps -> 0: 1 -> 2") == "as eps\u00a0\u2192\u00a00: 1 -&gt; 2"
+
+
 def test_code_and_powers_are_shown():
     assert inline("`a<b` is eps^1.000, eps^gamma.") == (
         "<code>a&lt;b</code> is eps<sup>1.000</sup>, eps<sup>gamma</sup>."
