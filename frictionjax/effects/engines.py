@@ -69,7 +69,7 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
     ("Noise", _E.SLIDE): "friction_curve, of a scene",
     ("Inertia", _E.SLIDE): "sweep of a long ramp: its dissipation over its way",
     ("AxialLoad", _E.ENSEMBLE): "mechanics or sweep, of a scene without noise",
-    ("Noise", _E.WINDOWED): 'method="auto", and key',
+    ("Noise", _E.WINDOWED): 'method="auto", and key: in tiles, which skip no step',
     ("Noise", _E.PATH): 'method="auto", and key',
     (
         "Inertia",

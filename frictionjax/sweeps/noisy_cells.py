@@ -12,7 +12,7 @@ from .._compile import crew
 from ..effects import Noise
 from ..limit import solve_limit
 from ..model import Scene, coefficients_jit, strips_at
-from ..stochastic import cell_keys, noisy_paths
+from ..stochastic import cell_keys, noisy_path
 from ..wiggly import Status
 from .noiseless import without_noise
 
@@ -63,9 +63,9 @@ def noisy_columns(
     def cell(index: int) -> dict[str, np.ndarray]:
         size, watched = sizes[index], known[sizes[index]]
         numbers = {"eps": size, "gamma": powers[index], "ts": watched.times}
-        path = noisy_paths(scene, noise, keys=keys[index : index + 1], **numbers)
+        path = noisy_path(scene, noise, key=keys[index], **numbers)
         report(1 / sizes.size)
-        return _row(path.z[0], bool(path.ok[0]), path.steps, ts, watched, suprema)
+        return _row(path.z, path.ok, path.steps, ts, watched, suprema)
 
     rows = list(crew("noise").map(cell, range(sizes.size)))
     values = {name: np.stack([row[name] for row in rows]) for name in rows[0]}
