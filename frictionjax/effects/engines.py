@@ -41,7 +41,7 @@ def engine_of(method: Any) -> Engine:
 _E = Engine
 _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset(
-        {_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP, _E.CERTIFICATE}
+        {_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP, _E.CERTIFICATE, _E.SLIDE}
     ),
     "Noise": frozenset({_E.RESOLVED, _E.SWEEP, _E.ENSEMBLE, _E.FRICTION_CURVE}),
     "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE}),
@@ -64,7 +64,6 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
     ("CompliantArray", _E.MECHANICS): _ALONE,
     ("CompliantArray", _E.ENSEMBLE): _ALONE,
     ("CompliantArray", _E.FRICTION_CURVE): _ALONE,
-    ("CompliantArray", _E.SLIDE): "one bristle: the array's mean force a bristle is its",
     ("AxialLoad", _E.SLIDE): "mechanics or sweep, of a scene",
     ("Noise", _E.SLIDE): "friction_curve, of a scene",
     ("Inertia", _E.SLIDE): "sweep of a long ramp: its dissipation over its way",
