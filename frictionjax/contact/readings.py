@@ -49,6 +49,7 @@ _UNITS = {
     "axial_force": ("N", "force along the bristle, traction positive"),
     "compression": ("N", "force along the rod, compression positive"),
     "buckling_share": ("1", "compression over the critical load"),
+    "sprung_share": ("1", "compression over the critical load of the rod on its spring"),
     "support_force": ("N", "force of the horizontal spring on the root"),
     "energy_support": ("J", "energy of the horizontal spring"),
     "energy_bristle": ("J", "energy of the bristle"),
@@ -61,6 +62,7 @@ _NO_BRISTLE = "the abstract setting has no bristle"
 _NO_SPRING = "the support is no linear spring"
 _ROOT = "the root of this bristle is known by z alone: u is z"
 _UNKNOWN_REST = "rest length of the horizontal spring taken as 0"
+_BENT = "of straight rods; in between it has given way"
 _OTHER_SUPPORT = "Phi(z) - l z, and -l' z: of a support that is no linear spring"
 
 
@@ -102,6 +104,9 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
     in between it is an elastica over its pinned tip: theta, length and what is along it are
     those of its chord. A limit solution tells over `jump` when it jumps and what that loses
     (`jump_time`, `jump_from`, `jump_to`, `jump_loss`), which is in `dissipation` too.
+    `buckling_share` is then over the load at which it turns, between two hinges; with
+    `effects.AxialLoad` too, `sprung_share` is over that of the rod on its spring, in
+    `sprung_load` (N) and `sprung_buckling`, NaN while it is bent.
 
     Raises `ValueError` for a batch of solutions, an eps that does not fit, or an effect
     whose forces are not those of one bristle.
@@ -158,7 +163,13 @@ def _with_turning(
         "buckling_share": compression / critical,
     }
     said = "turns over where the share comes to 1 while the root moves against the nap"
-    return columns, _system(eps) | {"critical_load": critical, "buckling": said}
+    system = _system(eps) | {"critical_load": critical, "buckling": said}
+    straight = np.where(np.asarray(solution.mode) == 0, np.nan, compression)
+    reading = axial_reading(scene, straight)
+    if reading is not None:
+        columns["sprung_share"] = reading.share
+        system |= {"sprung_load": reading.critical, "sprung_buckling": reading.verdict}
+    return columns, system
 
 
 def _eps_of(scene: Scene, eps: Any, in_limit: bool) -> Any:
@@ -247,7 +258,7 @@ def _why_missing(scene: Scene, name: str) -> str:
 
 
 def _notes(scene: Scene) -> dict[str, dict[str, str]]:
-    notes = {}
+    notes = {"sprung_share": {"missing": _BENT}}
     if scene.bristle is None or scene.bristle.geometry(jnp.zeros(())) is None:
         notes["u"] = {"note": _ROOT}
     if not isinstance(scene.load, Pulled):

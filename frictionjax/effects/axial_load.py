@@ -15,7 +15,9 @@ class AxialLoad(AbstractEffect):
     the root and hinged at the tip. Below the critical load of that column it is "not shown
     to buckle", which is not "stable": bristles that are sheared at the tip can buckle below
     it (J. R. Soc. Interface 7, 1581, 2010). `mechanics` tells the compression along a
-    solution, `sweep` and `study` the largest of every cell.
+    solution, `sweep` and `study` the largest of every cell. Beside `NapFlip`, whose rod
+    gives way as one between two hinges and has the same B, they tell what that leaves: how
+    near its straight modes come to the load of the rod on its spring.
 
     Raises `ValueError` for a bending stiffness that is not positive and finite.
     """

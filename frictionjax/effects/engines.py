@@ -5,7 +5,10 @@ from collections.abc import Sequence
 from itertools import combinations
 from typing import Any
 
+from .._checks import is_known, require
 from .abstract import AbstractEffect, Stage
+from .axial_load import AxialLoad
+from .nap_flip import NapFlip
 
 
 class Engine(enum.Enum):
@@ -38,7 +41,7 @@ def engine_of(method: Any) -> Engine:
 _E = Engine
 _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset(
-        {_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP, _E.CERTIFICATE}
+        {_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP, _E.CERTIFICATE, _E.SLIDE}
     ),
     "Noise": frozenset({_E.RESOLVED, _E.SWEEP, _E.ENSEMBLE, _E.FRICTION_CURVE}),
     "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE}),
@@ -61,12 +64,11 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
     ("CompliantArray", _E.MECHANICS): _ALONE,
     ("CompliantArray", _E.ENSEMBLE): _ALONE,
     ("CompliantArray", _E.FRICTION_CURVE): _ALONE,
-    ("CompliantArray", _E.SLIDE): "one bristle: the array's mean force a bristle is its",
     ("AxialLoad", _E.SLIDE): "mechanics or sweep, of a scene",
     ("Noise", _E.SLIDE): "friction_curve, of a scene",
     ("Inertia", _E.SLIDE): "sweep of a long ramp: its dissipation over its way",
     ("AxialLoad", _E.ENSEMBLE): "mechanics or sweep, of a scene without noise",
-    ("Noise", _E.WINDOWED): 'method="auto", and key',
+    ("Noise", _E.WINDOWED): 'method="auto", and key: in tiles, which skip no step',
     ("Noise", _E.PATH): 'method="auto", and key',
     (
         "Inertia",
@@ -112,7 +114,7 @@ _APART |= {
     frozenset({"NapFlip", other}): "one of them: its rod is bent and turns over"
     for other in (
         *("LeadingOrder", "RigidArray", "CompliantArray"),
-        *("AxialLoad", "Noise", "Inertia"),
+        *("Noise", "Inertia"),
     )
 }
 _APART |= {
@@ -147,13 +149,26 @@ def require_done(effects: Sequence[AbstractEffect], engine: Engine) -> None:
 
 
 def require_together(effects: Sequence[AbstractEffect]) -> None:
-    """Raise `ValueError` for two of a kind, or two that exclude each other."""
+    """Raise `ValueError` for two of a kind, two that exclude each other, or two rods."""
     for first, second in combinations(effects, 2):
         pair = frozenset({_name(first), _name(second)})
         why = "one of each kind" if len(pair) == 1 else _APART.get(pair)
         if why is not None:
             names = f"{_name(first)} and {_name(second)}"
             raise ValueError(f"scene.effects = {names}: needs {why}")
+    _require_one_rod(effects)
+
+
+def _require_one_rod(effects: Sequence[AbstractEffect]) -> None:
+    """Raise `ValueError` where effects are given rods of different bending stiffness."""
+    given = {_name(e): e.bending_stiffness for e in effects if isinstance(e, AxialLoad)}
+    given |= {_name(e): e.bending_stiffness for e in effects if isinstance(e, NapFlip)}
+    if len(given) < 2 or not all(map(is_known, given.values())):
+        return
+    (name, first), (other, second) = given.items()
+    allowed = f"one rod, so that of effects.{other}, {float(second):.6g} N m^2"
+    same = float(first) == float(second)
+    require(same, f"effects.{name}.bending_stiffness", float(first), allowed)
 
 
 def require_bristle(effects: Sequence[AbstractEffect], bristle: Any) -> None:

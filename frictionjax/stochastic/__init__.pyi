@@ -2,6 +2,9 @@ from .constant_force import diffusion_ratio as diffusion_ratio
 from .constant_force import mean_speed as mean_speed
 from .ensembles import ensemble as ensemble
 from .histograms import histogram as histogram
+from .one_path import OnePath as OnePath
+from .one_path import noisy_path as noisy_path
+from .path_steps import TooManyStepsError as TooManyStepsError
 from .paths import MeanInterval as MeanInterval
 from .paths import NoisyCell as NoisyCell
 from .paths import NoisyPaths as NoisyPaths

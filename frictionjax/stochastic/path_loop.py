@@ -58,12 +58,17 @@ class _March(NamedTuple):
     out: Float[Array, "times 2 lanes"]
 
 
-def _draws(
+def block_draws(
     key: UInt32[Array, " words"], block: Int[Array, ""], count: int
 ) -> Float[Array, " count"]:
     """The normal numbers of a block of steps."""
     path = jax.random.wrap_key_data(key, impl="threefry2x32")
     return jax.random.normal(jax.random.fold_in(path, block), (count,))
+
+
+def first_draw(key: UInt32[Array, " words"]) -> Float[Array, ""]:
+    """R_0 of a path."""
+    return block_draws(key, jnp.uint32(_BEFORE), 1)[0]
 
 
 @Program
@@ -91,7 +96,7 @@ def run_lanes(
 
     def march(march: _March) -> _March:
         first = march.block * size
-        noise = jax.vmap(lambda key: _draws(key, march.block, size))(keys).T
+        noise = jax.vmap(lambda key: block_draws(key, march.block, size))(keys).T
         pulls = jax.vmap(load)(step * (first + jnp.arange(size + 1)))
         steps = noise, pulls[:-1], pulls[1:]
         state, values = jax.lax.scan(advance, march.state, steps)
@@ -110,7 +115,7 @@ def run_lanes(
         return _March(march.block + 1, state, written, out)
 
     nothing = jnp.zeros_like(z0)
-    before = jax.vmap(lambda key: _draws(key, jnp.uint32(_BEFORE), 1))(keys)[:, 0]
+    before = jax.vmap(first_draw)(keys)
     out = jnp.broadcast_to(jnp.stack([z0, nothing]), (wanted.size, 2, z0.size))
     start = _March(
         jnp.zeros((), int), _State(z0, nothing, before), jnp.sum(wanted <= 0), out

@@ -4,9 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._checks import require
+from .._checks import as_text
 from .force_table import TabulatedForce
 from .settings import SETTINGS
+
+
+class TooManyStepsError(ValueError):
+    """A path that would take more steps than are counted."""
 
 
 class PathSteps(NamedTuple):
@@ -31,14 +35,16 @@ def steps_of_paths(
     step times curvature over viscosity = 1, one step keeps the order of states under the
     same noise, so that two paths of one key that start apart close in on every other.
 
-    Raises `ValueError` naming eps where steps are more than 2^31.
+    Raises `TooManyStepsError`, a `ValueError` naming eps, where steps are more than 2^31.
     """
     curvature = stiffness + max(force.curvature, 0.0)
     by_curvature = SETTINGS.step_curvature * viscosity / curvature
     by_diffusion = 0.5 * viscosity * (SETTINGS.step_diffusion * eps) ** 2 / temperature
-    steps = np.ceil(duration / min(by_curvature, by_diffusion))
-    few = steps <= SETTINGS.most_steps
-    allowed = f"at most {SETTINGS.most_steps} steps of a path, here {steps:.3g}"
-    require(few, "eps", eps, allowed)
+    step = min(by_curvature, by_diffusion)
+    # A support may be so stiff somewhere that floats do not hold it.
+    steps = np.ceil(duration / step) if step > 0 else np.inf
+    if not steps <= SETTINGS.most_steps:
+        allowed = f"at most {SETTINGS.most_steps} steps of a path, here {steps:.3g}"
+        raise TooManyStepsError(f"eps = {as_text(eps)}: needs {allowed}")
     total = max(1, int(steps))
     return PathSteps(duration / total, total)

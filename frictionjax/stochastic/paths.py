@@ -122,14 +122,7 @@ def run_paths(
     Paths go through the loop in rows of the same length, whatever their number: each has
     the same bits in any company.
     """
-    force = tabulated_force(cell.potential, cell.eps)
-    plan = _planned(cell, force)
-    bath = Bath(
-        eps=jnp.asarray(cell.eps),
-        viscosity=jnp.asarray(cell.viscosity),
-        temperature=jnp.asarray(cell.temperature),
-        step=jnp.asarray(plan.step),
-    )
+    force, plan, bath = cell_loop(cell)
     nearest = np.minimum(np.rint(ts / plan.step).astype(int), plan.total)
     # Rooms for times: another number of them compiles nothing.
     wanted = np.full(padded_size(ts.size, SETTINGS.times), nearest[-1])
@@ -144,6 +137,19 @@ def run_paths(
     found = in_chunks(run_lanes, SETTINGS.lanes, fixed, (keys, z0))
     z, work = (values[:, : ts.size] for values in found)
     return NoisyPaths(ts, z, work, plan.step, plan.total)
+
+
+def cell_loop(cell: NoisyCell) -> tuple[TabulatedForce, PathSteps, Bath]:
+    """What loops of steps are given of a cell: its force in a table, steps, bath."""
+    force = tabulated_force(cell.potential, cell.eps)
+    plan = _planned(cell, force)
+    bath = Bath(
+        eps=jnp.asarray(cell.eps),
+        viscosity=jnp.asarray(cell.viscosity),
+        temperature=jnp.asarray(cell.temperature),
+        step=jnp.asarray(plan.step),
+    )
+    return force, plan, bath
 
 
 def _planned(cell: NoisyCell, force: TabulatedForce) -> PathSteps:
@@ -193,6 +199,19 @@ def noisy_paths(
     Raises `ValueError` for bad numbers, an eps that the bristle does not allow or whose
     wells floats do not tell apart, and where a path takes more than 2^31 steps.
     """
+    scene, cell, times = checked_cell(scene, noise, eps, gamma, ts)
+    start = scene.z0 if z0 is None else z0
+    require_numbers("z0", start, "finite positions in m", lambda v: np.isfinite(v))
+    start = np.asarray(start, dtype=float)
+    fits = start.shape in ((), (len(keys),))
+    require(fits, "z0", f"shape {start.shape}", f"one number, or shape ({len(keys)},)")
+    return run_paths(cell, times, keys, np.broadcast_to(start, (len(keys),)))
+
+
+def checked_cell(
+    scene: Scene, noise: Noise, eps: float, gamma: float, ts: Any
+) -> tuple[Scene, NoisyCell, Float[np.ndarray, " times"]]:
+    """A scene with effects of the potential worked in, what moves of it, and its times."""
     scene, noise = composed(known_scene(scene)), checked(noise)
     known = is_concrete(scene, noise, eps, gamma, ts)
     require(known, "noise", "traced numbers", "known ones: paths have no derivatives")
@@ -201,11 +220,6 @@ def noisy_paths(
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)
     times = np.asarray(require_times(scene, ts))
-    start = scene.z0 if z0 is None else z0
-    require_numbers("z0", start, "finite positions in m", lambda v: np.isfinite(v))
-    start = np.asarray(start, dtype=float)
-    fits = start.shape in ((), (len(keys),))
-    require(fits, "z0", f"shape {start.shape}", f"one number, or shape ({len(keys)},)")
     cell = NoisyCell(
         potential=scene.potential,
         support=scene.support,
@@ -215,4 +229,4 @@ def noisy_paths(
         viscosity=float(viscosity_of(eps, gamma)),
         temperature=float(noise.temperature_at(eps)),
     )
-    return run_paths(cell, times, keys, np.broadcast_to(start, (len(keys),)))
+    return scene, cell, times

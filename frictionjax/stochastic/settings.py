@@ -59,6 +59,7 @@ class Settings(NamedTuple):
     # pays for all.
     lanes: int = 16
     moments: int = 512  # of the load, at which the support's stiffness is looked at
+    guesses: int = 4097  # times at which it is guessed where a path in tiles is
     times: int = 64  # of one compiled call; more are in rooms four times as large each
     most_steps: int = 2**31 - 2  # of a path: they are counted in 32 bits
     confidence: float = 0.95

@@ -12,7 +12,7 @@ from .._compile import crew
 from ..effects import Noise
 from ..limit import solve_limit
 from ..model import Scene, coefficients_jit, strips_at
-from ..stochastic import cell_keys, noisy_paths
+from ..stochastic import TooManyStepsError, cell_keys, noisy_path
 from ..wiggly import Status
 from .noiseless import without_noise
 
@@ -63,9 +63,15 @@ def noisy_columns(
     def cell(index: int) -> dict[str, np.ndarray]:
         size, watched = sizes[index], known[sizes[index]]
         numbers = {"eps": size, "gamma": powers[index], "ts": watched.times}
-        path = noisy_paths(scene, noise, keys=keys[index : index + 1], **numbers)
-        report(1 / sizes.size)
-        return _row(path.z[0], bool(path.ok[0]), path.steps, ts, watched, suprema)
+        try:
+            path = noisy_path(scene, noise, key=keys[index], **numbers)
+        except TooManyStepsError:
+            nothing, status = np.full(watched.times.shape, np.nan), Status.MAX_STEPS
+            return _row(nothing, status, 0, ts, watched, suprema)
+        finally:
+            report(1 / sizes.size)
+        status = Status.OK if path.ok else Status.NOT_FINITE
+        return _row(path.z, status, path.steps, ts, watched, suprema)
 
     rows = list(crew("noise").map(cell, range(sizes.size)))
     values = {name: np.stack([row[name] for row in rows]) for name in rows[0]}
@@ -97,14 +103,13 @@ def _watched(
 
 def _row(
     z: Float[np.ndarray, " n"],
-    good: bool,
+    status: Status,
     steps: int,
     ts: Float[np.ndarray, " t"],
     watched: _Watched,
     suprema: bool,
 ) -> dict[str, np.ndarray]:
     """Values of one cell by name."""
-    status = Status.OK if good else Status.NOT_FINITE
     row = {
         "z": z[np.searchsorted(watched.times, ts)],
         "status": np.asarray(int(status), dtype=np.int8),
@@ -116,6 +121,6 @@ def _row(
         outside = np.maximum(watched.lower - z, z - watched.upper)
         row["sup_error"] = np.max(np.abs(z - watched.z_limit))
         row["strip_excess"] = np.maximum(np.max(outside), 0.0)
-        if not good:
+        if status != Status.OK:
             row |= {"sup_error": np.asarray(np.nan), "strip_excess": np.asarray(np.nan)}
     return jax.tree_util.tree_map(np.asarray, row)

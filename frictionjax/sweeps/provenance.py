@@ -38,6 +38,7 @@ _MEANING = {
     "spread": ("m", "largest distance of runs at other tolerances"),
     "compression": ("N", "largest compression along the rod at the times asked for"),
     "buckling_share": ("1", "it over the critical load: below 1 not shown to buckle"),
+    "sprung_share": ("1", "it over the critical load of the rod on its spring"),
     "sup_error": ("m", "sup over [0, T] of |z_eps - z|"),
     "strip_excess": ("m", "sup over [0, T] of the distance of z_eps from the strip"),
     "status": (None, "how the cell ended"),

@@ -93,10 +93,12 @@ def scene_columns(
     columns["viscosity"] = (DIMS[:2], viscosity_of(request.eps, request.gamma[:, None]))
     known = _limit_values(scene, turning, limit)
     columns |= {name: (DIMS[2:][: v.ndim], v) for name, v in known.items()}
-    reading = largest_compression(scene, request.eps, columns["z"][1])
+    modes = None if turning is None else columns["mode"][1]
+    reading = largest_compression(scene, request.eps, columns["z"][1], modes)
     if reading is not None:
         columns["compression"] = DIMS[:2], reading.compression
-        columns["buckling_share"] = DIMS[:2], reading.share
+        share = "buckling_share" if turning is None else "sprung_share"
+        columns[share] = DIMS[:2], reading.share
     if turning is not None:
         from .turning_columns import NOTHING_OF_IT, attributes  # nothing else needs it
 

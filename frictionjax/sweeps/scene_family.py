@@ -111,18 +111,28 @@ def times_of(family: SceneFamily, ts: Any) -> Float[Array, " n"]:
     return family.each(lambda scene: require_times(scene, ts))[0]
 
 
+def _at_all_times(value: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """Values of cells, where other scenes have them over time too."""
+    value = np.asarray(value)
+    more = (1,) * (len(shape) - value.ndim)
+    return np.broadcast_to(value.reshape(*value.shape, *more), shape)
+
+
 def columns_of_family(found: list[SceneColumns], scenes: list[Scene]) -> Columns:
     """Columns of all scenes, `scene` in front; a column that one lacks is NaN there.
 
-    Laws are columns too, filled up with NaN: they differ in length.
+    What is told of a cell in one and over time in another is over time in all. Laws are
+    columns too, filled up with NaN: they differ in length.
     """
     names = dict.fromkeys(name for one in found for name in one.columns)
     columns: Columns = {}
     for name in names:
-        some = next(one.columns[name] for one in found if name in one.columns)
-        none = np.full(np.shape(some[1]), np.nan)
-        values = [one.columns[name][1] if name in one.columns else none for one in found]
-        columns[name] = (("scene", *some[0]), np.stack(values))
+        given = [one.columns[name] for one in found if name in one.columns]
+        dims, longest = max(given, key=lambda column: len(column[0]))
+        none = dims, np.full(np.shape(longest), np.nan)
+        some = [one.columns.get(name, none) for one in found]
+        values = [_at_all_times(v, np.shape(longest)) for _, v in some]
+        columns[name] = (("scene", *dims), np.stack(values))
     for name, dim in LAW_DIMS.items():
         rows = [np.asarray(one.laws.get(name, ()), dtype=float) for one in found]
         room = max(row.size for row in rows)

@@ -74,6 +74,9 @@ def sweep(
     `dissipation_graph_error` likewise (a second is worth `graph_power`). The strip is that
     of the limit's mode; what does not exist is NaN and says why in its attribute `missing`.
 
+    With `effects.AxialLoad` also `compression` (N) and `buckling_share`, the largest at
+    `ts`; beside `NapFlip` those of straight rods, and `sprung_share` for the second.
+
     Of a scene with `effects.Noise` each cell is one path, by fixed steps, independent of
     all others: `key`, a seed or a key of `jax.random`, with the bits of the cell's eps and
     gamma gives its own, so that a cell has the same bits alone and in any grid, and

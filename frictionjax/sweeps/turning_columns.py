@@ -27,6 +27,8 @@ NOTHING_OF_IT = {
     "bracket": "every slip is integrated from z0: there are no brackets",
     "z_minus": "of the rod in the limit's mode; NaN in between, where it has no strip",
     "z_plus": "of the rod in the limit's mode; NaN in between, where it has no strip",
+    "compression": "of straight rods: NaN where it is bent at all times asked for",
+    "sprung_share": "of straight rods: NaN where it is bent at all times asked for",
 }
 """What of a sweep's variables is NaN, wholly or in part, and why."""
 

@@ -231,11 +231,11 @@ def _require_unasked(accuracy: Any, max_steps: int, adjoint: Any) -> None:
 def _one_path(
     scene: Scene, noise: Noise, eps: Any, gamma: Any, ts: Array, key: Any
 ) -> Solution:
-    from ..stochastic import key_words, noisy_paths  # nothing else needs it
+    from ..stochastic import key_words, noisy_path  # nothing else needs it
 
-    keys = key_words(key)[None]
-    found = noisy_paths(scene, noise, eps=eps, gamma=gamma, keys=keys, ts=ts)
-    status = Status.OK if found.ok[0] else Status.NOT_FINITE
+    words = key_words(key)
+    found = noisy_path(scene, noise, eps=eps, gamma=gamma, key=words, ts=ts)
+    status = Status.OK if found.ok else Status.NOT_FINITE
     counts = {
         "steps": found.steps,
         "rejected": 0,
@@ -244,7 +244,7 @@ def _one_path(
         "step": found.step,
     }
     how = "a path with noise, by fixed steps (Leimkuhler and Matthews)"
-    z = jnp.asarray(found.z[0])
+    z = jnp.asarray(found.z)
     return Solution(ts, z, None, None, jnp.asarray(int(status)), counts, how)
 
 

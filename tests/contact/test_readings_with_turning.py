@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from rods_that_turn import REACH, jumping_scene, turning_scene
+from scipy.optimize import brentq
 
 import frictionjax as fx
+from frictionjax.limit import LimitSolution
 
 EPS = 0.02
 
@@ -155,6 +158,57 @@ def test_at_small_eps_it_is_the_limits(limit, wiggly):
         apart = np.abs(limit[name] - wiggly[name]).values
         assert np.max(apart[between]) < off, name
     assert np.max(np.abs(limit.p - wiggly.p).values[same]) < 5 * EPS
+
+
+@pytest.fixture(scope="module")
+def held():
+    """The limit's scene, asked for its axial load too, and the load of Timoshenko."""
+    one = turning_scene()
+    one = one.replace(effects=(*one.effects, fx.effects.AxialLoad(0.1)))
+    clamping = 2**0.5 / 0.1
+    u = brentq(lambda u: np.tan(u) - u / (1 + u**2 / clamping), np.pi + 1e-9, 4.6)
+    return one, u**2 * 0.1 / 2
+
+
+def test_straight_modes_are_held_against_the_rod_on_its_spring(held, limit):
+    one, load = held
+    data = fx.mechanics(one, fx.solve_limit(one, around()))
+    assert data.attrs["sprung_load"] == pytest.approx(load, rel=1e-9)
+    bent = data["mode"].values == 0
+    assert set(data["mode"].values) == {1, 0, -1}
+    assert np.all(np.isnan(data.sprung_share[bent]))
+    straight = data.compression[~bent] / load
+    np.testing.assert_allclose(data.sprung_share[~bent], straight, rtol=1e-9)
+    # It turns where it comes to the smaller load, so that this is all it comes to.
+    most = np.pi**2 * 0.1 / 2 / load
+    assert float(data.sprung_share.max()) == pytest.approx(most, rel=1e-2)
+    assert float(data.sprung_share.max()) < most + 1e-9
+    assert "not shown to buckle" in data.sprung_buckling
+    xr.testing.assert_identical(
+        data.drop_vars("sprung_share").drop_attrs(), limit.drop_attrs()
+    )
+    assert data.attrs.items() > limit.attrs.items()
+
+
+def test_slips_pass_the_load_of_the_rod_on_its_spring(held, wiggly):
+    one, load = held
+    data = fx.mechanics(one, fx.solve(one, EPS, 1.0, around(), accuracy=1e-4), EPS)
+    np.testing.assert_array_equal(data.compression, wiggly.compression)
+    straight = data.compression[data["mode"] != 0]
+    assert float(straight.max()) > 2 * load
+    assert data.sprung_buckling == "beyond the critical load somewhere: buckles"
+
+
+def test_where_it_is_bent_all_the_time_nothing_is_said(held):
+    one, _ = held
+    known = fx.solve_limit(one, around())
+    bent = np.asarray(known.mode) == 0
+    kept = {
+        name: np.asarray(getattr(known, name))[bent]
+        for name in ("ts", "z", "dissipation", "root", "mode", "tip")
+    }
+    data = fx.mechanics(one, LimitSolution(**kept))
+    assert data.sprung_buckling == "nothing straight to be told of at these times"
 
 
 def test_a_solution_of_another_scene_is_refused():

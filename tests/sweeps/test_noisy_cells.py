@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.stochastic import cell_keys, key_words
+from frictionjax.stochastic import cell_keys, key_words, path_steps
+from frictionjax.wiggly import Status
+from frictionjax.wiggly.equation.status import FailedCells
 
 TS = np.array([0.0, 0.5, 0.5, 1.3, 2.0])
 EPS, GAMMA = [0.1, 0.05], [0.75, 1.0]
@@ -39,6 +41,62 @@ def test_a_cell_has_the_same_bits_alone_in_any_grid_and_in_solve():
     assert not np.any(other.z[..., 1:] == alone.z[..., 1:])
     several = fx.sweep({"a": NOISY, "b": NOISY}, 0.05, 0.75, TS, key=3)
     assert np.array_equal(several.z[1], alone.z)
+
+
+def test_a_cell_that_fails_has_its_status_and_the_others_what_they_have_alone():
+    """Into a wall steeper than its steps know goes the hot one, not the cold one."""
+    wall = fx.supports.Convex(lambda z: 0.5 * z**2 + jnp.exp(200 * (z**2 - 9)))
+    hot = scene_with(fx.effects.Noise(3e8, 8.0)).replace(support=wall)
+    with pytest.warns(FailedCells, match=r"eps = 0\.1") as told:
+        data = fx.sweep(hot, [0.1, 0.05], [0.75], TS, key=3)
+    assert len(told) == 1
+    assert data.status.values.tolist() == [[Status.NOT_FINITE, Status.OK]]
+    failed, good = data.isel(gamma=0, eps=0), data.isel(gamma=0, eps=1)
+    assert failed.z.shape == TS.shape
+    assert np.isnan(failed.z[-1])
+    assert np.isnan(failed.sup_error)
+    assert np.isnan(failed.strip_excess)
+    alone = fx.sweep(hot, [0.05], [0.75], TS, key=3).squeeze()
+    for name in ("z", "sup_error", "strip_excess", "steps", "status"):
+        assert np.array_equal(good[name], alone[name]), name
+    assert np.all(np.isfinite(good.z))
+
+
+def test_a_cell_of_too_many_steps_has_its_status_too(monkeypatch):
+    """Alone such a path is refused by its eps."""
+    most = fx.solve(NOISY, 0.1, 1.0, TS, key=3).stats["steps"]
+    few = path_steps.SETTINGS._replace(most_steps=most)
+    monkeypatch.setattr(path_steps, "SETTINGS", few)
+    with pytest.warns(FailedCells, match=r"eps = 0\.05"):
+        data = fx.sweep(NOISY, EPS, [1.0], TS, key=3)
+    assert data.status.values.tolist() == [[Status.OK, Status.MAX_STEPS]]
+    assert np.all(np.isnan(data.z[0, 1]))
+    assert np.all(np.isfinite(data.z[0, 0]))
+    assert data.steps[0, 1] == 0
+    with pytest.raises(ValueError, match=rf"eps = 0\.05: needs at most {most} steps"):
+        fx.solve(NOISY, 0.05, 1.0, TS, key=3)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        scene_with(),
+        pytest.param(scene_with(fx.effects.Inertia(1e-4)), marks=pytest.mark.slow),
+        pytest.param(
+            scene_with(fx.effects.CompliantArray([0.0, 0.3])), marks=pytest.mark.slow
+        ),
+    ],
+)
+def test_scenes_of_other_effects_are_beside_it_as_alone(other):
+    """What one of them does not have is NaN."""
+    both = fx.sweep({"noisy": NOISY, "other": other}, [0.1], [1.0], TS, key=3)
+    for label, scene, key in (("noisy", NOISY, 3), ("other", other, None)):
+        one, alone = both.sel(scene=label), fx.sweep(scene, [0.1], [1.0], TS, key=key)
+        for name in alone.data_vars:
+            known = alone[name].broadcast_like(one[name]).transpose(*one[name].dims)
+            assert np.array_equal(one[name], known, equal_nan=True), name
+    assert np.all(np.isnan(both.dissipation.sel(scene="noisy")))
+    assert np.all(both.how.sel(scene="noisy") == 0)
 
 
 def test_keys_of_cells_are_all_different():

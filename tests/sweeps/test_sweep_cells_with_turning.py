@@ -54,6 +54,24 @@ def test_it_is_what_solve_says(jumping):
     np.testing.assert_array_equal(cell.root_limit, limit.root)
 
 
+def test_the_largest_compression_is_that_of_straight_rods(followed):
+    one = turning_scene()
+    one = one.replace(effects=(*one.effects, fx.effects.AxialLoad(0.1)))
+    data = fx.sweep(one, EPS[:2], [1.0], TS)
+    for name in followed:
+        known = followed[name]
+        same = known.sel(eps=EPS[:2]) if "eps" in known.dims else known
+        np.testing.assert_array_equal(data[name], same, err_msg=name)
+    read = fx.mechanics(one, fx.solve(one, EPS[1], 1.0, TS), EPS[1])
+    mode, cell = read["mode"].values, data.sel(gamma=1.0, eps=EPS[1])
+    both = [float(read.compression[mode == side].max()) for side in (1, -1)]
+    assert float(cell.compression) == pytest.approx(max(both), rel=1e-12)
+    share = max(both) / read.attrs["sprung_load"]
+    assert float(cell.sprung_share) == pytest.approx(share, rel=1e-12)
+    assert data.sprung_share.attrs["units"] == "1"
+    assert max(both) > 1.1 * min(both)
+
+
 def test_suprema_are_those_of_a_fine_curve(followed):
     ts = np.linspace(0, 4, 4001)
     one, eps = turning_scene(), EPS[1]

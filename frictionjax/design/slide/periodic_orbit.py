@@ -120,7 +120,7 @@ def survey_ground(slide: SlideScene) -> tuple[Real, Real, Real]:
     return grid[jnp.argmax(force)], jnp.max(climb), jnp.min(stretch)
 
 
-def _step(slide: SlideScene, x: Real, step: Real, level: Real) -> tuple[Real, Array]:
+def slide_step(slide: SlideScene, x: Real, step: Real, level: Real) -> tuple[Real, Array]:
     """One Rosenbrock step and its stages."""
 
     def slope(x: Real, level: Real) -> Real:
@@ -144,7 +144,7 @@ def _once(slide: SlideScene, start: Real, level: Real):
         step = jnp.clip(step_of(control.level, _FIRST), _SHORTEST, _LARGEST)
         last = way + step >= 1.0
         step = jnp.where(last, 1.0 - way, step)
-        new, stages = _step(slide, start + way, step, level)
+        new, stages = slide_step(slide, start + way, step, level)
         share = height * jnp.exp(-jnp.maximum(level, new))
         allowed = jnp.clip(_TOLERANCE * share, _TOLERANCE, _LOOSEST)
         good, control = judge(
@@ -175,7 +175,7 @@ def _end(slide: SlideScene, period: PeriodicOrbit, level: Real) -> Real:
 
     def one(i: Array, state: tuple[Array, Array]) -> tuple[Array, Array]:
         way, level = state
-        new, _ = _step(slide, period.start + way, period.steps[i], level)
+        new, _ = slide_step(slide, period.start + way, period.steps[i], level)
         return way + period.steps[i], new
 
     return jax.lax.fori_loop(0, period.used, one, (jnp.zeros(()), level))[1]
@@ -200,12 +200,12 @@ def replay(
         # A step that is not there goes nowhere: its derivatives must stay finite.
         safe = jnp.where(there, step, 1e-3)
         x = period.start + way
-        new, stages = _step(slide, x, safe, level)
+        new, stages = slide_step(slide, x, safe, level)
 
         def inside(share: Array) -> Array:
             return dense_output(_TABLEAU, level, new, stages, share)
 
-        share = _turn(level, new, turn)
+        share = rise_to_turn(level, new, turn)
         places = jnp.append(shares, share)
         forces, stretches = jax.vmap(slide.ground)(x + safe * places)
         drives = jnp.exp(inside(places))
@@ -219,7 +219,7 @@ def replay(
     return last, means, peaks
 
 
-def _turn(level: Real, new: Real, turn: Real) -> Real:
+def rise_to_turn(level: Real, new: Real, turn: Real) -> Real:
     """Share of a step at which D rises through `rate eps^gamma/k_h`, so that f turns.
 
     Else its end. Not differentiated, and a straight line does: f is stationary there.

@@ -15,6 +15,10 @@ class Settings(NamedTuple):
     # floats near 1 resolve do not replay. `least_pull` tells what that adds to forces.
     least_pull: float = 2e-15
 
+    # Curves of forces (`slide_curve.py`).
+    knots: int = 4  # of a step, between which they are straight
+    bristles: int = 20_000  # whose knots, 1500 each at most, are sorted
+
     # Slides (`slide_friction.py`).
     lanes: int = 4  # eps at least that are solved at once: one program for a few of them
     # Slides of known parts, rows of one program (`slide_rows.py`).

@@ -26,7 +26,13 @@ from ..._checks import (
 from ..._compile import Program, padded_size
 from ..._text import Named, ShownNumbers
 from ...bristles import AbstractBristle
-from ...effects import AbstractEffect, Engine, require_done, require_together
+from ...effects import (
+    AbstractEffect,
+    CompliantArray,
+    Engine,
+    require_done,
+    require_together,
+)
 from ...io import CODES, LEAF, record
 from ...model import (
     AbstractPotential,
@@ -41,6 +47,7 @@ from ...profiles import AbstractProfile
 from ...supports import Spring
 from ...wiggly import Status
 from .settings import SETTINGS
+from .slide_curve import array_peaks
 from .slide_rows import find_both_ways, slide_table
 from .slide_sides import Sides, one_side
 
@@ -196,8 +203,9 @@ def steady_slide(
     eps^gamma. `rate` (N/s, > 0): of the load, so that the tip moves at rate/k_h on
     average. `support`: a `Spring`, of 1 N/m where none is given. `effects`: those that
     change the potential, `effects.LeadingOrder` and `effects.RigidArray`, whose tips pull
-    at one spring together; of an `effects.CompliantArray` the mean force a bristle is that
-    of one.
+    at one spring together, and `effects.CompliantArray`, of which forces are means over
+    bristles: of a slide that of one, at any phases, as each does at other times what one
+    does; peaks are lower. Times N it is what the root feels of all. Of known numbers only.
 
     One period is integrated, to its fixed point: see `slide_period`. No transient and no
     number of slips enters, and derivatives (first ones, in every number of the parts and
@@ -224,9 +232,12 @@ def steady_slide(
     require_reach(wiggle, eps)
     numbers = as_real(gamma), as_real(rate), support.stiffness
     several = jnp.atleast_1d(sizes)
-    if is_concrete(wiggle, several, numbers):
-        found = _known_forces(wiggle, np.asarray(several), numbers)
+    array = next((e for e in effects if isinstance(e, CompliantArray)), None)
+    if is_concrete(wiggle, several, numbers, array):
+        found = _known_forces(wiggle, np.asarray(several), numbers, array)
     else:
+        one = "known numbers; traced, a slide of one bristle, whose mean force it has"
+        require(array is None, "effects.CompliantArray", "traced numbers", one)
         found = _forces_of(wiggle, several, numbers)
     wanted = slice(None) if sizes.ndim else 0
     return _joined(sizes, jax.tree_util.tree_map(lambda leaf: leaf[wanted], found))
@@ -236,6 +247,7 @@ def _known_forces(
     wiggle: AbstractPotential,
     eps: Float[np.ndarray, " n"],
     numbers: tuple[Real, Real, Real],
+    array: CompliantArray | None,
 ) -> Sides:
     """Of known parts, by their tables: one program for all of them, arrays (n, 2)."""
     if isinstance(wiggle, SummedPotential):
@@ -245,7 +257,33 @@ def _known_forces(
         tables, which = [slide_table(wiggle, float(eps.max()))], np.zeros(eps.size, int)
     gamma, rate, stiffness = (float(number) for number in numbers)
     found = find_both_ways(tables, which, eps, gamma, rate, stiffness).sides
+    if array is not None:
+        cells = [(tables[i], float(e)) for i, e in zip(which, eps, strict=True)]
+        found = _of_many(found, cells, (gamma, rate, stiffness), np.asarray(array.offsets))
     return Sides(*(jnp.asarray(column) for column in found))
+
+
+def _of_many(
+    one: Sides,
+    cells: list[tuple[AbstractPotential, float]],
+    numbers: tuple[float, float, float],
+    phases: Float[np.ndarray, " bristles"],
+) -> Sides:
+    """Means over bristles at these phases, of the slides of one in each cell (n, 2)."""
+    require(phases.size <= SETTINGS.bristles, *_too_many(phases.size))
+    if np.all(phases == phases[0]):
+        return one
+    rows = [array_peaks(table, eps, numbers, phases) for table, eps in cells]
+    peak, off = (np.stack(column) for column in zip(*rows, strict=True))
+    code, mean = np.asarray(one.code), np.abs(np.asarray(one.mean))
+    rough = (code == int(Status.OK)) & ~(off <= SETTINGS.added * mean)
+    code = np.where(rough, int(Status.STEP_TOO_SMALL), code)
+    return one._replace(peak=jnp.asarray(peak), code=jnp.asarray(code))
+
+
+def _too_many(count: int) -> tuple[str, int, str]:
+    most = f"at most {SETTINGS.bristles} bristles; fewer at random phases ripple as these"
+    return "effects.CompliantArray.offsets: number of bristles", count, most
 
 
 def _forces_of(

@@ -250,9 +250,10 @@ def test_arrays_have_derivatives_in_their_places_and_parts():
     ("effects", "message"),
     [
         (
-            (fx.effects.CompliantArray([0.0, 0.1]),),
-            "does not do CompliantArray: needs one bristle",
+            (fx.effects.CompliantArray(np.linspace(0, 1, 20_001)),),
+            r"CompliantArray\.offsets: number of bristles = 20001: needs at most 20000",
         ),
+        ((fx.effects.Noise(1e-3),), "does not do Noise: needs friction_curve"),
         (array_of([0.0, 0.5]), "effects: rho_plus = 0: needs tips whose forces"),
         (fx.effects.LeadingOrder(), r"effects = .*needs effects of frictionjax"),
     ],
