@@ -18,6 +18,12 @@ class Custom(AbstractBristle):
     written with `jax.numpy`; an `equinox.Module` with leaves is traced like other parts.
 
     Raises `ValueError` where `A(0) != 0`, `F'(0) = 0` or a value at 0 is not finite.
+
+    >>> import jax.numpy as jnp
+    >>> mine = fx.bristles.Custom(offset=lambda eta: -1.5 * eta, energy=jnp.exp)
+    >>> law = fx.friction(scene.profile, mine)
+    >>> print(f"rho = {law.rho_plus:.4f} N, {law.rho_minus:.4f} N")
+    rho = 0.1176 N, -0.0870 N
     """
 
     _stored: ClassVar = {"offset": "offset_fn", "energy": "energy_fn"}

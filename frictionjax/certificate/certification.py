@@ -81,6 +81,13 @@ def certify(
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.
+
+    >>> ts = np.linspace(0.0, 3.0, 501)
+    >>> z = fx.solve(scene, eps=0.1, ts=ts).z
+    >>> fx.certify(scene, 0.1, 1.0, ts, z).message
+    'the curve solves the wiggly system'
+    >>> fx.certify(scene, 0.1, 1.0, ts, z + 0.01).message
+    'a well was crossed without the force that this takes'
     """
     scene = scene_for(Engine.CERTIFICATE, scene)
     require_real("eps", eps, "eps > 0", lambda e: e > 0)

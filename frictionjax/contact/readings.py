@@ -105,6 +105,10 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
 
     Raises `ValueError` for a batch of solutions, an eps that does not fit, or an effect
     whose forces are not those of one bristle.
+
+    >>> forces = fx.mechanics(scene, fx.solve_limit(scene, ts=[0.0, 0.75, 3.0]))
+    >>> print(forces.tangential_force.values.round(4), forces.tangential_force.units)
+    [-0.     -0.1204 -0.1204] N
     """
     scene = scene_for(Engine.MECHANICS, scene)
     in_limit = isinstance(solution, LimitSolution)

@@ -232,6 +232,10 @@ def work_precision(
     Raises `ValueError` for arguments out of range, as `solve` does. Source of mescd: F.
     Mazzia and C. Magherini, Test Set for Initial Value Problem Solvers, release 2.4
     (2008).
+
+    >>> costs = fx.work_precision(scene, methods="auto", accuracies=1e-3, repeats=1)
+    >>> print(costs.attrs["advice"])
+    For 1e-03 eps take method='auto', accuracy=1e-03: z within ... eps in the cell in ... s.
     """
     scene = scene_for(Engine.COST, scene)
     require_flags(progress=progress)

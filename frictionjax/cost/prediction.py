@@ -131,6 +131,9 @@ def predict_cost(
     surveys have to be made again, which nobody knows before, a cell takes longer.
 
     Raises `ValueError` for arguments out of range, as `sweep` does.
+
+    >>> print(fx.predict_cost(scene, eps=[1e-2, 1e-3], gamma=1.0, measure=False))
+    0.025 to 0.099 s of computation, up to 9.3 s of compilation the first time, 0.8 GB ...
     """
     scene = scene_for(Engine.COST, scene)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
@@ -170,6 +173,10 @@ def fit_budget(
 
     Raises `ValueError` for a budget that is not positive, that nothing fits into, or where
     nothing is known of the cost.
+
+    >>> fits = fx.fit_budget(scene, eps=[1e-2, 1e-3, 1e-4, 1e-5], gamma=1.0, budget=10.0)
+    >>> fits.accuracy, fits.eps.size
+    (1e-06, 4)
     """
     require_real("budget", budget, "seconds > 0", lambda s: s > 0)
     values = grid_of("eps", eps)

@@ -18,6 +18,12 @@ class AxialLoad(AbstractEffect):
     solution, `sweep` and `study` the largest of every cell.
 
     Raises `ValueError` for a bending stiffness that is not positive and finite.
+
+    >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+    >>> asked = (fx.effects.AxialLoad(bending_stiffness=0.1),)
+    >>> held = scene.replace(bristle=rod, effects=asked)
+    >>> fx.mechanics(held, fx.solve_limit(held)).buckling
+    'below the critical load everywhere: not shown to buckle'
     """
 
     stage: ClassVar[Stage] = Stage.READING

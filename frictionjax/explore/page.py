@@ -31,6 +31,11 @@ def explore(
 
     Raises `ValueError` for numbers that the paper's hypotheses do not allow at first, and
     where the extra `notebooks` is not installed.
+
+    >>> page = fx.explore(angle=0.5)
+    >>> page.angle = 1.0
+    >>> print(f"ratio {page.shown.coefficients['ratio']:.3f}: {page.status}")
+    ratio 2.528: every number can be trusted
     """
     setting = PageSetting(angle, slope, asymmetry, eps, gamma)
     for name, value in zip(PageSetting._fields, setting, strict=True):

@@ -50,6 +50,10 @@ def load_scene(path: Any) -> Scene:
     surface (relative to this one), with the options of `read_heights` and `fit_profile`.
 
     Raises `ValueError` naming the file, the table and the key, and what is allowed.
+
+    >>> fx.save_scene(scene, "slanted.toml")
+    >>> fx.load_scene("slanted.toml").bristle
+    SlantedSpring(stiffness=1, rest_length=2.4, height=1, angle=1)
     """
     return load_study(path).scene
 
@@ -233,6 +237,11 @@ def save_scene(scene: Scene, path: Any, study: dict[str, Any] | None = None) -> 
 
     (A spline within a rounding: the file holds its heights, not B-spline coefficients.)
     Raises `ValueError` for parts given as functions, which a file cannot hold.
+
+    >>> from pathlib import Path
+    >>> fx.save_scene(scene, "slanted.toml", study={"eps": [0.1, 0.01], "gamma": [1.0]})
+    >>> Path("slanted.toml").read_text().splitlines()[3:6]
+    ['[profile]', 'kind = "Sine"', 'slope = 0.1']
     """
     write_whole(path, scene_document(scene, study))
 

@@ -194,6 +194,10 @@ def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
 
     With `effects.NapFlip` it is a play operator with modes: between its slides the root
     follows the load over the pinned tip, or jumps, which loses energy too.
+
+    >>> limit = fx.solve_limit(scene, ts=[0.0, 0.75, 2.25, 3.0])
+    >>> print(limit.z.round(4))
+    [ 0.      0.9296 -0.9621 -0.1204]
     """
     scene = scene_for(Engine.LIMIT, scene)
     ts = require_times(scene, ts)

@@ -35,6 +35,10 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
     omega_minus`, `alpha != 0`, `1 + a omega > 0` at both ends, the bristle's own bounds.
     Traced values cannot be looked at: under `jit` and `vmap` nothing is checked, and what
     an inadmissible bristle gives means nothing (`design_map` has NaN there).
+
+    >>> law = fx.friction(scene)
+    >>> print(f"{law.rho_plus:.4f} N to the right, {law.rho_minus:.4f} N to the left")
+    0.1204 N to the right, -0.0879 N to the left
     """
     if bristle is None:
         require(

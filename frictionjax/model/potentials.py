@@ -234,6 +234,13 @@ class GivenPotential(AbstractPotential):
     looked at where an eps is in use, and refused there.
 
     Raises `ValueError` where `W` does not repeat as a C^2 function or is constant.
+
+    >>> import jax.numpy as jnp
+    >>> given = fx.GivenPotential(W=lambda Y: 0.02 * jnp.sin(2 * jnp.pi * Y))
+    >>> spring, load = scene.support, scene.load
+    >>> bare = fx.Scene(potential=given, support=spring, load=load, duration=3.0)
+    >>> fx.friction(bare)
+    Coefficients(rho_plus=0.125664, rho_minus=-0.125664)
     """
 
     _stored: ClassVar = {"W": "W_fn", "Q": "Q_fn"}
@@ -289,6 +296,10 @@ def potential(profile: AbstractProfile, bristle: AbstractBristle) -> BristlePote
 
     Returns an object with `.energy(z, eps)`, `.force(z, eps)`, `.W(Y)` and `.Q(eps, Y)`.
     Raises `ValueError` for arguments of another kind.
+
+    >>> wiggly = fx.potential(scene.profile, scene.bristle)
+    >>> print(f"V_eps' = {wiggly.force(0.0, eps=0.01):.4f} N, W = {wiggly.W(0.25):.4f} N")
+    V_eps' = 0.1204 N, W = 0.0160 N
     """
     known = isinstance(profile, AbstractProfile)
     require(known, "profile", type(profile).__name__, "a part of frictionjax.profiles")

@@ -20,6 +20,10 @@ def draw_profile_fit(fit: Any, family: int = _FAMILY) -> Figure:
     Above: heights and slopes of the surface, with `family` others that have the same
     coefficients in grey and the extreme slopes that the coefficients fix. Below: bending
     energy of every start, best first, and coefficients achieved against targets.
+
+    >>> fit = fx.fit_profile(fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05))
+    >>> [axes.get_xlabel() for axes in fx.plot.draw_profile_fit(fit, family=3).axes]
+    ['y (periods)', 'y (periods)', 'start, best first (1)', 'target (N)']
     """
     figure, grid = new_figure(2, 2, 10.0, 7.2)
     others = fit.family(family)

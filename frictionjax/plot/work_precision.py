@@ -39,7 +39,7 @@ _SMALL = {"linewidth": 5, "markersize": 9}  # in the legend
 def draw_work_precision(
     dataset: xr.Dataset, eps: float | None = None, gamma: float | None = None
 ) -> Figure:
-    """Draw a data set of `work_precision`.
+    r"""Draw a data set of `work_precision`.
 
     Above, of one cell: error against seconds, one line a method, thin from the fastest to
     the slowest of its warm runs, and below it in yellow the Pareto front of the runs that
@@ -52,6 +52,10 @@ def draw_work_precision(
     reference can judge are drawn there, those beyond 1000 eps there.
 
     Raises `ValueError` for an eps or gamma that the data set does not hold.
+
+    >>> costs = fx.work_precision(scene, methods="auto", accuracies=1e-3, repeats=1)
+    >>> [axes.get_xlabel() for axes in fx.plot.draw_work_precision(costs).axes]
+    ['seconds of a warm run', 'accuracy asked for ($\\epsilon$)']
     """
     gamma = choose_gamma(dataset, gamma)
     smallest = float(dataset.eps.min())

@@ -64,6 +64,13 @@ def histogram(
     that `ensemble` has not made.
 
     Source: C. J. Clopper and E. S. Pearson, Biometrika 26, 404 (1934).
+
+    >>> noisy = scene.replace(effects=(fx.effects.Noise(temperature=1e-3),))
+    >>> ts = [0.0, 0.75, 3.0]
+    >>> paths = fx.ensemble(noisy, eps=0.1, gamma=1.0, ts=ts, paths=100, key=0)
+    >>> shares = fx.histogram(noisy, paths, bins=4)
+    >>> shares["count"].values
+    array([ 6, 23, 52, 19])
     """
     scene = scene_for(Engine.ENSEMBLE, scene)
     noise = noise_among(scene.effects)

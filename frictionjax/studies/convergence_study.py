@@ -70,6 +70,11 @@ def study(dataset: xr.Dataset) -> Study:
     several scenes is studied alone; `.spread` tells how they differ.
 
     Raises `ValueError` where the data set lacks what `sweep` puts there.
+
+    >>> found = fx.study(fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0))
+    >>> order = found.orders.sel(gamma=1.0)
+    >>> print(f"{order.order:.2f}, 95% [{order.order_low:.2f}, {order.order_high:.2f}]")
+    1.01, 95% [0.87, 1.15]
     """
     needed = {"sup_error", "status", "strip_excess", "z"}
     given = getattr(dataset, "variables", None)

@@ -396,6 +396,12 @@ def solve(
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact (`G > 0` fails), with the largest eps allowed.
+
+    >>> solution = fx.solve(scene, eps=0.01)
+    >>> solution.status
+    <Status.OK: 0>
+    >>> print(f"at 3 s: {solution.z[-1]:.3f} m, {solution.dissipation[-1]:.3f} J lost")
+    at 3 s: -0.120 m, 0.384 J lost
     """
     require_numbers("eps", eps, "one number eps > 0", lambda e: (e > 0) & (e.ndim == 0))
     allowed = "one number gamma > 0"

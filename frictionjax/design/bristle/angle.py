@@ -147,6 +147,9 @@ def fit_angle(
     shape or the wrong sign, an unknown `free`, bounds out of the number's range, where no
     value in the bounds is admissible, or all that are pull, and for other effects, and tips
     at different phases of bristles that lean.
+
+    >>> fx.fit_angle(scene.profile, scene.bristle, ratio=1.5)
+    AngleFit(angle=1.10715: ratio = 1.5: found, angle = 1.10715)
     """
     require_flags(pulling=pulling)
     require_x64(potential(profile, bristle))  # which checks the kinds of the parts

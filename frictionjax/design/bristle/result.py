@@ -187,7 +187,12 @@ class AngleFit(ShownNumbers, DesignResult, CodedResult, eqx.Module):
         ]
 
     def plot(self) -> Any:
-        """What the free number reaches, and the solutions, as a matplotlib Figure."""
+        """What the free number reaches, and the solutions, as a matplotlib Figure.
+
+        >>> figure = fx.fit_angle(scene.profile, scene.bristle, ratio=1.5).plot()
+        >>> figure.axes[0].get_legend_handles_labels()[1]
+        ['admissible bristles', 'wanted: 1.5', 'angle = 1.1071']
+        """
         from ...plot import draw_angle_fit
 
         return draw_angle_fit(self)

@@ -126,6 +126,12 @@ def design_map(
 
     Raises `ValueError` for unknown names, values that are not finite or positive, a
     profile that is missing, or too much, and other effects, by name.
+
+    >>> angles, asymmetries = ("angle", [0.5, 1.0]), ("asymmetry", [1.0, 2.0])
+    >>> found = fx.design_map(scene.bristle, x=angles, y=asymmetries)
+    >>> print(found.ratio.values.round(3))
+    [[1.245 1.905]
+     [2.512 4.131]]
     """
     require_x64(bristle)
     require_flags(pulling=pulling)

@@ -233,6 +233,9 @@ def fit_slide(
     `.status` tells what no bristle reaches from what could not be evaluated (`UNKNOWN`).
 
     Raises `ValueError` as `fit_angle` and `steady_slide` do, and for several targets.
+
+    >>> fx.fit_slide(scene.profile, scene.bristle, eps=0.01, ratio=1.3)
+    SlideFit(ratio = 1.3 of mean forces at eps = 0.01: found, angle = 0.930165)
     """
     support = spring_of(support)
     require_force(force)

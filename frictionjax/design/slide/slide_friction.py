@@ -210,6 +210,10 @@ def steady_slide(
     Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, for
     numbers that are not positive, for other effects, and for tips of an array whose forces
     cancel. A slide that is not found has its `status`.
+
+    >>> slide = fx.steady_slide(scene.profile, scene.bristle, eps=0.01)
+    >>> print(f"{slide.mean_plus:.4f} N, {slide.mean_minus:.4f} N: {slide.status.name}")
+    0.1189 N, -0.0878 N: OK
     """
     support = spring_of(support)
     wiggle = wiggle_of(profile, bristle, effects)

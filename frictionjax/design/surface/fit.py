@@ -99,6 +99,11 @@ def fit_profile(
     uncertainties that are not positive, bristles that press on nothing, or pull, names
     and bounds of free parameters that do not fit together, a target asked for by its nap
     whose bounds of an angle reach the other side, and other effects, by name.
+
+    >>> fx.fit_profile(fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05))
+    ProfileFit(MET: every target is met)
+      bending_energy = 0.123945, largest_error = ..., rank = 2
+      rho_plus = 0.12 N (target 0.12), rho_minus = -0.05 N (target -0.05)
     """
     require_flags(pulling=pulling)
     counts = ("harmonics", harmonics), ("starts", starts), ("max_steps", max_steps)

@@ -65,6 +65,11 @@ def fit_trace(
 
     Raises `ValueError` for a scene without profile and bristle, times outside
     [0, duration], forces that the support cannot have, and numbers out of range.
+
+    >>> trace = fx.simulate_trace(scene, eps=0.1, noise=0.001)
+    >>> fx.fit_trace(trace, scene, eps=0.1, harmonics=2, progress=False)
+    TraceFit(FITTED: the surface explains the trace; slopes determined at y in [0.000, ...
+      301 of 301 samples used, 0 in slips, 0 in other wells; reduced chi2 = 1.03, 8 steps
     """
     scene = scene_for(Engine.TRACE, scene)
     known = isinstance(trace, Trace)

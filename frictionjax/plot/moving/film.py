@@ -40,6 +40,11 @@ def animate(
     `animate(...).save("x.gif", writer="pillow")`.
 
     Raises `ValueError` as `draw_bristle` does, and for other arguments out of range.
+
+    >>> movie = fx.plot.animate(scene, fx.solve_limit(scene), frames=4)
+    >>> movie.save("bristle.gif", writer="pillow")
+    >>> len(list(movie.new_frame_seq()))
+    4
     """
     require_whole("frames", frames, 2)
     require(against in AGAINST, "against", against, f"one of {', '.join(AGAINST)}")

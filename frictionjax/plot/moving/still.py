@@ -37,6 +37,10 @@ def draw_bristle(
     Raises `ValueError` as `mechanics` does, for a time that is not within the solution's,
     a scene without a bristle (`GivenPotential`), and effects that put another potential in
     its place (arrays, `LeadingOrder`).
+
+    >>> figure = fx.plot.draw_bristle(scene, fx.solve_limit(scene), time=0.75)
+    >>> [text.get_text() for text in figure.legends[0].get_texts()][1:]
+    ['spring', 'bristle', 'tip p', 'root u', 'end q']
     """
     places = places_along(scene, solution, eps)
     row = _row_at(places, time)

@@ -37,6 +37,11 @@ def draw_own_nap(
     critical load `pi^2 B/L^2`.
 
     Raises `ValueError` as `nap` does, and for a bristle that is no rod.
+
+    >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+    >>> figure = fx.plot.draw_own_nap(fx.profiles.Sine(slope=0.5), rod)
+    >>> figure.axes[1].get_legend_handles_labels()[1]
+    ['critical loads that turn it over', 'with the nap', 'against it', 'turned over, ...
     """
     found = nap(profile, bristle, bending_stiffness)
     rod = isinstance(bristle, AngularSpring)

@@ -42,6 +42,14 @@ def draw_turning(scene: Scene, solution: Any, eps: Any = None) -> Figure:
 
     Raises `ValueError` as `mechanics` does, for a scene without the effect, and for a
     solution in which nothing turns over.
+
+    >>> rough, load = fx.profiles.Sine(slope=0.5), fx.loads.Triangle(2.5, period=3.0)
+    >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+    >>> flips = (fx.effects.NapFlip(bending_stiffness=0.1),)
+    >>> turning = scene.replace(profile=rough, bristle=rod, load=load, effects=flips)
+    >>> figure = fx.plot.draw_turning(turning, fx.solve_limit(turning))
+    >>> figure.axes[-2].get_legend_handles_labels()[1]
+    ['root u', 'tip p', 'in between']
     """
     effect = nap_flip_among(scene.effects)
     require(effect is not None, "scene.effects", "none of NapFlip", "effects.NapFlip")

@@ -23,6 +23,10 @@ def draw_parts(scene: Scene) -> Figure:
     Of a bristle without a geometry: a rod, upright and 1 m long. Of an array one of them.
 
     Raises `ValueError` for a scene without a bristle.
+
+    >>> figure = fx.plot.draw_parts(scene)
+    >>> [text.get_text() for text in figure.axes[0].texts][1:]
+    ['root, 1 m high', 'support, Spring', 'pulled, load l(t)', 'tip']
     """
     figure, grid = new_figure(1, 1, 7.2, 3.1)
     axes: Any = grid[0, 0]
