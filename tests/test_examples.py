@@ -2,7 +2,9 @@
 
 import ast
 import doctest
+import enum
 import inspect
+import re
 import types
 from pathlib import Path
 
@@ -24,24 +26,30 @@ PUBLIC = {
 }
 # How results show themselves, whichever class they are of.
 SHOWN = {"table", "plot", "to_dataset"}
-# More than 10 CPU s each, alone and with nothing compiled.
+# Fits, and what takes some 10 CPU s and more with nothing compiled.
 DEAR = {
     "fx.check_design",
     "fx.effects.RigidArray",
     "fx.explore",
+    "fx.fit_angle",
     "fx.fit_profile",
     "fx.fit_slide",
     "fx.fit_slide_profile",
     "fx.fit_trace",
     "fx.friction_curve",
     "fx.order_cost",
+    "fx.plot.draw_angle_fit",
     "fx.plot.draw_friction_curve",
     "fx.plot.draw_profile_fit",
     "fx.plot.draw_slide_profile_fit",
     "fx.plot.draw_trace_fit",
     "fx.plot.draw_work_precision",
+    "fx.simulate_trace",
     "fx.steady_slide",
     "fx.work_precision",
+    "design.bristle.result.AngleFit.plot",
+    "design.common.design_result.DesignResult.from_json",
+    "design.common.design_result.DesignResult.to_json",
     "design.slide.check.DesignCheck.table",
     "design.slide.surface_fit.SlideProfileFit.plot",
     "design.surface.result.ProfileFit.family",
@@ -93,7 +101,7 @@ def test_every_public_name_has_an_example(name):
     text = (OF_PUBLIC | WRITTEN)[name]
     found = doctest.DocTestParser().get_examples(text)
     assert any(example.want for example in found), f"help({name}) has no example"
-    assert sum(len(example.source.splitlines()) for example in found) <= 6
+    assert sum(len(example.source.splitlines()) for example in found) <= 5
 
 
 def run(text, name, names):
@@ -140,3 +148,33 @@ CASES = [pytest.param(n, marks=[pytest.mark.slow] if n in DEAR else []) for n in
 def test_what_an_example_says_is_so(name, given):
     wrong, _ = run(EXAMPLES[name], name, given)
     assert not wrong, wrong
+
+
+def said_of(name):
+    """A docstring without its example."""
+    return OF_PUBLIC[name].partition(">>> ")[0]
+
+
+MADE_BY_ARGUMENTS = [
+    name
+    for name, thing in PUBLIC.items()
+    if not (isinstance(thing, type) and issubclass(thing, enum.Enum | Warning))
+]
+FUNCTIONS = [name for name, thing in PUBLIC.items() if not isinstance(thing, type)]
+
+
+@pytest.mark.parametrize("name", MADE_BY_ARGUMENTS)
+def test_every_argument_is_named(name):
+    marked = " ".join(re.findall(r"`([^`]*)`", said_of(name)))
+    wanted = inspect.signature(PUBLIC[name]).parameters
+    missing = [argument for argument in wanted if not re.search(rf"\b{argument}\b", marked)]
+    assert not missing, f"help({name}) says nothing of {missing}"
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_say_what_they_return_and_refuse(name):
+    """Drawings are all Figures, as `fx.plot` says; most refuse what is no result."""
+    text, drawn = said_of(name), name.startswith("fx.plot.draw_")
+    assert "Returns " in text or drawn, f"help({name}) does not say what it returns"
+    refuses = inspect.signature(PUBLIC[name]).parameters and not drawn
+    assert "Raises `ValueError`" in text or not refuses, f"help({name}): what is refused?"

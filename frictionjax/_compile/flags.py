@@ -67,7 +67,9 @@ def keep_compiled(folder: str | os.PathLike | None = None) -> Path:
     """Keep compiled programs in `folder`, the user's cache folder where it is None.
 
     A folder that cannot be written, or a full disk, is one warning, and nothing more is
-    kept. Raises `ValueError` for what names no folder.
+    kept. Returns the folder.
+
+    Raises `ValueError` for what names no folder.
 
     >>> print(fx.keep_compiled("compiled"))
     compiled

@@ -21,7 +21,9 @@ class SlopeBounds(NamedTuple):
 
 
 class Rod(NamedTuple):
-    """A straight rod from the tip to the root: how steeply it rises (1), how far (m).
+    """A straight rod from the tip to the root.
+
+    `slope`: how steeply it rises, no unit; `reach`: how far away the root is along x, in m.
 
     >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
     >>> found = rod.rod(eta=0.0)

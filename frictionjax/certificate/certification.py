@@ -33,7 +33,7 @@ def certify(
     root: Any = None,
     mode: Any = None,
 ) -> Certificate:
-    """Certify any sampled curve, whatever made it, against the scene alone.
+    """Certify any sampled curve, whatever made it, against the `scene` alone.
 
     `eps` in m, `gamma` > 0; `ts` in s, increasing, in [0, duration]; `z` in m; shapes
     (n,), n >= 2, NumPy or JAX. The curve's start is not compared with the scene's `z0`.
@@ -78,6 +78,9 @@ def certify(
     matter. Samples have to come as close in turnings as in slips, and from the last one
     before a turning to its first one the load may change by 0.3% of the critical load: else
     it is `UNRESOLVED`.
+
+    Returns a `Certificate`: `.ok .status .message`, `.distance` in eps, `.residual` and
+    `.scale` in J, wells crossed, `.slips` and `.skipped`, and more, see its `.table()`.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.

@@ -116,6 +116,9 @@ def nap(
     `bending_stiffness` B in N m^2: the critical load of the rod between hinges, as it
     turns, is `pi^2 B/L^2`.
 
+    Returns a `Nap`: `.rho_with`, `.rho_against`, `.rho_flipped` in N, > 0; `.axial_with`
+    and its like in N, traction positive; `.window`, `.turns_over`, `.message`.
+
     Raises `ValueError` as `friction(profile, bristle)` does, for traced parts, and for a
     bending stiffness that is not positive, or of a bristle that is no rod.
 

@@ -198,7 +198,7 @@ def work_precision(
     total: float | None = None,
     progress: bool = False,
 ) -> xr.Dataset:
-    """Measure what accuracy costs: time and error of methods, cell by cell.
+    """Measure what accuracy costs: time and error of methods on a `scene`, cell by cell.
 
     `eps` in m and `gamma`: numbers or lists. `methods`: one or several, as `method` of
     `solve`, and SciPy's "LSODA", "BDF" and "Radau" without any guard. `accuracies`: asked
@@ -210,6 +210,7 @@ def work_precision(
     after a million steps for each second, ours, which cannot be, go on. `total`: seconds
     of all together after which no run of a general solver is begun; None: no bound. Ours
     are measured first, in all cells, in any case; what is left out is NOT_TRIED.
+    `progress`: a bar on standard error.
 
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took

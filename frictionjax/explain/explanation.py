@@ -71,12 +71,15 @@ def _number(value: Any) -> str:
 def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explanation:
     """What a scene simulates, and which effects matter at an accuracy (in eps).
 
-    `.equation`: the composed equation as text. `.effects`: data set over `effect`, with
-    `in_z` (m) and `in_force` (N), estimates from above of what it changes in the state at
-    times outside of slips and in the friction force, `called_for` (`in_z` is more than
-    `accuracy` eps, or another scene is meant), `asked` (the scene has it), `cost` (time
-    with it over time without) and `source`. Rows: "higher order", what `LeadingOrder`
-    leaves out; "finite speed", what viscosity adds to dry friction; the scene's effects.
+    `scene` at one `eps` (m) and one `gamma`; `accuracy` as in `solve`.
+
+    Returns an `Explanation`. `.equation`: the composed equation as text. `.effects`: data
+    set over `effect`, with `in_z` (m) and `in_force` (N), estimates from above of what it
+    changes in the state at times outside of slips and in the friction force, `called_for`
+    (`in_z` is more than `accuracy` eps, or another scene is meant), `asked` (the scene has
+    it), `cost` (time with it over time without) and `source`. Rows: "higher order", what
+    `LeadingOrder` leaves out; "finite speed", what viscosity adds to dry friction; the
+    scene's effects.
 
     Raises `ValueError` for arguments out of range, and as `solve` does.
 

@@ -40,7 +40,7 @@ class SceneFile(NamedTuple):
 
 
 def load_scene(path: Any) -> Scene:
-    """Read the scene of a TOML file.
+    """Read the scene of a TOML file, at `path`.
 
     Tables `[profile] [bristle] [support] [load]`, each with `kind` (the class's name) and
     the constructor's arguments by name (of a `Pulled` load `position` is a table too,
@@ -48,6 +48,8 @@ def load_scene(path: Any) -> Scene:
     likewise. A table `[study]` may
     be there and is not used. A `Fourier` profile may give `heights`, the file of a measured
     surface (relative to this one), with the options of `read_heights` and `fit_profile`.
+
+    Returns a `Scene`.
 
     Raises `ValueError` naming the file, the table and the key, and what is allowed.
 
@@ -233,8 +235,9 @@ def _study_of(entries: Any) -> dict[str, Any]:
 
 
 def save_scene(scene: Scene, path: Any, study: dict[str, Any] | None = None) -> None:
-    """Write a scene, and a `[study]` table where one is given, so that it reads back equal.
+    """Write a `scene`, and a `[study]` table if one is given, so that it reads back equal.
 
+    `path`: of the file; `study`: what the table holds, by name. Returns nothing.
     (A spline within a rounding: the file holds its heights, not B-spline coefficients.)
     Raises `ValueError` for parts given as functions, which a file cannot hold.
 

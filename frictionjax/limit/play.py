@@ -181,12 +181,15 @@ def _with_turning(scene: Scene, effect: NapFlip, ts: Float[Array, " n"]) -> Limi
 
 @with_nan
 def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
-    """Solve `0 in dR(z') + Phi'(z) - l(t)` (eq. 2.3), exactly up to rounding.
+    """Solve `0 in dR(z') + Phi'(z) - l(t)` (eq. 2.3) of a `scene`, exactly up to rounding.
 
     `ts`: times in s, not decreasing, in [0, duration], shape (n,); 201 evenly spaced ones
     where None. The grid inside always holds the turning points of the load, so values do
     not depend on which other times are asked for. Of a scene with `effects.Inertia` it is
     the limit of the scene without mass, to compare with.
+
+    Returns a `LimitSolution`: `.ts` (s), `.z` (m), `.dissipation` (J), shapes (n,), `.ok`,
+    `.status`.
 
     Raises `ValueError` for bad times, 32 bits, or z0 outside the strip at t = 0 (with the
     allowed interval). Source: the play operator, see A. Mielke and T. Roubicek,

@@ -40,7 +40,8 @@ class Custom(AbstractLoad):
     """`l(t) = fn(t)`, continuous and piecewise C^1.
 
     `fn`: s to N, scalar to scalar, written with `jax.numpy`. `turning_points`: all times
-    at which `l'` changes sign, shape (n,); none are needed.
+    at which `l'` changes sign, shape (n,); none are needed (`listed`: the same, where a
+    load is built anew of its parts).
 
     A scene finds what the load does on [0, duration]: turning points, kinks, steep places.
     Interval arithmetic on the program of `fn` bounds l, l' and l'' over stretches that are

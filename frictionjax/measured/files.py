@@ -56,7 +56,7 @@ def read_heights(
     decimal: str | None = None,
     outliers: str | None = None,
 ) -> Measured:
-    """Read a height trace or map from a file.
+    """Read a height trace or map from a file, at `path`.
 
     A text: two columns, position and height; three, x, y and z on a grid; a map, one row
     a line, with lines `key=value` before it (`pixel size=3.7e-7 m`,
@@ -77,6 +77,8 @@ def read_heights(
     -32768 or 1e38) are cut off at the ends, and filled by straight lines over gaps of at
     most a tenth of the period, or one sample. All of this is in `.notes`, and a
     `MeasuredWarning`.
+
+    Returns a `Measured`: `.x` in m, shape (n,), `.heights` in m, (rows, n), `.notes`.
 
     Raises `ValueError`, one line with file, line and column, for a file that cannot be
     read as one of these, or has a unit of lengths and none of heights.

@@ -67,10 +67,10 @@ def fit_profile(
 class RowCoefficients(NamedTuple):
     """Friction of each row of a map, by name: arrays over the rows used.
 
-    `period` in m, one for all rows. `used`: indices of the rows used. `refused`: index
-    and reason of the rows whose fit the bristle does not admit. `error`: standard error of
-    the friction of the mean profile (rows moved into phase), by name; empty where it
-    cannot be told. `profiles`: of the rows used.
+    `values` in N, or without unit. `period` in m, one for all rows. `used`: indices of the
+    rows used. `refused`: index and reason of the rows whose fit the bristle does not admit.
+    `error`: standard error of the friction of the mean profile (rows moved into phase), by
+    name; empty where it cannot be told. `profiles`: of the rows used.
 
     >>> x = np.linspace(0.0, 1e-4, 201)
     >>> heights = np.outer([3e-7, 2e-7], np.sin(2 * np.pi * x / 2e-5))

@@ -15,7 +15,7 @@ _FAMILY_LOOK = {"color": GUIDE, "linewidth": 0.8, "alpha": 0.7}
 
 @styled
 def draw_profile_fit(fit: Any, family: int = _FAMILY) -> Figure:
-    """Draw the result of `fit_profile`.
+    """Draw the result of `fit_profile`, `fit`.
 
     Above: heights and slopes of the surface, with `family` others that have the same
     coefficients in grey and the extreme slopes that the coefficients fix. Below: bending

@@ -40,6 +40,7 @@ _LEFT = ("////", "not admissible"), ("....", "$\\alpha$ < 0: the bristle pulls")
 def draw_design_map(data: "xr.Dataset", quantities: Any = ("ratio", "contrast")) -> Figure:
     r"""Draw maps of a `design_map`, one panel a quantity, contours labelled.
 
+    `data`: the data set; `quantities`: names of its variables, one or several.
     Ratios are coloured by their logarithm, so that left and right look alike; colours end
     at the 2nd and 98th of a hundred values, and arrows on the bar say so. Hatched: no
     bristle there can follow the surface; dotted: it would pull, and may not.

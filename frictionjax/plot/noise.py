@@ -13,8 +13,9 @@ if TYPE_CHECKING:
 
 @styled
 def draw_histogram(data: "xr.Dataset") -> Figure:
-    """Draw a `histogram`: shares of bins with their 95% intervals, over z in m, and
-    Boltzmann's density.
+    """Draw a `histogram`: shares of bins with their 95% intervals, and Boltzmann's density.
+
+    `data`: the data set. Both over z in m.
 
     >>> noisy = scene.replace(effects=(fx.effects.Noise(temperature=1e-3),))
     >>> paths = fx.ensemble(noisy, 0.1, gamma=1.0, ts=[0.0, 3.0], paths=100, key=0)
@@ -51,9 +52,9 @@ def draw_histogram(data: "xr.Dataset") -> Figure:
 def draw_friction_curve(data: "xr.Dataset") -> Figure:
     """Draw a `friction_curve`: friction in N against speed in m/s, drag taken off.
 
-    One line a temperature, dashed to the left; slides that failed are crosses on the axis.
-    Of two temperatures and more a second panel is the map over both, to the right, or to
-    the left where no speed is to the right.
+    `data`: the data set. One line a temperature, dashed to the left; slides that failed are
+    crosses on the axis. Of two temperatures and more a second panel is the map over both,
+    to the right, or to the left where no speed is to the right.
 
     >>> data = fx.friction_curve(scene, speeds=[0.01, 0.1, 1.0], eps=0.01)
     >>> print(fx.plot.draw_friction_curve(data).axes[0].get_ylabel())

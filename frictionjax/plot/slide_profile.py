@@ -11,7 +11,7 @@ from .style import LIMIT, colour, marker, new_figure, styled
 
 @styled
 def draw_slide_profile_fit(fit: Any) -> Figure:
-    """Draw the result of `fit_slide_profile`.
+    """Draw the result of `fit_slide_profile`, `fit`.
 
     Heights and slopes of the surface, and dashed those of the limit design for the same
     targets, whose slides miss them; how far each design's slides were from the forces

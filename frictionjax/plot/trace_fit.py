@@ -15,7 +15,7 @@ _NAMES = {"force": "force $\\ell - \\Phi'(z)$ (N)", "z": "state z (m)"}
 
 @styled
 def draw_trace_fit(fit: Any, truth: Any = None) -> Figure:
-    """Draw the result of `fit_trace`.
+    """Draw the result of `fit_trace`, `fit`.
 
     Left: the trace and what the surface found gives, and below residuals in standard
     deviations. Right: the slope w' with twice its standard error, phases that the trace

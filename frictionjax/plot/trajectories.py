@@ -30,8 +30,11 @@ def draw_trajectories(
 ) -> Figure:
     r"""Draw `z_eps` for a few eps of one gamma over the limit `z`, the strip shaded.
 
-    `gamma`: the nearest to 1 where None; `eps`: largest, middle and smallest where None.
-    A panel below follows a few slips of the largest eps whose slips the times resolve.
+    `dataset`: of `sweep`. `gamma`: the nearest to 1 where None; `eps`: largest, middle and
+    smallest where None. A panel below follows a few slips of the largest eps whose slips
+    the times resolve.
+
+    Raises `ValueError` for a gamma or an eps that the data set does not hold.
 
     >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01], gamma=1.0)
     >>> figure = fx.plot.draw_trajectories(data)
@@ -108,6 +111,8 @@ def draw_dissipation(
     dataset: xr.Dataset, gamma: float | None = None, eps: Any = None
 ) -> Figure:
     """Draw `int_0^t eps^gamma z'^2` (J) for a few eps of one gamma, and the limit's.
+
+    `dataset`: of `sweep`; `gamma`, `eps` (m): as in `draw_trajectories`.
 
     Raises `ValueError` for a data set without dissipation.
 

@@ -21,8 +21,8 @@ class Custom(AbstractProfile):
 
     >>> import jax.numpy as jnp
     >>> surface = fx.profiles.Custom(lambda y: 0.02 * jnp.exp(jnp.cos(2 * jnp.pi * y)))
-    >>> print(f"{fx.friction(surface, scene.bristle).omega_plus:.4f}")
-    0.1833
+    >>> print(surface(np.array([0.0, 0.25, 0.5])).round(4))
+    [0.0544 0.02   0.0074]
     """
 
     fn: Callable[[Real], Real]

@@ -24,7 +24,8 @@ _Profile = TypeVar("_Profile")
 class HeightsFit(NamedTuple, Generic[_Profile]):
     """Result of `Fourier.from_heights`.
 
-    `period` in m. `explained`: share of the detrended variance, before any smoothing.
+    `profile`: w. `period` in m. `explained`: share of the detrended variance, before any
+    smoothing.
     `slopes`: steepest slopes of the profile, with errors. `smoothing`: cut-off in m.
 
     >>> x = np.linspace(0.0, 1e-4, 201)
@@ -42,9 +43,10 @@ class HeightsFit(NamedTuple, Generic[_Profile]):
 
 
 class SeriesFit(NamedTuple):
-    """Fourier coefficients in periods, smoothed; the period in the unit of x.
+    """Fourier coefficients `cos`, `sin` in periods, smoothed; `period` in the unit of x.
 
-    `waves`: of more harmonics than were asked for, with their noise.
+    `explained`: share of the detrended variance, before any smoothing. `waves`: of more
+    harmonics than were asked for, with their noise.
 
     >>> from frictionjax.profiles import fit_rows_in_phase
     >>> x = np.linspace(0.0, 1e-4, 201)

@@ -54,7 +54,7 @@ def friction_curve(
     """Friction of steady slides whose support moves at constant speed.
 
     `speeds`: in m/s, one or an array of shape (n,), negative to the left, not 0; `eps` in
-    m, `gamma` > 0. Of the scene its surface, bristle and effects are used, and the spring
+    m, `gamma` > 0. Of the `scene` its surface, bristle and effects are used, and the spring
     that the tip is held by: the load is that of the moving support, `l = k v t`, in place
     of the scene's, and no transient enters.
 

@@ -47,9 +47,9 @@ def histogram(
 ) -> "xr.Dataset":
     """How paths of `fx.ensemble` are spread at one time, beside Boltzmann's density.
 
-    `paths`: the data set that `fx.ensemble` made of this scene; `time`: one of its times in
-    s, the last where None; `bins`: how many, evenly between the outermost paths, or their
-    rising edges in m, shape (n + 1,). Paths that failed are left out.
+    `paths`: the data set that `fx.ensemble` made of this `scene`; `time`: one of its times
+    in s, the last where None; `bins`: how many, evenly between the outermost paths, or
+    their rising edges in m, shape (n + 1,). Paths that failed are left out.
 
     Returns a data set over `bin`: `count`, `density` (1/m) and its 95% interval
     `density_low`, `density_high` (Clopper and Pearson's: never too narrow), `boltzmann`,

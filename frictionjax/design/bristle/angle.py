@@ -113,7 +113,7 @@ def fit_angle(
     pulling: bool = False,
     effects: Sequence[AbstractEffect] = (),
 ) -> AngleFit:
-    """The bristle on a surface that has a wanted friction, one number of it free.
+    """The `bristle` on a surface, `profile`, that has a wanted friction, one number free.
 
     Exactly one of `rho_plus` (N, > 0), `rho_minus` (N, < 0), `ratio` = -rho_plus/rho_minus
     (> 0) and `difference` = rho_plus + rho_minus (N; how much harder the right is than the

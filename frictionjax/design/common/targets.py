@@ -28,7 +28,7 @@ def _on_nearly_flat(bristle: AbstractBristle) -> BristlePotential:
 
 
 class Target(NamedTuple):
-    """A bristle and the friction coefficients that it should have on the surface.
+    """A `bristle` and the friction coefficients that it should have on the surface.
 
     `rho_plus` > 0 > `rho_minus` in N. `weight`: > 0, of its squared residuals.
     `uncertainty`: standard deviation of the two in N, one number or a pair; without it

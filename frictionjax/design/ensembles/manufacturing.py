@@ -131,11 +131,11 @@ def tolerance(
 ) -> Tolerance:
     """Friction of parts whose numbers spread normally and independently.
 
-    `spreads`: standard deviations by name, in the number's own unit: of the bristle as in
+    `spreads`: standard deviations by name, in the number's own unit: of the `bristle` as in
     `fit_angle` (`"angle"`, `"height"`...), of the profile with `"profile."` before
     (`"profile.slope"`, `"profile.sin[0]"`; `"profile.sin"`: one for all, or an array).
-    `samples`, `seed`: of the Monte Carlo. Beside it stands the first-order estimate
-    (delta method), which is right where spreads are small.
+    `samples`, `seed`: of the Monte Carlo, of which `quantiles` are told. Beside it stands
+    the first-order estimate (delta method), which is right where spreads are small.
 
     Samples that no bristle could follow, or with a number out of its range, are counted,
     and left out of mean, std and quantiles.
@@ -147,6 +147,11 @@ def tolerance(
 
     `effects`: of the scene, as in `design_map`; all bristles of an array are alike in a
     sample.
+
+    Returns a `Tolerance`, whose `.data` is a data set over `quantity`: `nominal`, `mean`,
+    `std`, `first_order` and `quantiles` of rho_plus and rho_minus in N, of ratio and
+    difference (N) as in `design_map`, and the `samples`; `.inadmissible` and `.flipped`,
+    shares of these.
 
     Raises `ValueError` as `friction` does for the nominal parts, and for unknown names,
     spreads that are negative or not finite, counts below 2, and other effects, by name.

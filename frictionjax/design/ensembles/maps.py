@@ -102,7 +102,7 @@ def design_map(
 ) -> xr.Dataset:
     """Friction over two numbers of a design, all in one compiled call.
 
-    `x`, `y`: a name, or a name and its values, shape (n,). Names of the bristle's numbers
+    `x`, `y`: a name, or a name and its values, shape (n,). Names of the `bristle`'s numbers
     are those of `fit_angle`; `"asymmetry"` = omega_plus/|omega_minus| and `"steepness"` =
     (omega_plus - omega_minus)/2 are the surface's: see `asymmetric_profile`. Angles and
     the surface's numbers have values of their own where none are given. `profile`: the

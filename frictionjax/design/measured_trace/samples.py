@@ -150,8 +150,11 @@ def simulate_trace(
 ) -> Trace:
     """The trace that a scene would give: `solve`, with normal noise added.
 
-    `ts`: 301 evenly spaced times where None. `noise`: standard deviation in N or m; it
-    becomes the trace's `uncertainty` where it is not 0. `accuracy`: as in `solve`.
+    `scene`, `eps` (m), `gamma`: as in `solve`. `quantity`: "force" or "z". `ts`: 301 evenly
+    spaced times where None. `noise`: standard deviation in N or m; it becomes the trace's
+    `uncertainty` where it is not 0; `seed`: of it. `accuracy`: as in `solve`.
+
+    Returns a `Trace`.
 
     Raises `ValueError` as `solve`, for an unknown quantity, and a trajectory that failed.
 

@@ -190,7 +190,7 @@ def steady_slide(
     support: Spring | None = None,
     effects: Sequence[AbstractEffect] = (),
 ) -> SteadySlide:
-    """Mean and peak force of a steady slide, in both directions.
+    """Mean and peak force of a steady slide of a `bristle` on a `profile`, both ways.
 
     `eps` (m): a number or an array of shape (n,). `gamma`: exponent of the viscosity
     eps^gamma. `rate` (N/s, > 0): of the load, so that the tip moves at rate/k_h on
@@ -206,6 +206,9 @@ def steady_slide(
     1e-5 of a force, as on bristles with ratios in the hundreds, the status is
     `STEP_TOO_SMALL`. Where the spring is so soft that errors are hardly forgotten in a
     period, and may add up to 3e-4 of the force, it is `OPEN_BRACKET`.
+
+    Returns a `SteadySlide`: `.mean_plus .mean_minus .peak_plus .peak_minus` in N, of the
+    shape of `eps`, `.ok`, `.status`.
 
     Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, for
     numbers that are not positive, for other effects, and for tips of an array whose forces

@@ -175,6 +175,9 @@ def fit_slide_profile(
     meet several targets better. Targets that contradict each other, or are out of reach,
     end as those of `fit_profile` do, with its statuses.
 
+    Returns a `SlideProfileFit`: `.profile`, `.slides`, their forces in N, `.success` and
+    more.
+
     Raises `ValueError` as `fit_profile` and `steady_slide` do.
 
     >>> wanted = fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05)

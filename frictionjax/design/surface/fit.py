@@ -69,7 +69,8 @@ def fit_profile(
     """The least bent surface whose friction coefficients are the targets.
 
     `targets`: a `Target` or several, one surface for all. `harmonics`: of the profile.
-    `starts`: optimisations from random surfaces, and free parameters, at once. `free`:
+    `starts`: optimisations from random surfaces (`seed`), and free parameters, at once, of
+    `max_steps` each. `free`:
     numbers of the bristles that are fitted too, by name, each within its `bounds`
     `{name: (low, high)}`; a bristle in several targets is one bristle. Bristles press,
     alpha > 0, before and after, unless `pulling`, which allows those with alpha < 0; a fit
@@ -94,6 +95,9 @@ def fit_profile(
     the steepest slopes that they follow) and keeps the other bounds with a margin of 0.5%.
     Targets that no surface meets come back with the best weighted compromise and a
     `.status` and `.message` that say why.
+
+    Returns a `ProfileFit`: `.profile .bristles .coefficients .bending_energy .residuals`
+    (N, shape (targets, 2)) `.success` and more.
 
     Raises `ValueError` for targets of the wrong sign, shape or kind, weights or
     uncertainties that are not positive, bristles that press on nothing, or pull, names

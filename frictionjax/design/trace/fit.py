@@ -37,7 +37,7 @@ def fit_trace(
     starts: int = 8,
     progress: bool | Callable[[Step], None] = True,
 ) -> TraceFit:
-    """The surface whose wiggly dynamics give a measured trace.
+    """The surface whose wiggly dynamics give a measured `trace` (a `Trace`).
 
     `scene`: bristle, support, load and z0 of the measurement; its profile is not used.
     `eps` (m) and `gamma`: of the measurement. `harmonics`: of the profile. `within`: a
@@ -62,6 +62,9 @@ def fit_trace(
     derivatives, every slip integrated. Samples inside slips are left out. Directions that
     the trace leaves open follow a weak prior (little bending); what is reported as
     determined does not depend on it: `.identifiability`.
+
+    Returns a `TraceFit`: `.profile .achieved .residuals` (N or m, shape (n,)) `.status` and
+    more.
 
     Raises `ValueError` for a scene without profile and bristle, times outside
     [0, duration], forces that the support cannot have, and numbers out of range.

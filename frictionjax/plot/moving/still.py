@@ -20,7 +20,7 @@ _TIGHT: Any = {"columnspacing": 1.2, "handlelength": 1.5, "handletextpad": 0.5}
 def draw_bristle(
     scene: Scene, solution: Any, time: Any, eps: Any = None, ax: Axes | None = None
 ) -> Figure:
-    """Draw the bristle of a scene over its surface, as it stands at a `time` (s).
+    """Draw the bristle of a `scene` over its surface, as it stands at a `time` (s).
 
     `solution`: of `solve`, with its `eps` in m, or of `solve_limit`, whose surface is flat.
     Root, tip and far end of the support's spring are where `mechanics` has them at the

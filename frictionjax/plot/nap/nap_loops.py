@@ -22,8 +22,9 @@ _LEVELS = {
 def draw_nap_loops(scene: Scene, ts: Any = None) -> Figure:
     r"""Draw the limit's force on the root against z, of a stiff rod and of one that bends.
 
-    The scene has `effects.NapFlip`; on the left it is left out. Lines: friction of slides
-    one way and the other. Right: where the rod is bent over its tip the loop is dashed.
+    The `scene` has `effects.NapFlip`; `ts` (s) as in `solve_limit`. On the left it is left
+    out. Lines: friction of slides one way and the other. Right: where the rod is bent over
+    its tip the loop is dashed.
 
     Raises `ValueError` as `contact.nap_loops` does.
 

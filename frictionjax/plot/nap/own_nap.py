@@ -32,9 +32,9 @@ def draw_own_nap(
 ) -> Figure:
     """Friction and compression against theta_lim, of rods with the same root height.
 
-    A dot marks the bristle given. Right: compressions, shaded where a critical load turns
-    a rod over against the nap and only then, and with `bending_stiffness` (N m^2) the
-    critical load `pi^2 B/L^2`.
+    A dot marks the `bristle` given, on the surface `profile`. Right: compressions, shaded
+    where a critical load turns a rod over against the nap and only then, and with
+    `bending_stiffness` (N m^2) the critical load `pi^2 B/L^2`.
 
     Raises `ValueError` as `nap` does, and for a bristle that is no rod.
 

@@ -18,9 +18,10 @@ _POINTS = 1201
 
 @styled
 def draw_parts(scene: Scene) -> Figure:
-    """Draw the bristle as it stands at first, and its support, over bumps not to scale.
+    """Draw the bristle and the support of a `scene` as they stand at first.
 
-    Of a bristle without a geometry: a rod, upright and 1 m long. Of an array one of them.
+    Bumps are not to scale. Of a bristle without a geometry: a rod, upright and 1 m long. Of
+    an array one of them.
 
     Raises `ValueError` for a scene without a bristle.
 

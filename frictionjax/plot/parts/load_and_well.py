@@ -14,7 +14,7 @@ _SMALL = 1e-6  # m: eps at which the force of a well is its limit's
 
 @styled
 def draw_forces(scene: Scene) -> Figure:
-    r"""Draw the load over time, and the force of the surface over one of its periods.
+    r"""Draw the load of a `scene` over time, and the force of its surface over a period.
 
     The latter for eps -> 0, with `rho_plus` and `rho_minus`, where it is extreme.
 
