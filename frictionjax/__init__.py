@@ -18,6 +18,20 @@ A scene: `Scene` of parts from `profiles`, `bristles`, `supports`, `loads`, with
   `fit_slide_profile`, `design_map`, `tolerance`, `check_design`.
 - Which surface is behind a measurement? `measured`, `Trace`, `fit_trace`, `simulate_trace`.
 - Pictures: `plot`, and `explore`, by sliders. Speed: `use_fast_cpu`, `keep_compiled`.
+
+Docstrings end with an example. What stands in all of them, "..." being what is left out:
+
+>>> import jax
+>>> jax.config.update("jax_enable_x64", True)
+>>> import numpy as np
+>>> import frictionjax as fx
+>>> scene = fx.Scene(
+...     profile=fx.profiles.Sine(slope=0.1),
+...     bristle=fx.bristles.SlantedSpring(1.0, rest_length=2.4, height=1.0, angle=1.0),
+...     support=fx.supports.Spring(stiffness=1.0),
+...     load=fx.loads.Sine(amplitude=1.05, period=3.0),
+...     duration=3.0,
+... )
 """
 
 import lazy_loader

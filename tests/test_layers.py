@@ -254,6 +254,7 @@ def test_packages_that_the_library_imports_are_declared():
 # Tests of no one package: of the repository, of scenes that are hard for the whole library,
 # of what people hand over, and of what every solution satisfies.
 CUTTING_ACROSS = {
+    "test_examples",
     "test_layers",
     "test_notebooks",
     "test_pages",

@@ -65,6 +65,9 @@ class Part(eqx.Module):
         """The part with other constructor arguments, by name, built anew.
 
         Raises `ValueError` for names that there are not, and as the constructor does.
+
+        >>> scene.bristle.replace(angle=0.5)
+        SlantedSpring(stiffness=1, rest_length=2.4, height=1, angle=0.5)
         """
         known = asked_names(type(self), changes)
         given = {name: getattr(self, self._stored.get(name, name)) for name in known}

@@ -36,6 +36,11 @@ def use_fast_cpu() -> bool:
     Call it before anything has been computed with JAX in the process; later calls, and
     flags of your own in `XLA_FLAGS`, are left alone. Returns whether the flags are in use
     or will be.
+
+    >>> import os
+    >>> in_use = fx.use_fast_cpu()
+    >>> [flag for flag in os.environ["XLA_FLAGS"].split() if in_use and "vector" in flag]
+    ['--xla_cpu_prefer_vector_width=512']
     """
     given = os.environ.get("XLA_FLAGS", "")
     if _backend_is_running():
@@ -62,7 +67,12 @@ def keep_compiled(folder: str | os.PathLike | None = None) -> Path:
     """Keep compiled programs in `folder`, the user's cache folder where it is None.
 
     A folder that cannot be written, or a full disk, is one warning, and nothing more is
-    kept. Raises `ValueError` for what names no folder.
+    kept. Returns the folder.
+
+    Raises `ValueError` for what names no folder.
+
+    >>> print(fx.keep_compiled("compiled"))
+    compiled
     """
     known = folder is None or (isinstance(folder, str | os.PathLike) and str(folder))
     if not known:

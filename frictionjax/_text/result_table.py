@@ -75,7 +75,11 @@ class ResultTable(NamedTuple):
         return "left" if column in words else "right"
 
     def to_csv(self) -> str:
-        """The cells, comma separated, as `csv` of Python's library reads them."""
+        """The cells, comma separated, as `csv` of Python's library reads them.
+
+        >>> print(fx.solve_limit(scene).table().to_csv().splitlines()[2])
+        time,3,s,the last one
+        """
         text = io.StringIO()
         csv.writer(text, lineterminator="\n").writerows([self.header, *self.rows])
         return text.getvalue()

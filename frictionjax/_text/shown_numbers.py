@@ -35,6 +35,13 @@ class ShownNumbers:
         """Numbers with units and what they mean; of a batch a line for each member.
 
         Raises `ValueError` under a trace, where nothing is known yet.
+
+        >>> fx.solve_limit(scene).table()
+        number           value  unit  meaning
+        status              OK        every number can be trusted
+        time                 3  s     the last one
+        z            -0.120394  m     the state then
+        dissipation   0.379616  J     into friction
         """
         if not is_known(self):
             raise ValueError(f"{type(self).__name__}: needs known numbers, not a trace")

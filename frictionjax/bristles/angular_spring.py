@@ -18,6 +18,11 @@ class AngularSpring(AbstractBristle):
     the vertical and `theta_lim = arccos(h/L)` the one on the flat surface.
 
     Raises `ValueError` unless k > 0, L > h > 0 and theta_lim > theta_rest > -pi/2.
+
+    >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+    >>> law = fx.friction(scene.profile, rod)
+    >>> print(f"rho = {law.rho_plus:.4f} N, {law.rho_minus:.4f} N")
+    rho = 0.0440 N, -0.0540 N
     """
 
     positive: ClassVar = ("stiffness", "length", "height")

@@ -21,7 +21,15 @@ class SlopeBounds(NamedTuple):
 
 
 class Rod(NamedTuple):
-    """A straight rod from the tip to the root: how steeply it rises (1), how far (m)."""
+    """A straight rod from the tip to the root.
+
+    `slope`: how steeply it rises, no unit; `reach`: how far away the root is along x, in m.
+
+    >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+    >>> found = rod.rod(eta=0.0)
+    >>> print(f"rises by {found.slope:.4f} over {found.reach:.4f} m")
+    rises by 1.0206 over 0.9798 m
+    """
 
     slope: Real
     reach: Real
@@ -31,6 +39,10 @@ class Stance(NamedTuple):
     """How a bristle stands: `angle` theta from the vertical (rad), `length` (m).
 
     theta > 0 where the tip is behind the root, p < u: `u - p = length sin(theta)`.
+
+    >>> stance = scene.bristle.geometry(eta=0.01)
+    >>> print(f"{stance.angle:.2f} rad, {stance.length:.4f} m")
+    1.00 rad, 1.8323 m
     """
 
     angle: Real
@@ -43,6 +55,10 @@ class AbstractBristle(Part):
     Everything else (a, alpha, mu, rho, V_eps, the dynamics) follows by autodiff. `positive`
     and `angles` name constructor arguments: those > 0, and those within a right angle
     either way. Designs look for them there; any other number may be anywhere.
+
+    >>> spring = scene.bristle
+    >>> print(f"A = {spring.offset(0.01):.4f} m, F = {spring.energy(0.01):.4f} J")
+    A = -0.0156 m, F = 0.1611 J
     """
 
     positive: ClassVar[tuple[str, ...]] = ()

@@ -14,10 +14,16 @@ from .bristle import AbstractBristle
 class Custom(AbstractBristle):
     """The bristle with tip offset `A = offset_fn` and energy `F = energy_fn`.
 
-    `offset_fn`: C^2, `A(0) = 0`, in m. `energy_fn`: C^3, in J. Both scalar to scalar,
+    `offset`: A, C^2, `A(0) = 0`, in m. `energy`: F, C^3, in J. Both scalar to scalar,
     written with `jax.numpy`; an `equinox.Module` with leaves is traced like other parts.
 
     Raises `ValueError` where `A(0) != 0`, `F'(0) = 0` or a value at 0 is not finite.
+
+    >>> import jax.numpy as jnp
+    >>> mine = fx.bristles.Custom(offset=lambda eta: -1.5 * eta, energy=jnp.exp)
+    >>> law = fx.friction(scene.profile, mine)
+    >>> print(f"rho = {law.rho_plus:.4f} N, {law.rho_minus:.4f} N")
+    rho = 0.1176 N, -0.0870 N
     """
 
     _stored: ClassVar = {"offset": "offset_fn", "energy": "energy_fn"}

@@ -13,6 +13,10 @@ class Homothetic(AbstractBristle):
     `alpha`: normal force in N, not 0; with this bristle the same on a slide as at rest.
 
     Raises `ValueError` for alpha that is 0 or not finite.
+
+    >>> law = fx.friction(scene.profile, fx.bristles.Homothetic(alpha=2.0))
+    >>> print(f"rho = {law.rho_plus:.4f} N, {law.rho_minus:.4f} N")
+    rho = 0.2000 N, -0.2000 N
     """
 
     alpha: Real = eqx.field(converter=as_real)

@@ -13,6 +13,11 @@ class Linear(AbstractBristle):
     not 0.
 
     Raises `ValueError` for numbers that are not finite, and alpha that is 0.
+
+    >>> law = fx.friction(scene)
+    >>> same = fx.friction(scene.profile, fx.bristles.Linear(a=law.a, alpha=law.alpha))
+    >>> print(f"rho = {same.rho_plus:.4f} N, {same.rho_minus:.4f} N")
+    rho = 0.1204 N, -0.0879 N
     """
 
     a: Real = eqx.field(converter=as_real)

@@ -17,6 +17,11 @@ class SlantedSpring(AbstractBristle):
     and a negative angle is the mirror image. `alpha = k/cos (L_rest - h/cos)`.
 
     Raises `ValueError` for parameters out of range.
+
+    >>> mirrored = fx.bristles.SlantedSpring(1.0, rest_length=2.4, height=1.0, angle=-1.0)
+    >>> law = fx.friction(scene.profile, mirrored)
+    >>> print(f"rho = {law.rho_plus:.4f} N, {law.rho_minus:.4f} N")
+    rho = 0.0879 N, -0.1204 N
     """
 
     positive: ClassVar = ("stiffness", "rest_length", "height")

@@ -15,6 +15,11 @@ class VerticalSpring(AbstractBristle):
     `stiffness` k in N/m, `rest_length` L_rest in m, `height` h of its root in m.
 
     Raises `ValueError` for a stiffness, length or height that is not positive.
+
+    >>> upright = fx.bristles.VerticalSpring(stiffness=1.0, rest_length=2.0, height=1.0)
+    >>> law = fx.friction(scene.profile, upright)
+    >>> print(f"rho = {law.rho_plus:.4f} N, {law.rho_minus:.4f} N")
+    rho = 0.1000 N, -0.1000 N
     """
 
     positive: ClassVar = ("stiffness", "rest_length", "height")

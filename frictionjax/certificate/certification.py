@@ -33,7 +33,7 @@ def certify(
     root: Any = None,
     mode: Any = None,
 ) -> Certificate:
-    """Certify any sampled curve, whatever made it, against the scene alone.
+    """Certify any sampled curve, whatever made it, against the `scene` alone.
 
     `eps` in m, `gamma` > 0; `ts` in s, increasing, in [0, duration]; `z` in m; shapes
     (n,), n >= 2, NumPy or JAX. The curve's start is not compared with the scene's `z0`.
@@ -79,8 +79,18 @@ def certify(
     before a turning to its first one the load may change by 0.3% of the critical load: else
     it is `UNRESOLVED`.
 
+    Returns a `Certificate`: `.ok .status .message`, `.distance` in eps, `.residual` and
+    `.scale` in J, wells crossed, `.slips` and `.skipped`, and more, see its `.table()`.
+
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.
+
+    >>> ts = np.linspace(0.0, 3.0, 501)
+    >>> z = fx.solve(scene, eps=0.1, ts=ts).z
+    >>> fx.certify(scene, 0.1, 1.0, ts, z).message
+    'the curve solves the wiggly system'
+    >>> fx.certify(scene, 0.1, 1.0, ts, z + 0.01).message
+    'a well was crossed without the force that this takes'
     """
     scene = scene_for(Engine.CERTIFICATE, scene)
     require_real("eps", eps, "eps > 0", lambda e: e > 0)

@@ -70,6 +70,20 @@ class Coefficients(SelfDrawn, eqx.Module):
         """Each coefficient with its unit and what it means, and its error where known.
 
         Raises `ValueError` of a batch: one scene's fit into a table.
+
+        >>> fx.friction(scene).table()
+        coefficient        value  unit  meaning
+        rho_plus        0.120394  N     friction against motion to the right
+        rho_minus      -0.087947  N     friction against motion to the left
+        ratio            1.36894        -rho_plus/rho_minus
+        alpha            1.01644  N     normal force without friction
+        normal_plus      1.20394  N     normal force of a slide to the right
+        normal_minus     0.87947  N     normal force of a slide to the left
+        a               -1.55741        lean of the bristle, A'(0)
+        mu_plus         0.118447        largest slope that the bristle sees, friction/alpha
+        mu_minus      -0.0865246        smallest slope that the bristle sees, friction/alpha
+        omega_plus           0.1        largest slope of the surface, friction/normal force
+        omega_minus         -0.1        smallest slope of the surface, friction/normal force
         """
         require(is_known(self), "coefficients", self, "known numbers: none under a trace")
         shape = np.shape(self.rho_plus)

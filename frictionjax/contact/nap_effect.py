@@ -70,7 +70,17 @@ class Nap(SelfDrawn, _NapNumbers):
         return bool(loads and own and loads.least < own < loads.greatest)
 
     def table(self) -> ResultTable:
-        """Friction and axial force of slides with the nap, against it and turned over."""
+        """Friction and axial force of slides with the nap, against it and turned over.
+
+        >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+        >>> fx.nap(fx.profiles.Sine(slope=0.5), rod).table()
+        moved         friction, N  axial force, N
+        with the nap      0.16056       -0.117003
+        against it       0.495204          -1.054
+        turned over      0.363291       -0.264736
+        against/with = 3.08422
+        turns over against the nap for critical loads of 0.264736 to 1.054 N (bending ...
+        """
         rows = [
             ("with the nap", self.rho_with, self.axial_with),
             ("against it", self.rho_against, self.axial_against),
@@ -111,8 +121,18 @@ def nap(
     `bending_stiffness` B in N m^2: the critical load of the rod between hinges, as it
     turns, is `pi^2 B/L^2`.
 
+    Returns a `Nap`: `.rho_with`, `.rho_against`, `.rho_flipped` in N, > 0; `.axial_with`
+    and its like in N, traction positive; `.window`, `.turns_over`, `.message`.
+
     Raises `ValueError` as `friction(profile, bristle)` does, for traced parts, and for a
     bending stiffness that is not positive, or of a bristle that is no rod.
+
+    >>> fx.nap(scene.profile, scene.bristle)
+    moved         friction, N  axial force, N
+    with the nap     0.120394       -0.549184
+    against it       0.087947       -0.549184
+    against/with = 0.730492
+    only a rod on an angular spring, AngularSpring, can turn over
     """
     law = friction(profile, bristle)
     known = is_concrete(law, bristle)

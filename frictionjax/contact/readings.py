@@ -80,14 +80,14 @@ def _limit_rows(potential: AbstractPotential, z: Any, force: Any) -> TipForces:
 def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
     """Places, forces and energies along a solution, as a data set over `time` (s).
 
-    `solution`: what `solve` or `solve_limit` returned for this scene; `eps`: in m, the one
-    of a wiggly solution, and none of a limit one.
+    `solution`: what `solve` or `solve_limit` returned for this `scene`; `eps`: in m, the
+    one of a wiggly solution, and none of a limit one.
 
-    `u, q, p` in m: root, far end of the horizontal spring, tip; `theta` (rad), `length`
-    (m); `normal_force`, `tangential_force` (along x) of the surface on the bristle,
-    `axial_force` (traction positive), `support_force` on the root, in N; `energy_support`
-    and `energy_bristle` in J, and `power` in W put in at q: what energies gain is the
-    integral of it less `dissipation`, which is there where the solution has it.
+    Returns `u, q, p` in m: root, far end of the horizontal spring, tip; `theta` (rad),
+    `length` (m); `normal_force`, `tangential_force` (along x) of the surface on the
+    bristle, `axial_force` (traction positive), `support_force` on the root, in N;
+    `energy_support` and `energy_bristle` in J, and `power` in W put in at q: what energies
+    gain is the integral of it less `dissipation`, which is there where the solution has it.
 
     A limit solution has the force that its support exerts, on slides and at rest, and
     `tangential_low`, `tangential_high`: the one of the slide twice, or at rest all that
@@ -110,6 +110,10 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
 
     Raises `ValueError` for a batch of solutions, an eps that does not fit, or an effect
     whose forces are not those of one bristle.
+
+    >>> forces = fx.mechanics(scene, fx.solve_limit(scene, ts=[0.0, 0.75, 3.0]))
+    >>> print(forces.tangential_force.values.round(4), forces.tangential_force.units)
+    [-0.     -0.1204 -0.1204] N
     """
     scene = scene_for(Engine.MECHANICS, scene)
     in_limit = isinstance(solution, LimitSolution)

@@ -7,7 +7,11 @@ from .._checks import Part
 
 
 class Stage(enum.IntEnum):
-    """Where an effect comes in; effects are composed in this order, before tracing."""
+    """Where an effect comes in; effects are composed in this order, before tracing.
+
+    >>> [stage.name for stage in fx.effects.Stage]
+    ['POTENTIAL', 'STATE', 'READING']
+    """
 
     POTENTIAL = 0
     STATE = 1
@@ -32,6 +36,9 @@ class AbstractEffect(Part):
        Of those of `STATE` each lists there what it does, and refuses others by name.
     5. A scene without it runs the programs that it would run if the class did not exist.
     6. `of_bristle` names the class of bristles that it is about, where it is about one.
+
+    >>> fx.effects.Noise.stage, fx.effects.AxialLoad.of_bristle
+    (<Stage.STATE: 1>, 'AngularSpring')
     """
 
     stage: ClassVar[Stage] = Stage.POTENTIAL

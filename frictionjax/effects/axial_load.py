@@ -20,6 +20,12 @@ class AxialLoad(AbstractEffect):
     near its straight modes come to the load of the rod on its spring.
 
     Raises `ValueError` for a bending stiffness that is not positive and finite.
+
+    >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+    >>> asked = (fx.effects.AxialLoad(bending_stiffness=0.1),)
+    >>> held = scene.replace(bristle=rod, effects=asked)
+    >>> fx.mechanics(held, fx.solve_limit(held)).buckling
+    'below the critical load everywhere: not shown to buckle'
     """
 
     stage: ClassVar[Stage] = Stage.READING

@@ -12,7 +12,11 @@ from .nap_flip import NapFlip
 
 
 class Engine(enum.Enum):
-    """What a scene is given to, by the name of the call."""
+    """What a scene is given to, by the name of the call.
+
+    >>> fx.effects.Engine.COST.value
+    'work_precision, predict_cost and fit_budget'
+    """
 
     LIMIT = "solve_limit"
     RESOLVED = 'solve(method="resolved")'

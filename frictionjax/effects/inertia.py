@@ -23,6 +23,10 @@ class Inertia(AbstractEffect):
 
     Raises `ValueError` for a mass that is not positive and finite (without mass a scene
     has no such effect), or an exponent that is not finite.
+
+    >>> heavy = scene.replace(effects=(fx.effects.Inertia(mass=1e-3, exponent=1.0),))
+    >>> fx.explain(heavy, eps=0.01, gamma=1.0).effects.source.sel(effect="Inertia").item()
+    'beta = 7.1: overdamped far below 1'
     """
 
     stage: ClassVar[Stage] = Stage.STATE

@@ -24,6 +24,13 @@ class NapFlip(AbstractEffect):
     compressions of slides with the nap of both modes, below those against it.
 
     Raises `ValueError` for a bending stiffness that is not positive and finite.
+
+    >>> rough, load = fx.profiles.Sine(slope=0.5), fx.loads.Triangle(2.5, period=3.0)
+    >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+    >>> flips = (fx.effects.NapFlip(bending_stiffness=0.1),)
+    >>> turning = scene.replace(profile=rough, bristle=rod, load=load, effects=flips)
+    >>> print(fx.solve_limit(turning, ts=[0.0, 0.75, 1.5, 2.25, 3.0]).mode)
+    [ 1  1 -1 -1  1]
     """
 
     stage: ClassVar[Stage] = Stage.STATE

@@ -22,6 +22,10 @@ class Noise(AbstractEffect):
 
     Raises `ValueError` for a temperature that is not positive and finite (without noise a
     scene has no such effect), or an exponent that is not finite.
+
+    >>> warm = fx.effects.Noise(temperature=1e-3)
+    >>> print(f"{warm.temperature_at(0.01):.0e} J")
+    1e-05 J
     """
 
     stage: ClassVar[Stage] = Stage.STATE

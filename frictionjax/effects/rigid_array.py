@@ -20,6 +20,10 @@ class RigidArray(AbstractEffect):
 
     Raises `ValueError` for offsets that are no row of finite numbers, and weights that are
     negative, all 0, or of another shape.
+
+    >>> pair = scene.replace(effects=(fx.effects.RigidArray(offsets=[0.0, 0.5]),))
+    >>> print(f"{fx.friction(pair).rho_plus:.4f} N")
+    0.0324 N
     """
 
     offsets: Float[Array, " n"] = eqx.field(converter=as_real)

@@ -38,7 +38,13 @@ class Explanation(NamedTuple):
     effects: xr.Dataset
 
     def table(self) -> ResultTable:
-        """A line for each effect: what it changes, whether it is called for, its cost."""
+        """A line for each effect: what it changes, whether it is called for, its cost.
+
+        >>> fx.explain(scene, eps=0.01, gamma=1.0).table()
+        effect        in z, m   in force, N  called for  in scene  cost
+        higher order  2.57e-05  1.46e-08     yes         yes       1 ...
+        finite speed  0.00604   0.00604      yes         yes       - ...
+        """
         header = ("effect", "in z, m", "in force, N", "called for", "in scene", "cost", "")
         rows = []
         for name in [str(name) for name in self.effects.effect.values]:
@@ -65,14 +71,22 @@ def _number(value: Any) -> str:
 def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explanation:
     """What a scene simulates, and which effects matter at an accuracy (in eps).
 
-    `.equation`: the composed equation as text. `.effects`: data set over `effect`, with
-    `in_z` (m) and `in_force` (N), estimates from above of what it changes in the state at
-    times outside of slips and in the friction force, `called_for` (`in_z` is more than
-    `accuracy` eps, or another scene is meant), `asked` (the scene has it), `cost` (time
-    with it over time without) and `source`. Rows: "higher order", what `LeadingOrder`
-    leaves out; "finite speed", what viscosity adds to dry friction; the scene's effects.
+    `scene` at one `eps` (m) and one `gamma`; `accuracy` as in `solve`.
+
+    Returns an `Explanation`. `.equation`: the composed equation as text. `.effects`: data
+    set over `effect`, with `in_z` (m) and `in_force` (N), estimates from above of what it
+    changes in the state at times outside of slips and in the friction force, `called_for`
+    (`in_z` is more than `accuracy` eps, or another scene is meant), `asked` (the scene has
+    it), `cost` (time with it over time without) and `source`. Rows: "higher order", what
+    `LeadingOrder` leaves out; "finite speed", what viscosity adds to dry friction; the
+    scene's effects.
 
     Raises `ValueError` for arguments out of range, and as `solve` does.
+
+    >>> print(fx.explain(scene, eps=0.01, gamma=1.0).equation)
+    eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)
+      V_eps(z) = F(eps w(y)) - F(0), z = eps y + A(eps w(y)): SlantedSpring
+      eps = 0.01 m, gamma = 1, eps^gamma = 0.01 N s/m
     """
     scene = known_scene(scene)
     one = "one number eps > 0"

@@ -24,13 +24,18 @@ def explore(
     viscosity is `eps^gamma`. Shown are `V_eps` with the tip, the friction loop at this eps
     and in the limit, and `rho_plus`, `rho_minus` with their ratio.
 
-    The page's `.angle` and the like are where its sliders stand, and move them; `.shown`
-    has the arrays, `.status` says whether they can be trusted, or why a value is not
-    allowed: what was last allowed stays, greyed. `.still()` is a picture of it, which
-    a notebook keeps for readers without a kernel.
+    Returns the page, whose `.angle` and the like are where its sliders stand, and move
+    them; `.shown` has the arrays, `.status` says whether they can be trusted, or why a
+    value is not allowed: what was last allowed stays, greyed. `.still()` is a picture of
+    it, which a notebook keeps for readers without a kernel.
 
     Raises `ValueError` for numbers that the paper's hypotheses do not allow at first, and
     where the extra `notebooks` is not installed.
+
+    >>> page = fx.explore(angle=0.5)
+    >>> page.angle = 1.0
+    >>> print(f"ratio {page.shown.coefficients['ratio']:.3f}: {page.status}")
+    ratio 2.528: every number can be trusted
     """
     setting = PageSetting(angle, slope, asymmetry, eps, gamma)
     for name, value in zip(PageSetting._fields, setting, strict=True):

@@ -60,7 +60,12 @@ class ExplorePage(anywidget.AnyWidget):
         return self.told["status"]
 
     def still(self) -> Any:
-        """The picture of what is shown, by matplotlib."""
+        """The picture of what is shown, by matplotlib.
+
+        >>> figure = fx.explore().still()
+        >>> [text.get_text() for text in figure.axes[2].texts]
+        ['0.2010 N', '0.0991 N', '2.029']
+        """
         return draw_still(self.shown, "" if self.told["ok"] else self.status)
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:

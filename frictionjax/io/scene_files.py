@@ -40,7 +40,7 @@ class SceneFile(NamedTuple):
 
 
 def load_scene(path: Any) -> Scene:
-    """Read the scene of a TOML file.
+    """Read the scene of a TOML file, at `path`.
 
     Tables `[profile] [bristle] [support] [load]`, each with `kind` (the class's name) and
     the constructor's arguments by name (of a `Pulled` load `position` is a table too,
@@ -49,7 +49,13 @@ def load_scene(path: Any) -> Scene:
     be there and is not used. A `Fourier` profile may give `heights`, the file of a measured
     surface (relative to this one), with the options of `read_heights` and `fit_profile`.
 
+    Returns a `Scene`.
+
     Raises `ValueError` naming the file, the table and the key, and what is allowed.
+
+    >>> fx.save_scene(scene, "slanted.toml")
+    >>> fx.load_scene("slanted.toml").bristle
+    SlantedSpring(stiffness=1, rest_length=2.4, height=1, angle=1)
     """
     return load_study(path).scene
 
@@ -229,10 +235,16 @@ def _study_of(entries: Any) -> dict[str, Any]:
 
 
 def save_scene(scene: Scene, path: Any, study: dict[str, Any] | None = None) -> None:
-    """Write a scene, and a `[study]` table where one is given, so that it reads back equal.
+    """Write a `scene`, and a `[study]` table if one is given, so that it reads back equal.
 
+    `path`: of the file; `study`: what the table holds, by name. Returns nothing.
     (A spline within a rounding: the file holds its heights, not B-spline coefficients.)
     Raises `ValueError` for parts given as functions, which a file cannot hold.
+
+    >>> from pathlib import Path
+    >>> fx.save_scene(scene, "slanted.toml", study={"eps": [0.1, 0.01], "gamma": [1.0]})
+    >>> Path("slanted.toml").read_text().splitlines()[3:6]
+    ['[profile]', 'kind = "Sine"', 'slope = 0.1']
     """
     write_whole(path, scene_document(scene, study))
 

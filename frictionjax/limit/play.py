@@ -184,12 +184,15 @@ def _with_turning(scene: Scene, effect: NapFlip, ts: Float[Array, " n"]) -> Limi
 @noting_the_scene
 @with_nan
 def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
-    """Solve `0 in dR(z') + Phi'(z) - l(t)` (eq. 2.3), exactly up to rounding.
+    """Solve `0 in dR(z') + Phi'(z) - l(t)` (eq. 2.3) of a `scene`, exactly up to rounding.
 
     `ts`: times in s, not decreasing, in [0, duration], shape (n,); 201 evenly spaced ones
     where None. The grid inside always holds the turning points of the load, so values do
     not depend on which other times are asked for. Of a scene with `effects.Inertia` it is
     the limit of the scene without mass, to compare with.
+
+    Returns a `LimitSolution`: `.ts` (s), `.z` (m), `.dissipation` (J), shapes (n,), `.ok`,
+    `.status`.
 
     Raises `ValueError` for bad times, 32 bits, or z0 outside the strip at t = 0 (with the
     allowed interval). Source: the play operator, see A. Mielke and T. Roubicek,
@@ -197,6 +200,10 @@ def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
 
     With `effects.NapFlip` it is a play operator with modes: between its slides the root
     follows the load over the pinned tip, or jumps, which loses energy too.
+
+    >>> limit = fx.solve_limit(scene, ts=[0.0, 0.75, 2.25, 3.0])
+    >>> print(limit.z.round(4))
+    [ 0.      0.9296 -0.9621 -0.1204]
     """
     scene = scene_for(Engine.LIMIT, scene)
     ts = require_times(scene, ts)

@@ -25,14 +25,23 @@ from .settings import SETTINGS
 
 
 class UnprovedLoad(UserWarning):
-    """A load may turn where nobody has looked."""
+    """A load may turn where nobody has looked.
+
+    >>> import jax, warnings
+    >>> wrap = lambda t: jax.lax.while_loop(lambda x: x > 1, lambda x: x - 1, t)
+    >>> with warnings.catch_warnings(record=True, action="always") as told:
+    ...     pulled = scene.replace(load=fx.loads.Custom(wrap), duration=0.9)
+    >>> print(told[0].message)
+    load.fn: while has no bounds, so a pulse of less than ... s may have gone unseen; ...
+    """
 
 
 class Custom(AbstractLoad):
     """`l(t) = fn(t)`, continuous and piecewise C^1.
 
     `fn`: s to N, scalar to scalar, written with `jax.numpy`. `turning_points`: all times
-    at which `l'` changes sign, shape (n,); none are needed.
+    at which `l'` changes sign, shape (n,); none are needed (`listed`: the same, where a
+    load is built anew of its parts).
 
     A scene finds what the load does on [0, duration]: turning points, kinks, steep places.
     Interval arithmetic on the program of `fn` bounds l, l' and l'' over stretches that are
@@ -54,6 +63,11 @@ class Custom(AbstractLoad):
     for one that turns more often than can be looked at (listed or not), and where turning
     points are listed but some that were found are not among them; listed times at which
     it does not turn do no harm.
+
+    >>> import jax.numpy as jnp
+    >>> swept = scene.replace(load=fx.loads.Custom(lambda t: jnp.sin(t**2)))
+    >>> print(swept.turning_points()[:3].round(4))
+    [1.2533 2.1708 2.8025]
     """
 
     _stored: ClassVar = {"turning_points": "listed"}

@@ -11,7 +11,11 @@ from .._checks import Part, Real, as_real, require_real
 
 
 class AbstractPull(Part):
-    """`l(t)` in N and its slope: what a bristle feels of a load."""
+    """`l(t)` in N and its slope: what a bristle feels of a load.
+
+    >>> print(f"{scene.load.slope(0.0):.4f} N/s")
+    2.1991 N/s
+    """
 
     @abc.abstractmethod
     def __call__(self, t: Real) -> Real:
@@ -34,6 +38,9 @@ class AbstractLoad(AbstractPull):
        changes sign or jumps; between them `l` is monotone and C^1. It is traceable, sorted,
        of shape (count,), padded with `duration`, and all NaN where `count` is too small.
     3. `turning_count(duration)` is that number for known values, rounded up or not.
+
+    >>> print(scene.load.turning_points(duration=3.0, count=2))
+    [0.75 2.25]
     """
 
     @abc.abstractmethod

@@ -16,6 +16,10 @@ class PiecewiseLinear(AbstractLoad):
 
     Raises `ValueError` for shapes that differ, times that do not increase, or values
     that are not finite.
+
+    >>> load = fx.loads.PiecewiseLinear(times=[0.0, 1.0, 3.0], values=[0.0, 1.0, -0.5])
+    >>> print(f"{load(2.0):.2f} N, {load(5.0):.2f} N")
+    0.25 N, -0.50 N
     """
 
     times: Float[Array, " n"] = eqx.field(converter=as_real)

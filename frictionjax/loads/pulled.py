@@ -22,6 +22,11 @@ class Pulled(AbstractLoad):
     Raises `ValueError` for a position that is no load or a rest length that is not finite;
     a scene for a support that is no `Spring`; and where l is asked for before there is a
     scene.
+
+    >>> moved = fx.loads.PiecewiseLinear(times=[0.0, 3.0], values=[2.0, 3.0])
+    >>> dragged = scene.replace(load=fx.loads.Pulled(moved, rest_length=0.44))
+    >>> print(f"{dragged.load(0.0):.4f} N, {dragged.load(3.0):.4f} N")
+    0.0026 N, 1.0026 N
     """
 
     position: AbstractLoad

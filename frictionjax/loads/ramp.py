@@ -12,6 +12,9 @@ class Ramp(AbstractLoad):
     """`l(t) = start + rate t`; `rate` in N/s, `start` in N.
 
     Raises `ValueError` for values that are not finite.
+
+    >>> print(f"{fx.loads.Ramp(rate=0.5, start=0.1)(2.0):.2f} N")
+    1.10 N
     """
 
     rate: Real = eqx.field(converter=as_real)

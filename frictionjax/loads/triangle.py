@@ -13,6 +13,10 @@ class Triangle(PeriodicLoad):
     `amplitude` in N, `period` in s.
 
     Raises `ValueError` for a period that is not positive or values that are not finite.
+
+    >>> load = fx.loads.Triangle(amplitude=1.05, period=3.0)
+    >>> print(f"{load(0.75):.2f} N, {load(1.0):.2f} N")
+    1.05 N, 0.70 N
     """
 
     def __call__(self, t: Real) -> Real:

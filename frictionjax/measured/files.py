@@ -19,7 +19,15 @@ _CONTROL = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # ^Z ends a text of DOS
 
 
 class MeasuredWarning(UserWarning):
-    """What `read_heights` has taken for granted, or filled."""
+    """What `read_heights` has taken for granted, or filled.
+
+    >>> import warnings
+    >>> x = np.linspace(0.0, 1.0, 101)
+    >>> np.savetxt("trace.txt", np.c_[x, 0.02 * np.sin(10 * np.pi * x)])
+    >>> with warnings.catch_warnings(action="ignore", category=fx.measured.MeasuredWarning):
+    ...     print(fx.measured.read_heights("trace.txt").notes[0])
+    line 1, columns 1 and 2: no unit of lengths and heights, read as m (see ...
+    """
 
 
 class Measured(NamedTuple):
@@ -27,6 +35,11 @@ class Measured(NamedTuple):
 
     `notes`: one line for each thing that is not as the file says, or that it does not say:
     a unit, missing heights, an order of columns.
+
+    >>> x = np.linspace(0.0, 1e-4, 201)
+    >>> groove = fx.measured.Measured(x, 3e-7 * np.sin(2 * np.pi * x / 2e-5)[None])
+    >>> print(f"{fx.measured.fit_profile(groove, harmonics=2).period:.2e} m")
+    2.00e-05 m
     """
 
     x: Float[np.ndarray, " n"]
@@ -43,7 +56,7 @@ def read_heights(
     decimal: str | None = None,
     outliers: str | None = None,
 ) -> Measured:
-    """Read a height trace or map from a file.
+    """Read a height trace or map from a file, at `path`.
 
     A text: two columns, position and height; three, x, y and z on a grid; a map, one row
     a line, with lines `key=value` before it (`pixel size=3.7e-7 m`,
@@ -65,8 +78,16 @@ def read_heights(
     most a tenth of the period, or one sample. All of this is in `.notes`, and a
     `MeasuredWarning`.
 
+    Returns a `Measured`: `.x` in m, shape (n,), `.heights` in m, (rows, n), `.notes`.
+
     Raises `ValueError`, one line with file, line and column, for a file that cannot be
     read as one of these, or has a unit of lengths and none of heights.
+
+    >>> x = np.linspace(0.0, 100.0, 201)
+    >>> np.savetxt("trace.txt", np.c_[x, 0.3 * np.sin(2 * np.pi * x / 20)])
+    >>> groove = fx.measured.read_heights("trace.txt", length_unit="um", height_unit="um")
+    >>> print(f"{groove.x[-1]:.1e} m long, up to {groove.heights.max():.1e} m high")
+    1.0e-04 m long, up to 3.0e-07 m high
     """
     options = pixel, height_scale, length_unit, height_unit, decimal, outliers
     measured = heights_of(path, *options)

@@ -49,6 +49,11 @@ def fit_profile(
     `smoothing`: cut-off in m of a Gaussian filter along the rows; None: no filter.
 
     Raises `ValueError` as `Fourier.from_heights`, and for a row that is not there.
+
+    >>> x = np.linspace(0.0, 1e-4, 201)
+    >>> groove = fx.measured.Measured(x, 3e-7 * np.sin(2 * np.pi * x / 2e-5)[None])
+    >>> print(f"{fx.measured.fit_profile(groove, harmonics=2).slopes.omega_plus:.4f}")
+    0.0942
     """
     heights = measured.heights
     if row is not None:
@@ -62,10 +67,17 @@ def fit_profile(
 class RowCoefficients(NamedTuple):
     """Friction of each row of a map, by name: arrays over the rows used.
 
-    `period` in m, one for all rows. `used`: indices of the rows used. `refused`: index
-    and reason of the rows whose fit the bristle does not admit. `error`: standard error of
-    the friction of the mean profile (rows moved into phase), by name; empty where it
-    cannot be told. `profiles`: of the rows used.
+    `values` in N, or without unit. `period` in m, one for all rows. `used`: indices of the
+    rows used. `refused`: index and reason of the rows whose fit the bristle does not admit.
+    `error`: standard error of the friction of the mean profile (rows moved into phase), by
+    name; empty where it cannot be told. `profiles`: of the rows used.
+
+    >>> x = np.linspace(0.0, 1e-4, 201)
+    >>> heights = np.outer([3e-7, 2e-7], np.sin(2 * np.pi * x / 2e-5))
+    >>> groove = fx.measured.Measured(x, heights)
+    >>> rows = fx.measured.row_coefficients(groove, scene.bristle, harmonics=2)
+    >>> print(f"{rows.mean['rho_plus']:.4f} N, over rows +- {rows.std['rho_plus']:.4f} N")
+    0.0915 N, over rows +- 0.0293 N
     """
 
     values: dict[str, Float[np.ndarray, " rows"]]
@@ -104,6 +116,13 @@ def row_coefficients(
     whose standard error is `.error`. `smoothing`: as in `Fourier.from_heights`.
 
     Raises `ValueError` where the heights have no period, or no row is admissible.
+
+    >>> x = np.linspace(0.0, 1e-4, 201)
+    >>> heights = np.outer([3e-7, 2e-7], np.sin(2 * np.pi * x / 2e-5))
+    >>> groove = fx.measured.Measured(x, heights)
+    >>> rows = fx.measured.row_coefficients(groove, scene.bristle, harmonics=2)
+    >>> print(rows.values["rho_plus"].round(4))
+    [0.1123 0.0708]
     """
     x, heights = measured.x, measured.heights
     fits = fit_rows_in_phase(x, heights, period, harmonics, smoothing)

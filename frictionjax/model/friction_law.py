@@ -26,15 +26,24 @@ _SPACING = float(np.finfo(np.float64).eps)
 def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> Coefficients:
     """Friction coefficients of a scene, or of a profile and a bristle.
 
-    `friction(scene)` or `friction(profile, bristle)`; no trajectory is built. Scalars,
-    differentiable in every parameter of the parts (`jax.grad` through `rho_plus`). Of a
-    surface known by samples `omega_plus_error`, `rho_plus_error` and the like say how well
-    the samples determine them.
+    `friction(scene)` or `friction(profile, bristle)`; no trajectory is built.
+    `scene_or_profile`: the first of either.
+
+    Returns `Coefficients` (Lemmas 2 and 3): `.rho_plus` and `.rho_minus` in N, and with a
+    bristle `.alpha` in N, `.a`, `.omega_plus`, `.mu_plus`, `.normal_plus` (N) and their
+    like to the left, which have no unit where none is said. Scalars, differentiable in
+    every parameter of the parts (`jax.grad` through `rho_plus`). Of a surface known by
+    samples `omega_plus_error`, `rho_plus_error` and the like say how well the samples
+    determine them.
 
     Raises `ValueError` naming the hypothesis of the paper that fails: `omega_plus > 0 >
     omega_minus`, `alpha != 0`, `1 + a omega > 0` at both ends, the bristle's own bounds.
     Traced values cannot be looked at: under `jit` and `vmap` nothing is checked, and what
     an inadmissible bristle gives means nothing (`design_map` has NaN there).
+
+    >>> law = fx.friction(scene)
+    >>> print(f"{law.rho_plus:.4f} N to the right, {law.rho_minus:.4f} N to the left")
+    0.1204 N to the right, -0.0879 N to the left
     """
     if bristle is None:
         require(

@@ -231,9 +231,17 @@ class GivenPotential(AbstractPotential):
 
     `W_fn(Y)` in N: 1-periodic, C^2; `Q_fn(eps, Y)` in N/m: 1-periodic and C^2 in Y, and
     bounded with its derivative as eps -> 0; scalar functions written with `jax.numpy`. Q is
-    looked at where an eps is in use, and refused there.
+    looked at where an eps is in use, and refused there. `points` samples a period must
+    resolve W'.
 
     Raises `ValueError` where `W` does not repeat as a C^2 function or is constant.
+
+    >>> import jax.numpy as jnp
+    >>> given = fx.GivenPotential(W=lambda Y: 0.02 * jnp.sin(2 * jnp.pi * Y))
+    >>> spring, load = scene.support, scene.load
+    >>> bare = fx.Scene(potential=given, support=spring, load=load, duration=3.0)
+    >>> fx.friction(bare)
+    Coefficients(rho_plus=0.125664, rho_minus=-0.125664)
     """
 
     _stored: ClassVar = {"W": "W_fn", "Q": "Q_fn"}
@@ -285,10 +293,16 @@ class GivenPotential(AbstractPotential):
 
 
 def potential(profile: AbstractProfile, bristle: AbstractBristle) -> BristlePotential:
-    """The wiggly potential of a bristle on a surface.
+    """The wiggly potential of a `bristle` on a surface, `profile` (eqs. 2.20, 3.28).
 
-    Returns an object with `.energy(z, eps)`, `.force(z, eps)`, `.W(Y)` and `.Q(eps, Y)`.
+    Returns an object with `.energy(z, eps)`, V_eps in J, `.force(z, eps)`, V_eps' in N,
+    `.W(Y)` in N and `.Q(eps, Y)` in N/m (Lemma 2); z and eps in m, Y = z/eps, any shape.
+
     Raises `ValueError` for arguments of another kind.
+
+    >>> wiggly = fx.potential(scene.profile, scene.bristle)
+    >>> print(f"V_eps' = {wiggly.force(0.0, eps=0.01):.4f} N, W = {wiggly.W(0.25):.4f} N")
+    V_eps' = 0.1204 N, W = 0.0160 N
     """
     known = isinstance(profile, AbstractProfile)
     require(known, "profile", type(profile).__name__, "a part of frictionjax.profiles")

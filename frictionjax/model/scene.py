@@ -69,6 +69,10 @@ class Scene(SelfDrawn, eqx.Module):
     Raises `ValueError` for parts of another kind, a duration that is not positive, and
     every hypothesis of the paper that can be told without eps: see `friction`, and
     `Phi` uniformly convex on the range that the load reaches.
+
+    >>> longer = scene.replace(duration=6.0, z0=0.05)
+    >>> print(fx.solve_limit(longer, ts=[0.0, 3.0, 6.0]).z.round(4))
+    [ 0.05   -0.1204 -0.1204]
     """
 
     potential: AbstractPotential
@@ -112,6 +116,10 @@ class Scene(SelfDrawn, eqx.Module):
 
         `scene.replace(load=scene.load.replace(period=1.0))` changes a number of a part.
         Raises `ValueError` for names that there are not, and as the constructor does.
+
+        >>> faster = scene.replace(load=scene.load.replace(period=1.0), duration=1.0)
+        >>> faster.load
+        Sine(amplitude=1.05, period=1)
         """
         known = asked_names(Scene, changes)
         given = {name: getattr(self, name) for name in known}

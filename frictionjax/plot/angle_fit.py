@@ -26,6 +26,10 @@ def draw_angle_fit(fit: Any, ax: Any = None) -> Any:
     where it is drawn into that.
 
     Raises `ValueError` for a batch: pick one with `fit[i]`.
+
+    >>> fit = fx.fit_angle(scene.profile, scene.bristle, ratio=1.5)
+    >>> fx.plot.draw_angle_fit(fit).axes[0].get_legend_handles_labels()[1]
+    ['admissible bristles', 'wanted: 1.5', 'angle = 1.1071']
     """
     require(np.ndim(fit.code) == 0, "fit", f"{np.size(fit.code)} fits", "one: fit[i]")
     drawn, axes = axes_of(ax, 6.4, 4.6)

@@ -59,13 +59,19 @@ _KEY = (
 def draw_convergence(
     dataset: xr.Dataset, orders: xr.Dataset, curves: xr.Dataset | None = None
 ) -> Figure:
-    """Draw the errors of a sweep against eps, log-log, one line for each gamma.
+    r"""Draw the errors of a sweep against eps, log-log, one line for each gamma.
 
     `orders`, `curves`: those of `study(dataset)`; without the latter what was fitted is
     drawn as a power, and no law. Filled points are in the window that the fitted
     line rests on, hollow ones are outside; a cross on the axis is a failed cell. Dotted
     guides have the slope `eps^beta` of the lemmas. A second panel shows the dissipation,
     where the data set has it; of a rod that turns over others show distances of graphs.
+
+    >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0)
+    >>> figure = fx.plot.draw_convergence(data, fx.study(data).orders)
+    >>> print(figure.axes[0].get_legend().get_texts()[0].get_text())
+    $\gamma$ = 1: order 1.09 at these $\epsilon$;
+    for $\epsilon \to 0$: 1.01, 95% [0.87, 1.15], law: slips
     """
     dataset = whole_grid(dataset)
     chosen = _GRAPHS if "graph_error" in dataset else _PANELS

@@ -15,11 +15,15 @@ _FAMILY_LOOK = {"color": GUIDE, "linewidth": 0.8, "alpha": 0.7}
 
 @styled
 def draw_profile_fit(fit: Any, family: int = _FAMILY) -> Figure:
-    """Draw the result of `fit_profile`.
+    """Draw the result of `fit_profile`, `fit`.
 
     Above: heights and slopes of the surface, with `family` others that have the same
     coefficients in grey and the extreme slopes that the coefficients fix. Below: bending
     energy of every start, best first, and coefficients achieved against targets.
+
+    >>> fit = fx.fit_profile(fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05))
+    >>> [axes.get_xlabel() for axes in fx.plot.draw_profile_fit(fit, family=3).axes]
+    ['y (periods)', 'y (periods)', 'start, best first (1)', 'target (N)']
     """
     figure, grid = new_figure(2, 2, 10.0, 7.2)
     others = fit.family(family)

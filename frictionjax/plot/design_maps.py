@@ -38,13 +38,19 @@ _LEFT = ("////", "not admissible"), ("....", "$\\alpha$ < 0: the bristle pulls")
 
 @styled
 def draw_design_map(data: "xr.Dataset", quantities: Any = ("ratio", "contrast")) -> Figure:
-    """Draw maps of a `design_map`, one panel a quantity, contours labelled.
+    r"""Draw maps of a `design_map`, one panel a quantity, contours labelled.
 
+    `data`: the data set; `quantities`: names of its variables, one or several.
     Ratios are coloured by their logarithm, so that left and right look alike; colours end
     at the 2nd and 98th of a hundred values, and arrows on the bar say so. Hatched: no
     bristle there can follow the surface; dotted: it would pull, and may not.
 
     Raises `ValueError` for a quantity that the data set does not hold.
+
+    >>> angles, asymmetries = ("angle", [0.5, 1.0]), ("asymmetry", [1.0, 2.0])
+    >>> data = fx.design_map(scene.bristle, x=angles, y=asymmetries)
+    >>> print(fx.plot.draw_design_map(data).axes[0].get_xlabel())
+    angle of the bristle $\theta$ (rad)
     """
     names = [quantities] if isinstance(quantities, str) else list(quantities)
     for name in names:

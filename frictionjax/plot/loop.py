@@ -31,10 +31,18 @@ def draw_loop(
     gamma: float | None = None,
     eps: Any = None,
 ) -> Figure:
-    """Draw the friction force `l - Phi'(z)` in N against `z` in m, for a few eps.
+    r"""Draw the friction force `l - Phi'(z)` in N against `z` in m, for a few eps.
 
-    `support` and `found` (of `friction`) belong to the scene of the data set. The limit's
-    loop and `rho_plus`, `rho_minus` are drawn over it.
+    `dataset`: of `sweep`; `gamma`, `eps` (m): as in `draw_trajectories`. `support` and
+    `found` (of `friction`) belong to the scene of the data set. The limit's loop and
+    `rho_plus`, `rho_minus` are drawn over it.
+
+    Raises `ValueError` for a gamma or an eps that the data set does not hold.
+
+    >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01], gamma=1.0)
+    >>> figure = fx.plot.draw_loop(data, scene.support, fx.friction(scene))
+    >>> [text.get_text() for text in figure.axes[0].texts]
+    ['$\\rho_+$ = 0.12 N', '$\\rho_-$ = -0.0879 N']
     """
     dataset = whole_grid(dataset)
     gamma = choose_gamma(dataset, gamma)

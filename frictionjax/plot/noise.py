@@ -13,8 +13,16 @@ if TYPE_CHECKING:
 
 @styled
 def draw_histogram(data: "xr.Dataset") -> Figure:
-    """Draw a `histogram`: shares of bins with their 95% intervals, over z in m, and
-    Boltzmann's density."""
+    """Draw a `histogram`: shares of bins with their 95% intervals, and Boltzmann's density.
+
+    `data`: the data set. Both over z in m.
+
+    >>> noisy = scene.replace(effects=(fx.effects.Noise(temperature=1e-3),))
+    >>> paths = fx.ensemble(noisy, 0.1, gamma=1.0, ts=[0.0, 3.0], paths=100, key=0)
+    >>> figure = fx.plot.draw_histogram(fx.histogram(noisy, paths, bins=4))
+    >>> figure.axes[0].get_legend_handles_labels()[1]
+    ["Boltzmann's density", '100 paths, with 95% intervals']
+    """
     figure, grid = new_figure(1, 1, 7.2, 4.4)
     axes = grid[0, 0]
     edges = [*data.z_left.values, float(data.z_right[-1])]
@@ -44,9 +52,13 @@ def draw_histogram(data: "xr.Dataset") -> Figure:
 def draw_friction_curve(data: "xr.Dataset") -> Figure:
     """Draw a `friction_curve`: friction in N against speed in m/s, drag taken off.
 
-    One line a temperature, dashed to the left; slides that failed are crosses on the axis.
-    Of two temperatures and more a second panel is the map over both, to the right, or to
-    the left where no speed is to the right.
+    `data`: the data set. One line a temperature, dashed to the left; slides that failed are
+    crosses on the axis. Of two temperatures and more a second panel is the map over both,
+    to the right, or to the left where no speed is to the right.
+
+    >>> data = fx.friction_curve(scene, speeds=[0.01, 0.1, 1.0], eps=0.01)
+    >>> print(fx.plot.draw_friction_curve(data).axes[0].get_ylabel())
+    friction less drag (N)
     """
     several = data.sizes.get("temperature", 1) > 1
     figure, grid = new_figure(1, 1 + several, 6.4 + 4.4 * several, 4.4)

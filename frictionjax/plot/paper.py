@@ -47,7 +47,11 @@ def angular(limit: Any, rest: float) -> AngularSpring:
 
 @styled
 def draw_mu_slanted() -> Figure:
-    """`mu_plus` and `mu_minus` against theta in the second model, omega = 0.1."""
+    """`mu_plus` and `mu_minus` against theta in the second model, omega = 0.1.
+
+    >>> [text.get_text() for text in fx.plot.draw_mu_slanted().axes[0].texts]
+    ['only up to arccot 0.1']
+    """
     angles = _inside(0.0, _STEEPEST)
     found = _over(angles, slanted)
     figure, axes = _mu(angles, found, "Slanted spring", "bristle angle $\\theta$ (rad)")
@@ -58,7 +62,11 @@ def draw_mu_slanted() -> Figure:
 
 @styled
 def draw_mu_angular() -> Figure:
-    """`mu_plus` and `mu_minus` against theta_lim in the third model, omega = 0.1."""
+    """`mu_plus` and `mu_minus` against theta_lim in the third model, omega = 0.1.
+
+    >>> [text.get_text() for text in fx.plot.draw_mu_angular().axes[0].texts]
+    ['only from arctan 0.1', 'only up to arccot 0.1']
+    """
     angles = _inside(_FLATTEST, _STEEPEST)
     found = _over(angles, lambda limit: angular(limit, 0.0))
     label = "limit angle $\\theta^{lim}$ (rad)"
@@ -71,7 +79,11 @@ def draw_mu_angular() -> Figure:
 
 @styled
 def draw_nap() -> Figure:
-    """`rho_with`, `rho_against` the nap against theta_lim: the rest angle changes sign."""
+    r"""`rho_with`, `rho_against` the nap against theta_lim: the rest angle changes sign.
+
+    >>> fx.plot.draw_nap().axes[0].get_legend_handles_labels()[1]
+    ['against the nap, $\\theta^{rest}$ = -0.3 rad', 'with the nap, $\\theta^{rest}$ = ...
+    """
     angles = _inside(_NAP, _STEEPEST)
     figure, grid = new_figure(1, 1, 6.4, 4.4)
     axes = grid[0, 0]

@@ -20,6 +20,12 @@ def draw_scenes(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
     `orders`: those of `study(dataset)`. On the left each scene's errors as thin lines, the
     median and the band that holds 90% of the scenes; on the right a point for each scene,
     a line at the median, crosses at the orders that the laws predict.
+
+    >>> smooth = scene.replace(profile=fx.profiles.Sine(slope=0.05))
+    >>> data = fx.sweep([scene, smooth], eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0)
+    >>> figure = fx.plot.draw_scenes(data, fx.study(data).orders)
+    >>> print(figure.axes[1].get_ylabel())
+    order of convergence
     """
     figure, ((errors, spread),) = new_figure(1, 2, 10.8, 4.8)
     for index, gamma in enumerate(dataset.gamma.values):

@@ -11,11 +11,16 @@ from .style import LIMIT, colour, marker, new_figure, styled
 
 @styled
 def draw_slide_profile_fit(fit: Any) -> Figure:
-    """Draw the result of `fit_slide_profile`.
+    """Draw the result of `fit_slide_profile`, `fit`.
 
     Heights and slopes of the surface, and dashed those of the limit design for the same
     targets, whose slides miss them; how far each design's slides were from the forces
     that it was made for; forces of the slides against the targets.
+
+    >>> wanted = fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05)
+    >>> figure = fx.plot.draw_slide_profile_fit(fx.fit_slide_profile(wanted, eps=0.01))
+    >>> [axes.get_xlabel() for axes in figure.axes]
+    ['y (periods)', 'y (periods)', 'design', '|force| wanted (N)']
     """
     figure, grid = new_figure(2, 2, 10.0, 7.2)
     _surfaces(grid[0, 0], fit, 0, "height w (periods)", "Surface")

@@ -15,12 +15,18 @@ _NAMES = {"force": "force $\\ell - \\Phi'(z)$ (N)", "z": "state z (m)"}
 
 @styled
 def draw_trace_fit(fit: Any, truth: Any = None) -> Figure:
-    """Draw the result of `fit_trace`.
+    """Draw the result of `fit_trace`, `fit`.
 
     Left: the trace and what the surface found gives, and below residuals in standard
     deviations. Right: the slope w' with twice its standard error, phases that the trace
     does not determine in grey, and below where the tip was at the samples. `truth`: a
     profile to draw beside it.
+
+    >>> trace = fx.simulate_trace(scene, eps=0.1, noise=0.001)
+    >>> fit = fx.fit_trace(trace, scene, eps=0.1, harmonics=2, progress=False)
+    >>> figure = fx.plot.draw_trace_fit(fit, truth=scene.profile)
+    >>> [axes.get_xlabel() for axes in figure.axes]
+    ['t (s)', 'phase y (periods)', 't (s)', 'phase y (periods)']
     """
     figure, grid = new_figure(2, 2, 10.5, 6.2)
     _data(grid[0, 0], fit)

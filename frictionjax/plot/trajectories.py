@@ -28,10 +28,18 @@ _RESOLVED = 8  # samples a slip, or the inset would show the sampling
 def draw_trajectories(
     dataset: xr.Dataset, gamma: float | None = None, eps: Any = None
 ) -> Figure:
-    """Draw `z_eps` for a few eps of one gamma over the limit `z`, the strip shaded.
+    r"""Draw `z_eps` for a few eps of one gamma over the limit `z`, the strip shaded.
 
-    `gamma`: the nearest to 1 where None; `eps`: largest, middle and smallest where None.
-    A panel beside it follows a few slips of the largest eps whose slips the times resolve.
+    `dataset`: of `sweep`. `gamma`: the nearest to 1 where None; `eps`: largest, middle and
+    smallest where None. A panel beside it follows a few slips of the largest eps whose
+    slips the times resolve.
+
+    Raises `ValueError` for a gamma or an eps that the data set does not hold.
+
+    >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01], gamma=1.0)
+    >>> figure = fx.plot.draw_trajectories(data)
+    >>> figure.axes[0].get_legend_handles_labels()[1]
+    ['strip [z$_-$, z$_+$]', '$\\epsilon$ = 0.1 m', '$\\epsilon$ = 0.03 m', ...
     """
     dataset = whole_grid(dataset)
     gamma = choose_gamma(dataset, gamma)
@@ -118,7 +126,13 @@ def draw_dissipation(
 ) -> Figure:
     """Draw `int_0^t eps^gamma z'^2` (J) for a few eps of one gamma, and the limit's.
 
+    `dataset`: of `sweep`; `gamma`, `eps` (m): as in `draw_trajectories`.
+
     Raises `ValueError` for a data set without dissipation.
+
+    >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01], gamma=1.0)
+    >>> print(fx.plot.draw_dissipation(data).axes[0].get_ylabel())
+    dissipated energy D (J)
     """
     dataset = whole_grid(dataset)
     known = "dissipation" in dataset

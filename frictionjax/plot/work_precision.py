@@ -39,19 +39,23 @@ _SMALL = {"linewidth": 5, "markersize": 9}  # in the legend
 def draw_work_precision(
     dataset: xr.Dataset, eps: float | None = None, gamma: float | None = None
 ) -> Figure:
-    """Draw a data set of `work_precision`.
+    r"""Draw a data set of `work_precision`, `dataset`.
 
     Above, of one cell: error against seconds, one line a method, thin from the fastest to
     the slowest of its warm runs, and below it in yellow the Pareto front of the runs that
-    are not wrong; accuracy reached against accuracy asked for. The cell: the smallest eps
-    and gamma = 1 where none is named. Below, with more than one cell: seconds, and error
-    over accuracy, at the accuracy in the middle: against eps, one panel for each gamma, or
-    with one eps against gamma.
+    are not wrong; accuracy reached against accuracy asked for. The cell: of `eps` (m) and
+    `gamma`; the smallest eps and gamma = 1 where none is named. Below, with more than one
+    cell: seconds, and error over accuracy, at the accuracy in the middle: against eps, one
+    panel for each gamma, or with one eps against gamma.
 
     Runs that are not done stand above the upper edge of each panel. Errors below what the
     reference can judge are drawn there, those beyond 1000 eps there.
 
     Raises `ValueError` for an eps or gamma that the data set does not hold.
+
+    >>> costs = fx.work_precision(scene, methods="auto", accuracies=1e-3, repeats=1)
+    >>> [axes.get_xlabel() for axes in fx.plot.draw_work_precision(costs).axes]
+    ['seconds of a warm run', 'accuracy asked for ($\\epsilon$)']
     """
     gamma = choose_gamma(dataset, gamma)
     smallest = float(dataset.eps.min())

@@ -18,6 +18,11 @@ class Custom(AbstractProfile):
 
     Raises `ValueError` naming the derivative that jumps where `fn` does not repeat as a
     C^2 function (at the seam or inside), or `fn` is constant or not finite.
+
+    >>> import jax.numpy as jnp
+    >>> surface = fx.profiles.Custom(lambda y: 0.02 * jnp.exp(jnp.cos(2 * jnp.pi * y)))
+    >>> print(surface(np.array([0.0, 0.25, 0.5])).round(4))
+    [0.0544 0.02   0.0074]
     """
 
     fn: Callable[[Real], Real]

@@ -31,6 +31,11 @@ class Fourier(AbstractSampled):
     has taken off; None without one.
 
     Raises `ValueError` where the shapes differ, a coefficient is not finite or all are 0.
+
+    >>> surface = fx.profiles.Fourier(cos=[0.0, 0.004], sin=[0.015, 0.003])
+    >>> law = fx.friction(surface, scene.bristle)
+    >>> print(f"slopes from {law.omega_minus:.3f} to {law.omega_plus:.3f}")
+    slopes from -0.117 to 0.150
     """
 
     cos: Float[Array, " harmonics"] = eqx.field(converter=as_real)
@@ -105,6 +110,12 @@ class Fourier(AbstractSampled):
         more than 10%. Raises `ValueError` for wrong shapes, values that are not finite,
         less than 1.5 periods, more harmonics than the samples can tell apart, parts of a
         period that are masked in every one, or a filter that leaves nothing.
+
+        >>> x = np.linspace(0.0, 1e-4, 201)
+        >>> heights = 3e-7 * np.sin(2 * np.pi * x / 2e-5)
+        >>> fit = fx.profiles.Fourier.from_heights(x, heights, harmonics=2)
+        >>> print(f"period {fit.period:.2e} m, slopes up to {fit.slopes.omega_plus:.4f}")
+        period 2.00e-05 m, slopes up to 0.0942
         """
         fit_all = fit_map if np.ndim(heights) == 2 else fit_heights
         fit = fit_all(x, heights, period, harmonics, smoothing)

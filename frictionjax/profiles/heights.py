@@ -24,8 +24,15 @@ _Profile = TypeVar("_Profile")
 class HeightsFit(NamedTuple, Generic[_Profile]):
     """Result of `Fourier.from_heights`.
 
-    `period` in m. `explained`: share of the detrended variance, before any smoothing.
+    `profile`: w. `period` in m. `explained`: share of the detrended variance, before any
+    smoothing.
     `slopes`: steepest slopes of the profile, with errors. `smoothing`: cut-off in m.
+
+    >>> x = np.linspace(0.0, 1e-4, 201)
+    >>> heights = 3e-7 * np.sin(2 * np.pi * x / 2e-5) + 1e-3 * x
+    >>> fit = fx.profiles.Fourier.from_heights(x, heights, harmonics=2)
+    >>> print(f"{fit.explained:.0%} of the variance, period {fit.period:.2e} m")
+    100% of the variance, period 2.00e-05 m
     """
 
     profile: _Profile
@@ -36,9 +43,17 @@ class HeightsFit(NamedTuple, Generic[_Profile]):
 
 
 class SeriesFit(NamedTuple):
-    """Fourier coefficients in periods, smoothed; the period in the unit of x.
+    """Fourier coefficients `cos`, `sin` in periods, smoothed; `period` in the unit of x.
 
-    `waves`: of more harmonics than were asked for, with their noise.
+    `explained`: share of the detrended variance, before any smoothing. `waves`: of more
+    harmonics than were asked for, with their noise.
+
+    >>> from frictionjax.profiles import fit_rows_in_phase
+    >>> x = np.linspace(0.0, 1e-4, 201)
+    >>> rows = np.outer([3e-7, 2e-7], np.sin(2 * np.pi * x / 2e-5))
+    >>> fits = fit_rows_in_phase(x, rows, period=None, harmonics=2, smoothing=None)
+    >>> [f"{fit.sin[0]:.4f}" for fit in fits]
+    ['0.0150', '0.0100']
     """
 
     cos: Float[np.ndarray, " harmonics"]

@@ -53,6 +53,11 @@ class Polyline(AbstractProfile):
     Raises `ValueError` for fewer than 2 points, shapes that differ, x that does not
     increase in [0, 1), values that are not finite, heights that are all equal, and a
     radius that is not positive or whose corners overlap, with the largest one that fits.
+
+    >>> ratchet = fx.profiles.Polyline([0.0, 0.8], [0.0, 0.05], radius=0.02)
+    >>> law = fx.friction(ratchet, scene.bristle)
+    >>> print(f"slopes from {law.omega_minus:.4f} to {law.omega_plus:.4f}")
+    slopes from -0.2500 to 0.0625
     """
 
     x: Float[Array, " n"]

@@ -22,6 +22,9 @@ class AbstractProfile(Part):
        that no digits are lost at y = 1e8.
     2. It is twice differentiable by `jax.jvp` everywhere.
     3. `points` samples a period resolve `w'`; it is static.
+
+    >>> print(scene.profile(np.array([0.0, 0.25, 0.5, 0.75])).round(4))
+    [ 0.      0.0159 -0.     -0.0159]
     """
 
     @abc.abstractmethod

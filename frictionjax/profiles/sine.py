@@ -15,6 +15,10 @@ class Sine(AbstractProfile):
     `slope`: largest slope of the surface, dimensionless, not 0.
 
     Raises `ValueError` for a slope that is 0 or not finite.
+
+    >>> law = fx.friction(fx.profiles.Sine(slope=0.1), scene.bristle)
+    >>> print(f"slopes from {law.omega_minus:.2f} to {law.omega_plus:.2f}")
+    slopes from -0.10 to 0.10
     """
 
     slope: Real = eqx.field(converter=as_real)

@@ -38,6 +38,12 @@ class Spline(AbstractSampled):
 
     Raises `ValueError` for fewer than 4 heights, a wrong shape, heights that are not
     finite or all equal, or the first one again at the end.
+
+    >>> y = np.arange(16) / 16
+    >>> surface = fx.profiles.Spline(0.02 * np.sin(2 * np.pi * y))
+    >>> law = fx.friction(surface, scene.bristle)
+    >>> print(f"{law.omega_plus:.4f}, of the sine {0.04 * np.pi:.4f}")
+    0.1256, of the sine 0.1257
     """
 
     coefficients: Float[Array, " n"]

@@ -54,7 +54,7 @@ def friction_curve(
     """Friction of steady slides whose support moves at constant speed.
 
     `speeds`: in m/s, one or an array of shape (n,), negative to the left, not 0; `eps` in
-    m, `gamma` > 0. Of the scene its surface, bristle and effects are used, and the spring
+    m, `gamma` > 0. Of the `scene` its surface, bristle and effects are used, and the spring
     that the tip is held by: the load is that of the moving support, `l = k v t`, in place
     of the scene's, and no transient enters.
 
@@ -70,6 +70,10 @@ def friction_curve(
     Raises `ValueError` for arguments out of range, and supports that are no `Spring`. A
     slide that is not found has its status; so has one whose force may be off by more than
     3e-4, as its spring is too soft for errors to be forgotten (`Status.OPEN_BRACKET`).
+
+    >>> data = fx.friction_curve(scene, speeds=[0.01, 1.0, -1.0], eps=0.01)
+    >>> print(data.friction_force.values.round(4), data.friction_force.units)
+    [ 0.1158  0.1089 -0.0778] N
     """
     scene = scene_for(Engine.FRICTION_CURVE, scene)
     spring = _spring_of(scene)

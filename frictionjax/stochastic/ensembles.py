@@ -44,6 +44,12 @@ def ensemble(
     as `stochastic/settings.py` says.
 
     Raises `ValueError` for arguments out of range, and a scene without noise.
+
+    >>> noisy = scene.replace(effects=(fx.effects.Noise(temperature=1e-3),))
+    >>> ts = [0.0, 0.75, 3.0]
+    >>> paths = fx.ensemble(noisy, eps=0.1, gamma=1.0, ts=ts, paths=100, key=0)
+    >>> print(paths.z_mean.values.round(2), paths.z_mean.units)
+    [ 0.    0.96 -0.23] m
     """
     scene = scene_for(Engine.ENSEMBLE, scene)
     noise = noise_among(scene.effects)

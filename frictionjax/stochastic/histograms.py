@@ -47,9 +47,9 @@ def histogram(
 ) -> "xr.Dataset":
     """How paths of `fx.ensemble` are spread at one time, beside Boltzmann's density.
 
-    `paths`: the data set that `fx.ensemble` made of this scene; `time`: one of its times in
-    s, the last where None; `bins`: how many, evenly between the outermost paths, or their
-    rising edges in m, shape (n + 1,). Paths that failed are left out.
+    `paths`: the data set that `fx.ensemble` made of this `scene`; `time`: one of its times
+    in s, the last where None; `bins`: how many, evenly between the outermost paths, or
+    their rising edges in m, shape (n + 1,). Paths that failed are left out.
 
     Returns a data set over `bin`: `count`, `density` (1/m) and its 95% interval
     `density_low`, `density_high` (Clopper and Pearson's: never too narrow), `boltzmann`,
@@ -64,6 +64,13 @@ def histogram(
     that `ensemble` has not made.
 
     Source: C. J. Clopper and E. S. Pearson, Biometrika 26, 404 (1934).
+
+    >>> noisy = scene.replace(effects=(fx.effects.Noise(temperature=1e-3),))
+    >>> ts = [0.0, 0.75, 3.0]
+    >>> paths = fx.ensemble(noisy, eps=0.1, gamma=1.0, ts=ts, paths=100, key=0)
+    >>> shares = fx.histogram(noisy, paths, bins=4)
+    >>> shares["count"].values
+    array([ 6, 23, 52, 19])
     """
     scene = scene_for(Engine.ENSEMBLE, scene)
     noise = noise_among(scene.effects)

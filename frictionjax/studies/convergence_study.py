@@ -26,14 +26,14 @@ _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
 
 
 def study(dataset: xr.Dataset) -> Study:
-    """Convergence orders of a data set made by `sweep`.
+    """Convergence orders of a `dataset` made by `sweep`.
 
-    `.orders` holds, for each gamma: `order, order_low, order_high` of `sup_error` (95%
-    interval for eps -> 0), the window `eps_min, eps_max, points` it rests on, how many
-    cells were left out as pre-asymptotic, near the solver's floor or failed, `constant` of
-    the power for eps -> 0 with its 95% interval `constant_low, constant_high` (jointly with
-    that of the order), `order_seen` (slope of the errors in the window, by plain
-    regression), `misfit` of the fitted curve, `verdict` (CF flags); the same with
+    Returns a `Study`: `.orders` holds, for each gamma: `order, order_low, order_high` of
+    `sup_error` (95% interval for eps -> 0), the window `eps_min, eps_max, points` it rests
+    on, how many cells were left out as pre-asymptotic, near the solver's floor or failed,
+    `constant` of the power for eps -> 0 with its 95% interval `constant_low, constant_high`
+    (jointly with that of the order), `order_seen` (slope of the errors in the window, by
+    plain regression), `misfit` of the fitted curve, `verdict` (CF flags); the same with
     `dissipation_` in front, and with `strip_` of sup dist(z_eps, strip);
     `beta = min(1, gamma)` of Lemmas 7 to 9; the measured constants `C0` of Lemma 7 and `C`
     of Lemma 9, the latter a lower bound from the times in the data set.
@@ -70,6 +70,11 @@ def study(dataset: xr.Dataset) -> Study:
     several scenes is studied alone; `.spread` tells how they differ.
 
     Raises `ValueError` where the data set lacks what `sweep` puts there.
+
+    >>> found = fx.study(fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0))
+    >>> order = found.orders.sel(gamma=1.0)
+    >>> print(f"{order.order:.2f}, 95% [{order.order_low:.2f}, {order.order_high:.2f}]")
+    1.01, 95% [0.87, 1.15]
     """
     needed = {"sup_error", "status", "strip_excess", "z"}
     given = getattr(dataset, "variables", None)

@@ -30,6 +30,13 @@ class Study(NamedTuple):
         """Orders and constants for eps -> 0, a line for each error and gamma.
 
         Of several scenes how they spread.
+
+        >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0)
+        >>> fx.study(data).table()
+        error           gamma           order [95%]  predicted    law   seen ...
+        state               1  1.010 [0.874, 1.147]          1  slips  1.094 ...
+        dissipation         1  1.055 [0.925, 1.186]          1  slips  1.427 ...
+        from the strip      1  1.333 [1.326, 1.338]      1.333  slips  1.368 ...
         """
         if self.spread is not None:
             return spread_table(self.spread)
@@ -43,9 +50,16 @@ class Study(NamedTuple):
         return f"{self.table()._repr_html_()}<pre>{failed}</pre>"
 
     def plot(self) -> Any:
-        """Errors against eps with the fitted orders, as a matplotlib Figure.
+        r"""Errors against eps with the fitted orders, as a matplotlib Figure.
 
         Of several scenes: the errors of all, and how their orders spread.
+
+        >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0)
+        >>> figure = fx.study(data).plot()
+        >>> figure.savefig("orders.png")
+        >>> print(figure.axes[0].get_legend().get_texts()[0].get_text())
+        $\gamma$ = 1: order 1.09 at these $\epsilon$;
+        for $\epsilon \to 0$: 1.01, 95% [0.87, 1.15], law: slips
         """
         from ..plot import draw_convergence, draw_scenes
 

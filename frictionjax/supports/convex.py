@@ -13,8 +13,12 @@ from .support import AbstractSupport
 class Convex(AbstractSupport):
     """The support with energy `Phi = energy_fn`, C^2 and uniformly convex, in J.
 
-    `energy_fn`: scalar to scalar, written with `jax.numpy`. That `Phi'' > 0` is checked
+    `energy`: Phi, scalar to scalar, written with `jax.numpy`. That `Phi'' > 0` is checked
     by the scene, on the range of z that its load reaches.
+
+    >>> stiffening = fx.supports.Convex(lambda z: z**2 / 2 + z**4)
+    >>> print(f"{stiffening.force(0.5):.2f} N, {stiffening.stiffness_at(0.5):.2f} N/m")
+    1.00 N, 4.00 N/m
     """
 
     _stored: ClassVar = {"energy": "energy_fn"}

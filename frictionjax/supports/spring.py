@@ -10,6 +10,10 @@ class Spring(AbstractSupport):
     """`Phi(z) = stiffness/2 z^2`; `stiffness` k_h in N/m.
 
     Raises `ValueError` for a stiffness that is not positive.
+
+    >>> soft = scene.replace(support=fx.supports.Spring(stiffness=0.5))
+    >>> print(fx.solve_limit(soft, ts=[0.75]).z.round(4))
+    [1.8592]
     """
 
     stiffness: Real = eqx.field(converter=as_real)

@@ -10,7 +10,12 @@ _NEWTON = 3
 
 
 class AbstractSupport(Part):
-    """The energy `Phi(z)` of the horizontal spring, uniformly convex."""
+    """The energy `Phi(z)` of the horizontal spring, uniformly convex.
+
+    >>> spring = scene.support
+    >>> print(f"{spring.force(0.5):.2f} N at 0.5 m, {spring.state_of(0.3):.2f} m at 0.3 N")
+    0.50 N at 0.5 m, 0.30 m at 0.3 N
+    """
 
     @abc.abstractmethod
     def energy(self, z: Real) -> Real:

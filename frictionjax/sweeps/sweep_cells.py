@@ -90,6 +90,10 @@ def sweep(
 
     Raises `ValueError` for arguments out of range, z0 outside the strip at t = 0 (Theorem
     1 does not apply), or an eps at which the bristle loses contact.
+
+    >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0)
+    >>> print(data.sup_error.sel(gamma=1.0).values.round(3), data.sup_error.units)
+    [0.156 0.03  0.008 0.003 0.001] m
     """
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)

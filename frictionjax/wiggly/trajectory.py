@@ -366,7 +366,7 @@ def solve(
     key: Any = None,
     effects: str = "all",
 ) -> Solution:
-    """Solve `eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.7) from z0.
+    """Solve `eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.7) of a `scene` from z0.
 
     `eps` in m, `gamma` > 0. `ts`: times in s, not decreasing, in [0, duration]; 201 evenly
     spaced ones where None. `accuracy`: wanted error of `z` in units of eps at every time
@@ -392,10 +392,18 @@ def solve(
     `effects`: "all" of the scene's, or "auto": without those that this accuracy does not
     call for, as `explain` tells; `left_out` in `stats` says which, and the most that each
     changes z by in eps.
-    Failure is a `status`, not an exception.
+
+    Returns a `Solution`: `.ts` (s), `.z` (m), `.dissipation` and `.residual` (J), shapes
+    (n,), `.ok`, `.status`, `.stats`. Failure is a `status`, not an exception.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact (`G > 0` fails), with the largest eps allowed.
+
+    >>> solution = fx.solve(scene, eps=0.01)
+    >>> solution.status
+    <Status.OK: 0>
+    >>> print(f"at 3 s: {solution.z[-1]:.3f} m, {solution.dissipation[-1]:.3f} J lost")
+    at 3 s: -0.120 m, 0.384 J lost
     """
     require_numbers("eps", eps, "one number eps > 0", lambda e: (e > 0) & (e.ndim == 0))
     allowed = "one number gamma > 0"

@@ -27,19 +27,22 @@ def _line(name: str, thing) -> str:
     return name + re.sub(r" at 0x[0-9a-f]+", "", str(inspect.Signature(bare)))
 
 
-def signatures() -> str:
-    """A line for each public name, with its arguments and their defaults."""
+def public_names() -> dict:
+    """Everything that users build on, by name: `fx.solve`, `fx.loads.Sine`, `fx.loads`."""
     import frictionjax as fx
 
-    lines = [_line(f"fx.{name}", getattr(fx, name)) for name in sorted(fx.__all__)]
+    found = {f"fx.{name}": getattr(fx, name) for name in sorted(fx.__all__)}
     for space in SPACES:
         home, functions = getattr(fx, space), _FUNCTIONS.get(space, ())
-        names = (
-            name
-            for name in sorted(dir(home))
-            if name[0].isupper() or name.startswith(functions)
-        )
-        lines += [_line(f"fx.{space}.{name}", getattr(home, name)) for name in names]
+        for name in sorted(dir(home)):
+            if name[0].isupper() or name.startswith(functions):
+                found[f"fx.{space}.{name}"] = getattr(home, name)
+    return found
+
+
+def signatures() -> str:
+    """A line for each public name, with its arguments and their defaults."""
+    lines = [_line(name, thing) for name, thing in public_names().items()]
     return "\n".join(lines) + "\n"
 
 

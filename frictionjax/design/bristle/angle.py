@@ -113,7 +113,7 @@ def fit_angle(
     pulling: bool = False,
     effects: Sequence[AbstractEffect] = (),
 ) -> AngleFit:
-    """The bristle on a surface that has a wanted friction, one number of it free.
+    """The `bristle` on a surface, `profile`, that has a wanted friction, one number free.
 
     Exactly one of `rho_plus` (N, > 0), `rho_minus` (N, < 0), `ratio` = -rho_plus/rho_minus
     (> 0) and `difference` = rho_plus + rho_minus (N; how much harder the right is than the
@@ -147,6 +147,9 @@ def fit_angle(
     shape or the wrong sign, an unknown `free`, bounds out of the number's range, where no
     value in the bounds is admissible, or all that are pull, and for other effects, and tips
     at different phases of bristles that lean.
+
+    >>> fx.fit_angle(scene.profile, scene.bristle, ratio=1.5)
+    AngleFit(angle=1.10715: ratio = 1.5: found, angle = 1.10715)
     """
     require_flags(pulling=pulling)
     require_x64(potential(profile, bristle))  # which checks the kinds of the parts

@@ -19,7 +19,11 @@ class DesignResult(Result):
         return self.ok
 
     def to_json(self, path: Any = None) -> str:
-        """Everything as JSON, but iterates' shapes; written to `path` where given."""
+        r"""Everything as JSON, but iterates' shapes; written to `path` where given.
+
+        >>> fx.fit_angle(scene.profile, scene.bristle, ratio=1.5).to_json("fit.json")[:38]
+        '{\n "kind": "frictionjax.AngleFit",\n "m'
+        """
         return written(self.document.text(self), path)
 
     @classmethod
@@ -28,6 +32,10 @@ class DesignResult(Result):
 
         A bristle or a surface given as functions is None, iterates' shapes are empty.
         Raises `ValueError` for what is no such JSON.
+
+        >>> fit = fx.fit_angle(scene.profile, scene.bristle, ratio=1.5)
+        >>> type(fit).from_json(fit.to_json())
+        AngleFit(angle=1.10715: ratio = 1.5: found, angle = 1.10715)
         """
         return cls(**cls.document.parse(source))
 

@@ -28,12 +28,16 @@ def _on_nearly_flat(bristle: AbstractBristle) -> BristlePotential:
 
 
 class Target(NamedTuple):
-    """A bristle and the friction coefficients that it should have on the surface.
+    """A `bristle` and the friction coefficients that it should have on the surface.
 
     `rho_plus` > 0 > `rho_minus` in N. `weight`: > 0, of its squared residuals.
     `uncertainty`: standard deviation of the two in N, one number or a pair; without it
     residuals are relative. Checked where it is used. `nap`: whether it was asked for by
     the bristle's nap, which a fit must not turn round then.
+
+    >>> wanted = fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05)
+    >>> print(f"{-wanted.rho_plus / wanted.rho_minus:.2f} times harder to the right")
+    2.40 times harder to the right
     """
 
     bristle: AbstractBristle
@@ -59,6 +63,10 @@ class Target(NamedTuple):
 
         Raises `ValueError` for friction that is not positive, and for bristles of which
         nothing says how they stand, or that stand upright and have no nap.
+
+        >>> wanted = fx.Target.of_nap(scene.bristle, with_nap=0.12, against_nap=0.08)
+        >>> wanted.rho_plus, wanted.rho_minus
+        (0.12, -0.08)
         """
         for name, value in (("with_nap", with_nap), ("against_nap", against_nap)):
             require_real(name, value, f"{name} > 0 in N", _positive)

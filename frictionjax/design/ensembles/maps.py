@@ -102,7 +102,7 @@ def design_map(
 ) -> xr.Dataset:
     """Friction over two numbers of a design, all in one compiled call.
 
-    `x`, `y`: a name, or a name and its values, shape (n,). Names of the bristle's numbers
+    `x`, `y`: a name, or a name and its values, shape (n,). Names of the `bristle`'s numbers
     are those of `fit_angle`; `"asymmetry"` = omega_plus/|omega_minus| and `"steepness"` =
     (omega_plus - omega_minus)/2 are the surface's: see `asymmetric_profile`. Angles and
     the surface's numbers have values of their own where none are given. `profile`: the
@@ -126,6 +126,12 @@ def design_map(
 
     Raises `ValueError` for unknown names, values that are not finite or positive, a
     profile that is missing, or too much, and other effects, by name.
+
+    >>> angles, asymmetries = ("angle", [0.5, 1.0]), ("asymmetry", [1.0, 2.0])
+    >>> found = fx.design_map(scene.bristle, x=angles, y=asymmetries)
+    >>> print(found.ratio.values.round(3))
+    [[1.245 1.905]
+     [2.512 4.131]]
     """
     require_x64(bristle)
     require_flags(pulling=pulling)

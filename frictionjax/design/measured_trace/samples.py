@@ -37,6 +37,10 @@ class Trace:
 
     Raises `ValueError` for shapes that differ, values that are not finite, times that do
     not increase from 0 on, uncertainties that are not positive, or both quantities.
+
+    >>> ts = np.linspace(0.0, 3.0, 301)
+    >>> fx.Trace(ts, force=0.1 * np.sin(ts), uncertainty=0.01)
+    Trace(force: 301 times in [0, 3] s)
     """
 
     def __init__(self, ts: Any, force: Any = None, z: Any = None, uncertainty: Any = None):
@@ -77,6 +81,11 @@ class Trace:
 
         Raises `ValueError`, one line that names file, line and column, for what is no such
         table.
+
+        >>> ts = np.linspace(0.0, 3.0, 301)
+        >>> fx.Trace(ts, force=0.1 * np.sin(ts)).to_csv("loop.csv")
+        >>> fx.Trace.from_csv("loop.csv")
+        Trace(force: 301 times in [0, 3] s)
         """
         try:
             columns = trace_columns(Path(path), decimal)
@@ -141,10 +150,19 @@ def simulate_trace(
 ) -> Trace:
     """The trace that a scene would give: `solve`, with normal noise added.
 
-    `ts`: 301 evenly spaced times where None. `noise`: standard deviation in N or m; it
-    becomes the trace's `uncertainty` where it is not 0. `accuracy`: as in `solve`.
+    `scene`, `eps` (m), `gamma`: as in `solve`. `quantity`: "force" or "z". `ts`: 301 evenly
+    spaced times where None. `noise`: standard deviation in N or m; it becomes the trace's
+    `uncertainty` where it is not 0; `seed`: of it. `accuracy`: as in `solve`.
+
+    Returns a `Trace`.
 
     Raises `ValueError` as `solve`, for an unknown quantity, and a trajectory that failed.
+
+    >>> trace = fx.simulate_trace(scene, eps=0.1, noise=0.002, accuracy=1e-3)
+    >>> trace
+    Trace(force: 301 times in [0, 3] s)
+    >>> print(f"{trace.values.min():.2f} to {trace.values.max():.2f} N")
+    -0.25 to 0.24 N
     """
     require(quantity in TRACE_QUANTITIES, "quantity", quantity, "one of force, z")
     require_whole("seed", seed, 0)

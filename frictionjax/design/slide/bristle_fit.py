@@ -225,15 +225,22 @@ def fit_slide(
 ) -> SlideFit:
     """The bristle whose steady slide at `eps` (m) has a wanted friction.
 
-    `gamma`, `rate` (N/s), `support`: as in `steady_slide`. `force`: "mean", over time, or
-    "peak", the largest. `wanted`: one target (`rho_plus`, `rho_minus`, `ratio` or
-    `difference`, of these forces), `free`, `bounds` and `pulling`, as in `fit_angle`. The
-    admissible intervals of the limit are scanned as far as bristles slide at this eps,
-    turns of the quantity are found, and each change of sign is polished by
-    `scipy.optimize.brentq`: 50 to 200 slides, so this takes seconds, not a millisecond.
-    `.status` tells what no bristle reaches from what could not be evaluated (`UNKNOWN`).
+    `profile`, `bristle`: as in `fit_angle`. `gamma`, `rate` (N/s), `support`: as in
+    `steady_slide`. `force`: "mean", over time, or "peak", the largest. `wanted`: one target
+    (`rho_plus`, `rho_minus`, `ratio` or `difference`, of these forces), `free`, `bounds`
+    and `pulling`, as in `fit_angle`. The admissible intervals of the limit are scanned as
+    far as bristles slide at this eps, turns of the quantity are found, and each change of
+    sign is polished by `scipy.optimize.brentq`: 50 to 200 slides, so this takes seconds,
+    not a millisecond. `.status` tells what no bristle reaches from what could not be
+    evaluated (`UNKNOWN`).
+
+    Returns a `SlideFit`: `.bristle .value .achieved .solutions .slide .limit .success` and
+    more; forces in N.
 
     Raises `ValueError` as `fit_angle` and `steady_slide` do, and for several targets.
+
+    >>> fx.fit_slide(scene.profile, scene.bristle, eps=0.01, ratio=1.3)
+    SlideFit(ratio = 1.3 of mean forces at eps = 0.01: found, angle = 0.930165)
     """
     support = spring_of(support)
     require_force(force)

@@ -57,7 +57,14 @@ class DesignCheck(CodedResult, eqx.Module):
 
     @property
     def table(self) -> str:
-        """The gaps as text, one line an eps, the limit below."""
+        """The gaps as text, one line an eps, the limit below.
+
+        >>> print(fx.check_design(scene.profile, scene.bristle, eps=[1e-2, 1e-3]).table)
+        eps/m  mean +/N     gap    mean -/N     gap    ratio      gap  peak +/N ...
+         0.01  0.118858  -1.28%  -0.0878434  -0.12%  1.35306  -1.160%  0.122622 ...
+        0.001  0.120051  -0.28%  -0.0876831  -0.30%  1.36915  +0.015%  0.120511 ...
+        limit  0.120394           -0.087947          1.36894           0.120394   -0.087947
+        """
         return str(self.gap_table)
 
     @property
@@ -104,11 +111,23 @@ def check_design(
 ) -> DesignCheck:
     """Steady slides at a few eps (m) beside the limit; prints as a table.
 
-    `gamma`, `rate` (N/s), `support`: as in `steady_slide`. The mean force nears the limit
+    `profile`, `bristle`: the design. `gamma`, `rate` (N/s), `support`: as in
+    `steady_slide`. The mean force nears the limit
     from above where viscosity rules, and from below by half the drop of a slip,
     `k_h eps/2`, where the tip rests between slips.
 
+    Returns a `DesignCheck`: `.law`, the coefficients of the limit, `.slide`, the forces in
+    N, and the relative gaps between them, `.gap_plus .gap_minus .gap_ratio`, shape (n,).
+
     Raises `ValueError` as `steady_slide` does.
+
+    >>> fx.check_design(scene.profile, scene.bristle)
+    Steady slide, gamma = 1, rate = 1 N/s; gaps to the limit
+     eps/m  mean +/N     gap    mean -/N     gap    ratio      gap  peak +/N ...
+      0.01  0.118858  -1.28%  -0.0878434  -0.12%  1.35306  -1.160%  0.122622 ...
+     0.001  0.120051  -0.28%  -0.0876831  -0.30%  1.36915  +0.015%  0.120511 ...
+    0.0001  0.120351  -0.04%  -0.0879079  -0.04%  1.36906  +0.009%    0.1204 ...
+     limit  0.120394           -0.087947          1.36894           0.120394   -0.087947
     """
     slide = steady_slide(profile, bristle, np.atleast_1d(eps), gamma, rate, support)
     law = friction(profile, bristle)

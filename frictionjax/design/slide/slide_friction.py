@@ -197,7 +197,7 @@ def steady_slide(
     support: Spring | None = None,
     effects: Sequence[AbstractEffect] = (),
 ) -> SteadySlide:
-    """Mean and peak force of a steady slide, in both directions.
+    """Mean and peak force of a steady slide of a `bristle` on a `profile`, both ways.
 
     `eps` (m): a number or an array of shape (n,). `gamma`: exponent of the viscosity
     eps^gamma. `rate` (N/s, > 0): of the load, so that the tip moves at rate/k_h on
@@ -215,9 +215,16 @@ def steady_slide(
     `STEP_TOO_SMALL`. Where the spring is so soft that errors are hardly forgotten in a
     period, and may add up to 3e-4 of the force, it is `OPEN_BRACKET`.
 
+    Returns a `SteadySlide`: `.mean_plus .mean_minus .peak_plus .peak_minus` in N, of the
+    shape of `eps`, `.ok`, `.status`.
+
     Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, for
     numbers that are not positive, for other effects, and for tips of an array whose forces
     cancel. A slide that is not found has its `status`.
+
+    >>> slide = fx.steady_slide(scene.profile, scene.bristle, eps=0.01)
+    >>> print(f"{slide.mean_plus:.4f} N, {slide.mean_minus:.4f} N: {slide.status.name}")
+    0.1189 N, -0.0878 N: OK
     """
     support = spring_of(support)
     wiggle = wiggle_of(profile, bristle, effects)

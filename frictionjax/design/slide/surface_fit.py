@@ -96,7 +96,13 @@ class SlideProfileFit(ShownNumbers, DesignResult):
         return f"{asked}: not reached; {shown}, in the limit: {self.fit.message}"
 
     def plot(self) -> Any:
-        """The surface, beside the limit's, and how it was found."""
+        """The surface, beside the limit's, and how it was found.
+
+        >>> wanted = fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05)
+        >>> figure = fx.fit_slide_profile(wanted, eps=0.01).plot()
+        >>> [axes.get_xlabel() for axes in figure.axes]
+        ['y (periods)', 'y (periods)', 'design', '|force| wanted (N)']
+        """
         from ...plot import draw_slide_profile_fit
 
         return draw_slide_profile_fit(self)
@@ -169,7 +175,14 @@ def fit_slide_profile(
     meet several targets better. Targets that contradict each other, or are out of reach,
     end as those of `fit_profile` do, with its statuses.
 
+    Returns a `SlideProfileFit`: `.profile`, `.slides`, their forces in N, `.success` and
+    more.
+
     Raises `ValueError` as `fit_profile` and `steady_slide` do.
+
+    >>> wanted = fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05)
+    >>> fx.fit_slide_profile(wanted, eps=0.01)
+    SlideProfileFit(MET: mean forces [ 0.12 -0.05] N at eps = 0.01: found in 5 designs)
     """
     many, _ = require_targets(targets, options.get("pulling", False))
     require_force(force)

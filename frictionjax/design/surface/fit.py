@@ -69,7 +69,8 @@ def fit_profile(
     """The least bent surface whose friction coefficients are the targets.
 
     `targets`: a `Target` or several, one surface for all. `harmonics`: of the profile.
-    `starts`: optimisations from random surfaces, and free parameters, at once. `free`:
+    `starts`: optimisations from random surfaces (`seed`), and free parameters, at once, of
+    `max_steps` each. `free`:
     numbers of the bristles that are fitted too, by name, each within its `bounds`
     `{name: (low, high)}`; a bristle in several targets is one bristle. Bristles press,
     alpha > 0, before and after, unless `pulling`, which allows those with alpha < 0; a fit
@@ -95,10 +96,18 @@ def fit_profile(
     Targets that no surface meets come back with the best weighted compromise and a
     `.status` and `.message` that say why.
 
+    Returns a `ProfileFit`: `.profile .bristles .coefficients .bending_energy .residuals`
+    (N, shape (targets, 2)) `.success` and more.
+
     Raises `ValueError` for targets of the wrong sign, shape or kind, weights or
     uncertainties that are not positive, bristles that press on nothing, or pull, names
     and bounds of free parameters that do not fit together, a target asked for by its nap
     whose bounds of an angle reach the other side, and other effects, by name.
+
+    >>> fx.fit_profile(fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05))
+    ProfileFit(MET: every target is met)
+      bending_energy = 0.123945, largest_error = ..., rank = 2
+      rho_plus = 0.12 N (target 0.12), rho_minus = -0.05 N (target -0.05)
     """
     require_flags(pulling=pulling)
     counts = ("harmonics", harmonics), ("starts", starts), ("max_steps", max_steps)

@@ -165,6 +165,11 @@ class ProfileFit(ShownNumbers, DesignResult):
         where the bounds leave no room.
 
         Raises `ValueError` for a count or a size that is not positive.
+
+        >>> fit = fx.fit_profile(fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05))
+        >>> laws = [fx.friction(surface, scene.bristle) for surface in fit.family(count=3)]
+        >>> [round(float(law.rho_minus), 4) for law in laws]
+        [-0.05, -0.05, -0.05]
         """
         require_whole("count", count)
         require_whole("seed", seed, 0)
@@ -189,7 +194,12 @@ class ProfileFit(ShownNumbers, DesignResult):
         return [Fourier(cos[i], sin[i]) for i in np.flatnonzero(np.asarray(good))]
 
     def plot(self) -> Any:
-        """The surface, what is left open, the starts and the targets, as a Figure."""
+        """The surface, what is left open, the starts and the targets, as a Figure.
+
+        >>> fit = fx.fit_profile(fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05))
+        >>> [axes.get_xlabel() for axes in fit.plot().axes]
+        ['y (periods)', 'y (periods)', 'start, best first (1)', 'target (N)']
+        """
         from ...plot import draw_profile_fit
 
         return draw_profile_fit(self)

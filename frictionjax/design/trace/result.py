@@ -125,6 +125,11 @@ class TraceFit(ShownNumbers, DesignResult):
         """Data, fit, residuals and slopes with their errors, as a Figure.
 
         `truth`: a profile to draw beside the one found.
+
+        >>> trace = fx.simulate_trace(scene, eps=0.1, noise=0.001)
+        >>> fit = fx.fit_trace(trace, scene, eps=0.1, harmonics=2, progress=False)
+        >>> [axes.get_xlabel() for axes in fit.plot(truth=scene.profile).axes]
+        ['t (s)', 'phase y (periods)', 't (s)', 'phase y (periods)']
         """
         from ...plot import draw_trace_fit
 

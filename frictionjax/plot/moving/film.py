@@ -29,17 +29,23 @@ def animate(
 ) -> FuncAnimation:
     """A moving picture of a bristle that slides, and of the force on its root.
 
-    The bristle as `draw_bristle` has it; at finite eps its tip close up; and the friction
-    force `l - Phi'(z)` in N against `against`, "time" or "tip", a dot moving along, between
-    the friction of the limit's slides. `frames`: how many times of the solution are shown,
-    half of them chosen by time and half by the way that tip and root go: slips are seen,
-    slower than the rest, where the solution's times resolve them. `interval`: from frame to
-    frame, in ms; `dpi`: of frames 9.6 by 4.8 inches.
+    The bristle as `draw_bristle` has it, of `scene`, `solution` and `eps` (m); at finite
+    eps its tip close up; and the friction force `l - Phi'(z)` in N against `against`,
+    "time" or "tip", a dot moving along, between the friction of the limit's slides.
+    `frames`: how many times of the solution are shown, half of them chosen by time and half
+    by the way that tip and root go: slips are seen, slower than the rest, where the
+    solution's times resolve them. `interval`: from frame to frame, in ms; `dpi`: of frames
+    9.6 by 4.8 inches.
 
-    In a notebook `HTML(animate(...).to_jshtml())`; in a file
-    `animate(...).save("x.gif", writer="pillow")`.
+    Returns a `FuncAnimation` of matplotlib. In a notebook `HTML(animate(...).to_jshtml())`;
+    in a file `animate(...).save("x.gif", writer="pillow")`.
 
     Raises `ValueError` as `draw_bristle` does, and for other arguments out of range.
+
+    >>> movie = fx.plot.animate(scene, fx.solve_limit(scene), frames=4)
+    >>> movie.save("bristle.gif", writer="pillow")
+    >>> len(list(movie.new_frame_seq()))
+    4
     """
     require_whole("frames", frames, 2)
     require(against in AGAINST, "against", against, f"one of {', '.join(AGAINST)}")

@@ -20,7 +20,7 @@ _TIGHT: Any = {"columnspacing": 1.2, "handlelength": 1.5, "handletextpad": 0.5}
 def draw_bristle(
     scene: Scene, solution: Any, time: Any, eps: Any = None, ax: Axes | None = None
 ) -> Figure:
-    """Draw the bristle of a scene over its surface, as it stands at a `time` (s).
+    """Draw the bristle of a `scene` over its surface, as it stands at a `time` (s).
 
     `solution`: of `solve`, with its `eps` in m, or of `solve_limit`, whose surface is flat.
     Root, tip and far end of the support's spring are where `mechanics` has them at the
@@ -37,6 +37,10 @@ def draw_bristle(
     Raises `ValueError` as `mechanics` does, for a time that is not within the solution's,
     a scene without a bristle (`GivenPotential`), and effects that put another potential in
     its place (arrays, `LeadingOrder`).
+
+    >>> figure = fx.plot.draw_bristle(scene, fx.solve_limit(scene), time=0.75)
+    >>> [text.get_text() for text in figure.legends[0].get_texts()][1:]
+    ['spring', 'bristle', 'tip p', 'root u', 'end q']
     """
     places = places_along(scene, solution, eps)
     row = _row_at(places, time)

@@ -20,12 +20,20 @@ _LEVELS = {
 
 @styled
 def draw_nap_loops(scene: Scene, ts: Any = None) -> Figure:
-    """Draw the limit's force on the root against z, of a stiff rod and of one that bends.
+    r"""Draw the limit's force on the root against z, of a stiff rod and of one that bends.
 
-    The scene has `effects.NapFlip`; on the left it is left out. Lines: friction of slides
-    one way and the other. Right: where the rod is bent over its tip the loop is dashed.
+    The `scene` has `effects.NapFlip`; `ts` (s) as in `solve_limit`. On the left it is left
+    out. Lines: friction of slides one way and the other. Right: where the rod is bent over
+    its tip the loop is dashed.
 
     Raises `ValueError` as `contact.nap_loops` does.
+
+    >>> rough, load = fx.profiles.Sine(slope=0.5), fx.loads.Triangle(2.5, period=3.0)
+    >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+    >>> flips = (fx.effects.NapFlip(bending_stiffness=0.1),)
+    >>> turning = scene.replace(profile=rough, bristle=rod, load=load, effects=flips)
+    >>> [text.get_text() for text in fx.plot.draw_nap_loops(turning).axes[1].texts]
+    ['$\\rho_{with}$ = 0.161 N', '$-\\rho_{turned}$ = -0.363 N']
     """
     data = nap_loops(scene, ts)
     figure, grid = new_figure(1, 2, 10.4, 4.4)

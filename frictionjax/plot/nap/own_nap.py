@@ -32,11 +32,16 @@ def draw_own_nap(
 ) -> Figure:
     """Friction and compression against theta_lim, of rods with the same root height.
 
-    A dot marks the bristle given. Right: compressions, shaded where a critical load turns
-    a rod over against the nap and only then, and with `bending_stiffness` (N m^2) the
-    critical load `pi^2 B/L^2`.
+    A dot marks the `bristle` given, on the surface `profile`. Right: compressions, shaded
+    where a critical load turns a rod over against the nap and only then, and with
+    `bending_stiffness` (N m^2) the critical load `pi^2 B/L^2`.
 
     Raises `ValueError` as `nap` does, and for a bristle that is no rod.
+
+    >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+    >>> figure = fx.plot.draw_own_nap(fx.profiles.Sine(slope=0.5), rod)
+    >>> figure.axes[1].get_legend_handles_labels()[1]
+    ['critical loads that turn it over', 'with the nap', 'against it', 'turned over, ...
     """
     found = nap(profile, bristle, bending_stiffness)
     rod = isinstance(bristle, AngularSpring)

@@ -31,7 +31,7 @@ class _Instant(NamedTuple):
 
 @styled
 def draw_turning(scene: Scene, solution: Any, eps: Any = None) -> Figure:
-    """Draw how the rod of a scene with `effects.NapFlip` turns over for the first time.
+    """Draw how the rod of a `scene` with `effects.NapFlip` turns over for the first time.
 
     `solution`: of `solve`, with its `eps` in m, or of `solve_limit`, whose surface is flat.
     Above: the bristle where it slides with its nap, is held when pulled against it, comes
@@ -42,6 +42,13 @@ def draw_turning(scene: Scene, solution: Any, eps: Any = None) -> Figure:
 
     Raises `ValueError` as `mechanics` does, for a scene without the effect, and for a
     solution in which nothing turns over.
+
+    >>> rough, load = fx.profiles.Sine(slope=0.5), fx.loads.Triangle(2.5, period=3.0)
+    >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
+    >>> flips = (fx.effects.NapFlip(bending_stiffness=0.1),)
+    >>> turning = scene.replace(profile=rough, bristle=rod, load=load, effects=flips)
+    >>> print(fx.plot.draw_turning(turning, fx.solve_limit(turning)).axes[-1].get_ylabel())
+    force on the root (N)
     """
     effect = nap_flip_among(scene.effects)
     require(effect is not None, "scene.effects", "none of NapFlip", "effects.NapFlip")

@@ -17,12 +17,16 @@ _POINTS = 1201
 
 @styled
 def draw_parts(scene: Scene, ax: Any = None) -> Any:
-    """Draw the bristle as it stands at first, and its support, over bumps not to scale.
+    """Draw the bristle and the support of a `scene` as they stand at first.
 
-    Of a bristle without a geometry: a rod, upright and 1 m long. Of an array one of them. A
-    Figure, or `ax` where it is drawn into that.
+    Bumps are not to scale. Of a bristle without a geometry: a rod, upright and 1 m long. Of
+    an array one of them. A Figure, or `ax` where it is drawn into that.
 
     Raises `ValueError` for a scene without a bristle.
+
+    >>> figure = fx.plot.draw_parts(scene)
+    >>> [text.get_text() for text in figure.axes[0].texts][1:]
+    ['root, 1 m high', 'support, Spring', 'pulled, load l(t)', 'tip']
     """
     profile, bristle = scene.profile, scene.bristle
     needs = "a profile and a bristle: fx.friction(scene).plot() draws the potential's force"

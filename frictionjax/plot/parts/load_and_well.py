@@ -14,9 +14,13 @@ _POINTS = 1201
 
 @styled
 def draw_forces(scene: Scene) -> Figure:
-    """Draw the load over time, and the force of the surface over one of its periods.
+    r"""Draw the load of a `scene` over time, and the force of its surface over a period.
 
     The latter for eps -> 0, with `rho_plus` and `rho_minus`, where it is extreme.
+
+    >>> figure = fx.plot.draw_forces(scene)
+    >>> [text.get_text() for text in figure.axes[1].texts]
+    ['$\\rho_+$ = 0.12 N', '$\\rho_-$ = -0.0879 N']
     """
     law = friction(scene)
     figure, grid = new_figure(1, 2, 9.6, 3.5)

@@ -12,7 +12,13 @@ from .settings import SETTINGS
 
 
 class Status(Outcome):
-    """Why a result can or cannot be trusted; `message` says it for people."""
+    """Why a result can or cannot be trusted; `message` says it for people.
+
+    >>> fx.Status(7)
+    <Status.OPEN_BRACKET: 7>
+    >>> fx.Status(7).message
+    'starts are not forgotten, and every slip is too many to integrate'
+    """
 
     OK = 0, "every number can be trusted"
     MAX_STEPS = 1, "the step budget ran out before the last time; raise max_steps"
