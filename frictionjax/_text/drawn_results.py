@@ -18,11 +18,15 @@ class SelfDrawn:
     _picture: ClassVar[str]
 
     def plot(self, ax: Any = None) -> Any:
-        """The picture, as a matplotlib Figure; drawn into `ax`, where there is one, which
+        r"""The picture, as a matplotlib Figure; drawn into `ax`, where there is one, which
         is then returned.
 
         What is drawn, and what is refused with `ValueError`: `fx.plot`, whose functions
         have the results' names. Of a trace there is none.
+
+        >>> figure = fx.friction(scene).plot()
+        >>> [text.get_text() for text in figure.axes[0].texts]
+        ['$\\rho_+$ = 0.12 N', '$\\rho_-$ = -0.0879 N']
         """
         kind = type(self).__name__
         require(is_known(self), kind, "a trace", "known numbers")

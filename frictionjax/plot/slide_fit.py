@@ -11,10 +11,17 @@ from .style import GUIDE, LIMIT, axes_of, styled
 
 @styled
 def draw_slide_fit(fit: Any, ax: Any = None) -> Any:
-    """Draw a `fit_slide`: solutions at its eps over the limit's curve; a Figure, or `ax`.
+    """Draw a `fit` of `fit_slide`: solutions at its eps over the limit's curve.
+
+    A Figure, or `ax` where it is drawn into that.
 
     Filled: the bristle returned, at what its slide shows; hollow: other solutions. Its
     distance from the curve is what finite eps adds to the limit.
+
+    >>> fit = fx.fit_slide(scene.profile, scene.bristle, eps=0.01, ratio=1.3)
+    >>> figure = fx.plot.draw_slide_fit(fit)
+    >>> figure.axes[0].get_legend_handles_labels()[1][1:]
+    ['wanted: 1.3', 'other solutions', 'slide: angle = 0.93016']
     """
     drawn, axes = axes_of(ax, 6.4, 4.6)
     limit, target, value = fit.limit, float(fit.target), float(fit.value)

@@ -17,7 +17,9 @@ _TIMES = 801  # of the strip and the limit
 
 @styled
 def draw_solution(solution: Any, ax: Any = None) -> Any:
-    """Draw `z` in m against t in s, of `solve` or `solve_limit`: a Figure, or `ax`.
+    """Draw z in m against t in s of a `solution`, of `solve` or `solve_limit`.
+
+    A Figure, or `ax` where it is drawn into that.
 
     Shaded: the strip of states that friction holds; dashed: the limit, where z0 lies in the
     strip. A panel beside it, of a figure of its own, follows a few slips, where the times
@@ -25,6 +27,10 @@ def draw_solution(solution: Any, ax: Any = None) -> Any:
     sides. Of a rod that turns over also its root, and shaded where it is in between.
 
     Raises `ValueError` for a batch, and where no scene is known of the solution.
+
+    >>> figure = fx.plot.draw_solution(fx.solve(scene, eps=0.01))
+    >>> figure.axes[0].get_legend_handles_labels()[1]
+    ['strip [z$_-$, z$_+$]', 'z', 'limit z']
     """
     scene = scene_of(solution)
     require(np.ndim(solution.z) == 1, "solution", "a batch", "one trajectory")

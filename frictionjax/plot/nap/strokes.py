@@ -8,13 +8,18 @@ from ..style import GUIDE, axes_of, colour, styled
 
 @styled
 def draw_strokes(found: Nap, ax: Any = None) -> Any:
-    """Draw a `nap`: friction loops of strokes that are long against the rod; a Figure, or
-    `ax`.
+    """Draw what `nap` has `found`: friction loops of strokes that are long against the rod.
+
+    A Figure, or `ax` where it is drawn into that.
 
     Solid: the bristle keeps its nap, and friction is `rho_with` one way and `rho_against`
     the other. Dashed, of a rod that can turn over: it slides with its nap both ways, with
     `rho_with` and `rho_flipped`. Of a stroke so long what happens where it ends is not
     seen: `fx.plot.draw_nap_loops` draws it, of a scene.
+
+    >>> figure = fx.plot.draw_strokes(fx.nap(scene.profile, scene.bristle))
+    >>> figure.axes[0].get_title(loc="left")
+    'With and against the nap: against/with = 0.7305'
     """
     drawn, axes = axes_of(ax, 7.2, 4.2)
     axes.axhline(0, color=GUIDE, linewidth=0.8)

@@ -15,12 +15,18 @@ _SMALL = 1e-6  # m: eps at which the force of a well is its limit's
 
 @styled
 def draw_coefficients(found: Coefficients, ax: Any = None) -> Any:
-    """Draw the force W'(Y) that `friction` took the extremes of: a Figure, or `ax`.
+    r"""Draw the force W'(Y) of which `friction` has `found` the extremes.
+
+    A Figure, or `ax` where it is drawn into that.
 
     Over one period, for eps -> 0, with `rho_plus` and `rho_minus`, where it is extreme.
 
     Raises `ValueError` for coefficients that `friction` has not returned, or made of their
     leaves: nothing is known of their potential; and for a batch.
+
+    >>> figure = fx.plot.draw_coefficients(fx.friction(scene))
+    >>> [text.get_text() for text in figure.axes[0].texts]
+    ['$\\rho_+$ = 0.12 N', '$\\rho_-$ = -0.0879 N']
     """
     potential = origin_of(found)
     needs = "those that fx.friction has returned, of one scene"

@@ -11,11 +11,18 @@ from ..style import GUIDE, LIMIT, axes_of, colour, styled
 
 @styled
 def draw_cost_prediction(cost: CostPrediction, ax: Any = None) -> Any:
-    """Draw the seconds that a sweep takes, and that it compiles for: a Figure, or `ax`.
+    """Draw a predicted `cost`: seconds that a sweep takes, and that it compiles for.
+
+    A Figure, or `ax` where it is drawn into that.
 
     The line over the first spans `low` to `high`. In the title, memory.
 
     Raises `ValueError` where nothing is known of the cost.
+
+    >>> cost = fx.predict_cost(scene, eps=[1e-2, 1e-3], gamma=1.0, measure=False)
+    >>> figure = fx.plot.draw_cost_prediction(cost)
+    >>> [label.get_text() for label in figure.axes[0].get_yticklabels()]
+    ['computation', 'compilation,\\nthe first time']
     """
     require(bool(np.isfinite(cost.seconds)), "cost", str(cost), "one that is known")
     drawn, axes = axes_of(ax, 7.2, 2.2)
