@@ -58,6 +58,7 @@ gc.set_threshold(20_000, 20, 50)
 # Files that take longest, first: the last one under way then leaves no worker idle.
 _LONGEST = (
     "design/surface/test_fit",
+    "test_examples",
     "wiggly/sums/test_sums_strip_excess",
     "explain/test_explanation",
     "effects/test_rigid_array",

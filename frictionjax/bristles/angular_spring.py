@@ -13,6 +13,8 @@ from .bristle import AbstractBristle, Rod, SlopeBounds, Stance
 class AngularSpring(AbstractBristle):
     """`A = sqrt(L^2 - (h-eta)^2) - sqrt(L^2 - h^2)`, `F = k/2 (theta - theta_rest)^2`.
 
+    Third model of the paper (Section 3.3).
+
     `stiffness` k in N m/rad, `length` L of the rod in m, `height` h of its root in m,
     `rest_angle` theta_rest in rad; `theta = arccos((h - eta)/L)` is the rod's angle from
     the vertical and `theta_lim = arccos(h/L)` the one on the flat surface.

@@ -12,6 +12,8 @@ from .bristle import AbstractBristle, SlopeBounds, Stance
 class SlantedSpring(AbstractBristle):
     """`A = -eta tan(theta)`, `F = k/2 (L_rest - (h - eta)/cos(theta))^2`.
 
+    Second model of the paper (Section 3.2).
+
     `stiffness` k in N/m, `rest_length` L_rest in m, `height` h of its root in m,
     `angle` theta from the vertical in rad, in (-pi/2, pi/2); at 0 it is a vertical spring
     and a negative angle is the mirror image. `alpha = k/cos (L_rest - h/cos)`.

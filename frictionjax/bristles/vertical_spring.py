@@ -12,6 +12,8 @@ from .bristle import AbstractBristle, Stance
 class VerticalSpring(AbstractBristle):
     """`A = 0`, `F = k/2 (L_rest - h + eta)^2`, so `alpha = k (L_rest - h)`.
 
+    First model of the paper (Section 3.1).
+
     `stiffness` k in N/m, `rest_length` L_rest in m, `height` h of its root in m.
 
     Raises `ValueError` for a stiffness, length or height that is not positive.

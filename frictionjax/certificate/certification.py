@@ -33,7 +33,7 @@ def certify(
     root: Any = None,
     mode: Any = None,
 ) -> Certificate:
-    """Certify any sampled curve, whatever made it, against the `scene` alone.
+    """Certify any sampled curve, whatever made it, against the `scene` alone (eq. 2.7).
 
     `eps` in m, `gamma` > 0; `ts` in s, increasing, in [0, duration]; `z` in m; shapes
     (n,), n >= 2, NumPy or JAX. The curve's start is not compared with the scene's `z0`.

@@ -100,7 +100,7 @@ def order_cost(
     Raises `ValueError` for arguments out of range, or less than two eps.
 
     >>> fx.order_cost(scene, eps=[1e-2, 1e-4], within=0.1, measure=False).message
-    'the order to +-0.1 from 6 eps, 0.00155 to 0.0001 m: 0.31 s; 6 grids of smaller ...
+    'the order to +-0.1 from 6 eps, 0.00155 to 0.0001 m: ... s; 6 grids of smaller ...
     """
     scene = scene_for(Engine.COST, scene)
     known = grid_of("eps", eps)

@@ -62,5 +62,5 @@ def _kind_text(table: str, name: str, kind: type[Part]) -> str:
         lines.append(f"  {field}{'' if needed else f' (may be left out: {default})'}")
     if kind is Fourier:
         lines.append(_HEIGHTS)
-    said = inspect.cleandoc(kind.__doc__ or "")
+    said = inspect.cleandoc(kind.__doc__ or "").partition(">>> ")[0].rstrip()
     return "\n".join([*lines, *(f"    {line}".rstrip() for line in said.splitlines())])

@@ -52,3 +52,4 @@ def test_the_schema_has_every_field_of_every_part():
                 assert f"\n  {field}" in section
             first = inspect.cleandoc(kind.__doc__).splitlines()[0]
             assert first in section
+    assert ">>>" not in text  # a scene file holds no Python

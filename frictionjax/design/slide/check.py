@@ -112,9 +112,8 @@ def check_design(
     """Steady slides at a few eps (m) beside the limit; prints as a table.
 
     `profile`, `bristle`: the design. `gamma`, `rate` (N/s), `support`: as in
-    `steady_slide`. The mean force nears the limit
-    from above where viscosity rules, and from below by half the drop of a slip,
-    `k_h eps/2`, where the tip rests between slips.
+    `steady_slide`. The mean force nears the limit from above where viscosity rules, and
+    from below by half the drop of a slip, `k_h eps/2`, where the tip rests between slips.
 
     Returns a `DesignCheck`: `.law`, the coefficients of the limit, `.slide`, the forces in
     N, and the relative gaps between them, `.gap_plus .gap_minus .gap_ratio`, shape (n,).

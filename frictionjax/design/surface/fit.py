@@ -70,12 +70,11 @@ def fit_profile(
 
     `targets`: a `Target` or several, one surface for all. `harmonics`: of the profile.
     `starts`: optimisations from random surfaces (`seed`), and free parameters, at once, of
-    `max_steps` each. `free`:
-    numbers of the bristles that are fitted too, by name, each within its `bounds`
-    `{name: (low, high)}`; a bristle in several targets is one bristle. Bristles press,
-    alpha > 0, before and after, unless `pulling`, which allows those with alpha < 0; a fit
-    does not change the sign. `smallest_radius`: of curvature, `1/max |w''|`, and
-    `largest_amplitude`: `max w - min w`, in periods.
+    `max_steps` each. `free`: numbers of the bristles that are fitted too, by name, each
+    within its `bounds` `{name: (low, high)}`; a bristle in several targets is one bristle.
+    Bristles press, alpha > 0, before and after, unless `pulling`, which allows those with
+    alpha < 0; a fit does not change the sign. `smallest_radius`: of curvature,
+    `1/max |w''|`, and `largest_amplitude`: `max w - min w`, in periods.
 
     `effects`: of the scene that the coefficients are of. `LeadingOrder` changes none. Of a
     `CompliantArray`, and of a `RigidArray` of tips at one phase, targets are forces of all
