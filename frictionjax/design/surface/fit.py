@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..._checks import require, require_flags, require_real, require_whole, with_nan
-from ..._compile import padded_size
+from ..._compile import padded_size, waiting
 from ...effects import AbstractEffect, Engine
 from ...numerics import stacked
 from ..common import (
@@ -65,6 +65,7 @@ def fit_profile(
     max_steps: int = 1000,
     pulling: bool = False,
     effects: Sequence[AbstractEffect] = (),
+    progress: bool = False,
 ) -> ProfileFit:
     """The least bent surface whose friction coefficients are the targets.
 
@@ -95,12 +96,14 @@ def fit_profile(
     Targets that no surface meets come back with the best weighted compromise and a
     `.status` and `.message` that say why.
 
+    `progress`: a line on standard error where it takes more than two seconds.
+
     Raises `ValueError` for targets of the wrong sign, shape or kind, weights or
     uncertainties that are not positive, bristles that press on nothing, or pull, names
     and bounds of free parameters that do not fit together, a target asked for by its nap
     whose bounds of an angle reach the other side, and other effects, by name.
     """
-    require_flags(pulling=pulling)
+    require_flags(pulling=pulling, progress=progress)
     counts = ("harmonics", harmonics), ("starts", starts), ("max_steps", max_steps)
     for name, value in counts:
         require_whole(name, value)
@@ -109,13 +112,16 @@ def fit_profile(
     problem = surface_problem(targets, harmonics, free, bounds, *given)
     apart: Any = np.array(places(problem.layout, starts))
     array = problem.asked.apart
-    if array is None:
-        runs = least_bent(problem.layout, problem.task, starts)
-    else:
-        runs = fit_to_array(problem.layout, problem.task, array, starts)
-    if runs is None:
-        runs = _descended(problem, apart, seed, max_steps)
-    return report_fit(problem, runs, apart)
+    with waiting("fit_profile", progress) as tell:
+        if array is None:
+            runs = least_bent(problem.layout, problem.task, starts)
+        else:
+            runs = fit_to_array(problem.layout, problem.task, array, starts)
+        if runs is None:
+            tell(f"{starts} starts")
+            runs = _descended(problem, apart, seed, max_steps)
+        tell("what is left open")
+        return report_fit(problem, runs, apart)
 
 
 def _descended(problem: SurfaceProblem, apart: Any, seed: int, max_steps: int) -> StartRuns:
