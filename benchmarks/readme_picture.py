@@ -1,8 +1,11 @@
-"""Picture of the README: what a bristle is, and what friction comes out of it.
+"""Pictures of the README: what a bristle is, and what friction comes out of it.
 
-Writes frictionjax/overview.png, of the scene that is built in, gamma = 1.
+Writes frictionjax/overview.png, of the scene that is built in, gamma = 1; with `--movie`
+frictionjax/sliding.gif instead, the same bristle as it slides to and fro.
 """
 
+import argparse
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -10,12 +13,16 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from matplotlib.axes import Axes
+from PIL import Image, ImageSequence
 
 import frictionjax as fx
 from frictionjax.plot.style import GUIDE, LIMIT, colour, new_figure, styled
 
 TARGET = Path(__file__).parents[1] / "frictionjax" / "overview.png"
+MOVIE = TARGET.with_name("sliding.gif")
 EPS = (0.03, 0.01)
+# Few slips, which can be told apart, at a gamma with little drag.
+MOVIE_EPS, MOVIE_GAMMA, FRAMES, COLOURS = 0.08, 2.0, 64, 48
 jax.config.update("jax_enable_x64", True)
 fx.use_fast_cpu()
 SCENE = fx.Scene(
@@ -123,5 +130,28 @@ def overview():
     return figure
 
 
+def write_movie() -> None:
+    """A GIF of few colours, the same ones in all frames, so that it is small."""
+    ts = np.linspace(0.0, 3.0, 4001)
+    found = fx.solve(SCENE, MOVIE_EPS, MOVIE_GAMMA, ts, method="resolved")
+    film = fx.plot.animate(SCENE, found, MOVIE_EPS, frames=FRAMES, interval=90, dpi=66)
+    with tempfile.TemporaryDirectory() as folder:
+        whole = Path(folder) / "whole.gif"
+        film.save(whole, writer="pillow")
+        with Image.open(whole) as image:
+            frames = [one.convert("RGB") for one in ImageSequence.Iterator(image)]
+    # By coverage: by median cut the tip's orange was grey.
+    palette = frames[FRAMES // 2].quantize(COLOURS, Image.Quantize.MAXCOVERAGE)
+    few = [one.quantize(palette=palette, dither=Image.Dither.NONE) for one in frames]
+    look: dict[str, Any] = {"duration": 90, "loop": 0, "optimize": True}
+    few[0].save(MOVIE, save_all=True, append_images=few[1:], **look)
+    print(f"{MOVIE.name}: {len(few)} frames, {MOVIE.stat().st_size / 1e3:.0f} kB")
+
+
 if __name__ == "__main__":
-    overview().savefig(TARGET, dpi=90, facecolor="white")
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--movie", action="store_true", help="the moving one instead")
+    if parser.parse_args().movie:
+        write_movie()
+    else:
+        overview().savefig(TARGET, dpi=90, facecolor="white")

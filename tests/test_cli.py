@@ -350,6 +350,31 @@ def test_cost_measures_methods(tmp_path):
         assert float(data.error.sel(solver="auto").squeeze()) < 1e-2
 
 
+@pytest.mark.parametrize(
+    ("options", "most"),
+    [
+        ([], 25.0),
+        (["--total", "9"], 9.0),
+        (["--methods", "auto"], None),
+        (["--methods", "auto", "--total", "9"], 9.0),
+    ],
+)
+def test_cost_bounds_its_time_where_no_methods_are_named(
+    tmp_path, monkeypatch, options, most
+):
+    asked = {}
+
+    def measured(job, place, methods, accuracies, seconds, progress, total):
+        asked.update(eps=job.study["eps"], total=total)
+        return ""
+
+    monkeypatch.setattr("frictionjax.report.run_cost", measured)
+    assert run("cost", *options, "--out", tmp_path / "cost").exit_code == 0
+    assert len(asked["eps"]) == 2
+    # What loading took is no longer there.
+    assert asked["total"] is None if most is None else 0 < asked["total"] < most
+
+
 def test_cost_refuses_unknown_methods(tmp_path):
     result = run("cost", "--methods", "magic", "--out", tmp_path)
     assert "methods = 'magic'" in error_line(result)

@@ -2,9 +2,12 @@
 
 import contextlib
 import io
+import itertools
 import re
 
+import numpy as np
 import pytest
+from PIL import Image, ImageSequence
 from readme import (
     HOME,
     README,
@@ -37,6 +40,15 @@ def test_links_lead_somewhere(page):
     for link in re.findall(r"\]\(([^)\s]+)\)", page.read_text()):
         if not link.startswith(("http", "#")):
             assert (page.parent / link.partition("#")[0]).exists(), link
+
+
+def test_the_moving_picture_is_small_and_moves():
+    path = HOME / "frictionjax" / "sliding.gif"
+    assert path.stat().st_size < 400_000
+    with Image.open(path) as film:
+        frames = [np.asarray(one.convert("L")) for one in ImageSequence.Iterator(film)]
+    assert len(frames) > 30
+    assert all(np.any(a != b) for a, b in itertools.pairwise(frames))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(HOME)))

@@ -9,11 +9,13 @@ from .._checks import (
     Outcome,
     is_concrete,
     require,
+    require_flags,
     require_numbers,
     require_real,
     viscosity_of,
     with_nan,
 )
+from .._compile import waiting
 from ..design import slides_at_speeds
 from ..effects import Engine, noise_among
 from ..model import Scene, require_reach, require_told_apart, scene_for
@@ -49,7 +51,13 @@ class _Slides(NamedTuple):
 
 @with_nan
 def friction_curve(
-    scene: Scene, speeds: Any, eps: Any, gamma: Any = 1.0, temperatures: Any = None
+    scene: Scene,
+    speeds: Any,
+    eps: Any,
+    gamma: Any = 1.0,
+    temperatures: Any = None,
+    *,
+    progress: bool = False,
 ) -> "xr.Dataset":
     """Friction of steady slides whose support moves at constant speed.
 
@@ -67,6 +75,8 @@ def friction_curve(
     m^exponent; variables are then over `temperature` and `speed`, and `thermal_energy` is
     `T_eps` in J. `fx.plot.draw_friction_curve` draws them.
 
+    `progress`: a line on standard error where it takes more than two seconds.
+
     Raises `ValueError` for arguments out of range, and supports that are no `Spring`. A
     slide that is not found has its status; so has one whose force may be off by more than
     3e-4, as its spring is too soft for errors to be forgotten (`Status.OPEN_BRACKET`).
@@ -76,6 +86,7 @@ def friction_curve(
     [ 0.1158  0.1089 -0.0778] N
     """
     scene = scene_for(Engine.FRICTION_CURVE, scene)
+    require_flags(progress=progress)
     spring = _spring_of(scene)
     known = is_concrete(scene, speeds, eps, gamma)
     require(known, "scene", "traced numbers", "known ones; steady_slide has derivatives")
@@ -95,7 +106,9 @@ def friction_curve(
     if noise is None:
         needs = "None, or a scene with effects.Noise"
         require(temperatures is None, "temperatures", temperatures, needs)
-        slides = _plain(scene, spring, asked, size, power)
+        with waiting("friction_curve", progress) as tell:
+            tell(f"{asked.size} slides")
+            slides = _plain(scene, spring, asked, size, power)
         return _data_set(slides, drag, coords, numbers)
     if temperatures is None:
         energies = np.asarray(float(noise.temperature_at(size)))
@@ -104,7 +117,9 @@ def friction_curve(
         energies = rows * float(noise.temperature_at(size)) / float(noise.temperature)
         coords |= {"temperature": rows, "thermal_energy": ("temperature", energies)}
         energies = energies[:, None]
-    slides = _with_noise(scene, spring, energies, asked, size, power)
+    with waiting("friction_curve", progress) as tell:
+        tell(f"{asked.size * energies.size} slides with noise")
+        slides = _with_noise(scene, spring, energies, asked, size, power)
     return _data_set(slides, drag, coords, numbers)
 
 

@@ -19,8 +19,8 @@ from .cost_page import CostFacts, MeasuredCell, cost_page
 from .folder import write_figures, write_record
 from .job import Job, joined
 
-# Slips of the cells that are measured where none are named: at the last, general solvers
-# are lost already.
+# Slips of the cells that may be measured where none are named: at the last, general solvers
+# are lost already. (The command takes the first two of them.)
 _SLIPS = (100.0, 1000.0, 10_000.0)
 # Warm runs that are timed, few of each, so that there is time for more methods.
 _REPEATS = 2

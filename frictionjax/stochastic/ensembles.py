@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._checks import with_nan
+from .._checks import require_flags, with_nan
+from .._compile import waiting
 from ..effects import Engine, noise_among
 from ..model import Scene, scene_for
 from .paths import PathStatus, mean_interval, noisy_paths
@@ -29,7 +30,14 @@ _MEANING = {
 
 @with_nan
 def ensemble(
-    scene: Scene, eps: Any, gamma: Any, ts: Any, paths: int, key: Any
+    scene: Scene,
+    eps: Any,
+    gamma: Any,
+    ts: Any,
+    paths: int,
+    key: Any,
+    *,
+    progress: bool = False,
 ) -> "xr.Dataset":
     """Independent paths of a scene with `effects.Noise`, at one eps (m) and gamma.
 
@@ -42,6 +50,8 @@ def ensemble(
     `z_mean` and the 95% interval `z_low`, `z_high` of the mean, infinite for one path; over
     `path` `status`. The interval holds what numbers of paths leave open; steps are as long
     as `stochastic/settings.py` says.
+
+    `progress`: a line on standard error where it takes more than two seconds.
 
     Raises `ValueError` for arguments out of range, and a scene without noise.
 
@@ -56,8 +66,11 @@ def ensemble(
     if noise is None:
         names = [type(effect).__name__ for effect in scene.effects]
         raise ValueError(f"scene.effects = {names}: needs effects.Noise among them")
+    require_flags(progress=progress)
     keys = path_keys(key, paths)
-    found = noisy_paths(scene, noise, eps=eps, gamma=gamma, keys=keys, ts=ts)
+    with waiting("ensemble", progress) as tell:
+        tell(f"{paths} paths")
+        found = noisy_paths(scene, noise, eps=eps, gamma=gamma, keys=keys, ts=ts)
     return _data_set(found, {"eps": float(eps), "gamma": float(gamma)})
 
 

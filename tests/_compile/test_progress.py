@@ -3,6 +3,7 @@
 import threading
 import time
 
+import jax
 import pytest
 
 from frictionjax._compile import progress
@@ -26,6 +27,24 @@ def test_what_takes_long_is_told_while_nothing_is_said(hurried, capsys):
     assert "work: second part" in told
     assert told.endswith("\r")  # the line is gone
     assert threading.active_count() == len(threading.enumerate())
+
+
+def test_compilation_is_told_apart(hurried, monkeypatch, capsys):
+    monkeypatch.setattr(progress, "_WORTH", 1e-6)
+    with progress.waiting("work", True):
+        time.sleep(0.1)
+        jax.jit(lambda x: jax.numpy.sin(x) + 0.7182)(1.0).block_until_ready()
+        time.sleep(0.1)
+    before, _, after = capsys.readouterr().err.partition("s of it compiling")
+    assert after
+    assert "so far" in before  # of the time before nothing is said
+    with progress.progress_bar("cells", True) as bar:
+        bar.update(0.5)
+        assert "compiling" not in capsys.readouterr().err
+        jax.jit(lambda x: jax.numpy.cos(x) + 0.7182)(1.0).block_until_ready()
+        bar.update(0.5)
+        bar.refresh()
+    assert "s of it compiling" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("shown", [True, False])

@@ -9,8 +9,16 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Array, Bool, Float
 
-from ..._checks import as_text, known_numbers, require, require_whole, require_x64, with_nan
-from ..._compile import Program
+from ..._checks import (
+    as_text,
+    known_numbers,
+    require,
+    require_flags,
+    require_whole,
+    require_x64,
+    with_nan,
+)
+from ..._compile import Program, waiting
 from ...bristles import AbstractBristle
 from ...effects import AbstractEffect, Engine, RigidArray
 from ...model import BristlePotential, friction, potential
@@ -128,6 +136,7 @@ def tolerance(
     rate: Any = 1.0,
     support: Spring | None = None,
     effects: Sequence[AbstractEffect] = (),
+    progress: bool = False,
 ) -> Tolerance:
     """Friction of parts whose numbers spread normally and independently.
 
@@ -147,6 +156,8 @@ def tolerance(
 
     `effects`: of the scene, as in `design_map`; all bristles of an array are alike in a
     sample.
+
+    `progress`: a line on standard error where it takes more than two seconds.
 
     Returns a `Tolerance`, whose `.data` is a data set over `quantity`: `nominal`, `mean`,
     `std`, `first_order` and `quantiles` of rho_plus and rho_minus in N, of ratio and
@@ -169,6 +180,7 @@ def tolerance(
     scene.surface(profile)  # raises where it leaves no friction
     bristle, profile = with_arrays(bristle), with_arrays(profile)
     spread = _spreads(bristle, profile, spreads)
+    require_flags(progress=progress)
     require_whole("samples", samples, 2)
     require_whole("seed", seed, 0)
     levels = known_numbers(quantiles)
@@ -177,7 +189,9 @@ def tolerance(
     law = friction(profile, bristle)  # raises where the nominal parts are inadmissible
     slide = eps, gamma, rate, support, scene.effects
     asked = None if eps is None else slide_numbers(*slide)
-    found = _dataset(profile, bristle, spread, samples, seed, levels, asked, scene)
+    with waiting("tolerance", progress) as tell:
+        tell(f"{samples} samples")
+        found = _dataset(profile, bristle, spread, samples, seed, levels, asked, scene)
     return Tolerance(found.assign_attrs(alpha=float(scene.of_all(law.alpha))))
 
 

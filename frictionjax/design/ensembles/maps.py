@@ -18,7 +18,7 @@ from ..._checks import (
     require_x64,
     with_nan,
 )
-from ..._compile import Program
+from ..._compile import Program, waiting
 from ...bristles import AbstractBristle
 from ...effects import AbstractEffect, Engine
 from ...model import BristlePotential, coefficients_jit, potential
@@ -99,6 +99,7 @@ def design_map(
     rate: Any = 1.0,
     support: Spring | None = None,
     effects: Sequence[AbstractEffect] = (),
+    progress: bool = False,
 ) -> xr.Dataset:
     """Friction over two numbers of a design, all in one compiled call.
 
@@ -124,6 +125,8 @@ def design_map(
     all bristles, of tips at different phases where they stand upright and `profile` is
     given; of `LeadingOrder` slides are those of `eps W`, and arrays have none.
 
+    `progress`: a line on standard error where it takes more than two seconds.
+
     Raises `ValueError` for unknown names, values that are not finite or positive, a
     profile that is missing, or too much, and other effects, by name.
 
@@ -134,7 +137,7 @@ def design_map(
      [2.512 4.131]]
     """
     require_x64(bristle)
-    require_flags(pulling=pulling)
+    require_flags(pulling=pulling, progress=progress)
     bristle = checked(bristle)
     bristle = with_arrays(bristle)
     axes = [_axis(bristle, label, given) for label, given in (("x", x), ("y", y))]
@@ -148,20 +151,22 @@ def design_map(
     across, up = (axis[1] for axis in axes)
     flat = np.tile(across, up.size), np.repeat(up, across.size)
     surface = tuple(name if name in SURFACE else "" for name in names)
-    found = _mapped(frees, surface, bristle, slopes, np.asarray(pulling), *flat)
-    shape = up.size, across.size
-    dims = names[1], names[0]
-    columns = {
-        name: (dims, np.asarray(_of_all(scene, name, values)).reshape(shape))
-        for name, values in found.items()
-    }
-    if asked is not None:
-        good = np.asarray(found["admissible"])
-        designs = [
-            _design(bristle, profile, frees, surface, slopes, values) if there else None
-            for there, *values in zip(good, *flat, strict=True)
-        ]
-        columns |= slides_of_designs(designs, asked, scene.effects).columns(dims, shape)
+    with waiting("design_map", progress) as tell:
+        found = _mapped(frees, surface, bristle, slopes, np.asarray(pulling), *flat)
+        shape = up.size, across.size
+        dims = names[1], names[0]
+        columns = {
+            name: (dims, np.asarray(_of_all(scene, name, values)).reshape(shape))
+            for name, values in found.items()
+        }
+        if asked is not None:
+            good = np.asarray(found["admissible"])
+            designs = [
+                _design(bristle, profile, frees, surface, slopes, values) if there else None
+                for there, *values in zip(good, *flat, strict=True)
+            ]
+            tell(f"slides of {sum(good.ravel())} designs")
+            columns |= slides_of_designs(designs, asked, scene.effects).columns(dims, shape)
     data = xr.Dataset(columns, {names[0]: across, names[1]: up})
     for name, (units, meaning) in _MEANING.items():
         data[name].attrs = {"long_name": meaning} | ({"units": units} if units else {})

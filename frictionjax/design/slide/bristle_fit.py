@@ -1,5 +1,6 @@
 """Inverse design at finite eps: the bristle whose steady slide has a wanted friction."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -8,8 +9,17 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from ..._checks import Real, as_real, as_text, is_concrete, require, require_real, with_nan
-from ..._compile import Program, in_chunks
+from ..._checks import (
+    Real,
+    as_real,
+    as_text,
+    is_concrete,
+    require,
+    require_flags,
+    require_real,
+    with_nan,
+)
+from ..._compile import Program, in_chunks, waiting
 from ..._text import Named, SelfDrawn, ShownNumbers
 from ...bristles import AbstractBristle, normal_force, pulling_text
 from ...io import AS_IS, LEAF, PART, TOLD, Document, Form, by_name, nested
@@ -221,6 +231,8 @@ def fit_slide(
     rate: Any = 1.0,
     support: Spring | None = None,
     force: str = "mean",
+    *,
+    progress: bool = False,
     **wanted: Any,
 ) -> SlideFit:
     """The bristle whose steady slide at `eps` (m) has a wanted friction.
@@ -237,6 +249,8 @@ def fit_slide(
     Returns a `SlideFit`: `.bristle .value .achieved .solutions .slide .limit .success` and
     more; forces in N.
 
+    `progress`: a line on standard error where it takes more than two seconds.
+
     Raises `ValueError` as `fit_angle` and `steady_slide` do, and for several targets.
 
     >>> fx.fit_slide(scene.profile, scene.bristle, eps=0.01, ratio=1.3)
@@ -244,17 +258,31 @@ def fit_slide(
     """
     support = spring_of(support)
     require_force(force)
+    require_flags(progress=progress)
     for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
         require_real(name, value, f"{name} > 0", lambda v: v > 0)
     limit = fit_angle(profile, bristle, **wanted)
     require(is_concrete(limit), "targets", "traced", "known numbers: this is a search")
     require(limit.code.ndim == 0, limit.quantity, limit.target, "one number")
     scene = tuple(as_real(v) for v in (eps, gamma, rate, support.stiffness))
+    with waiting("fit_slide", progress) as tell:
+        return _searched(profile, bristle, limit, scene, force, tell)
+
+
+def _searched(
+    profile: AbstractProfile,
+    bristle: AbstractBristle,
+    limit: AngleFit,
+    scene: tuple,
+    force: str,
+    tell: Callable[[str], None],
+) -> SlideFit:
+    """Over all bristles that slide at (eps, gamma, rate, k_h), told what is under way."""
     which = QUANTITIES.index(limit.quantity)
     asked = _Asked(np.asarray(which), np.asarray(force == "peak"), scene)
     free = free_parameter(limit.bristle, limit.free)
     parts = _sliding_parts(limit, free, profile, scene[0])
-    require(parts, "eps", eps, "an eps at which some bristle slides (G > 0)")
+    require(parts, "eps", scene[0], "an eps at which some bristle slides (G > 0)")
     target = float(limit.target)
 
     def shown(places: np.ndarray) -> np.ndarray:
@@ -270,7 +298,9 @@ def fit_slide(
     def slope(x: Any) -> float:
         return float(alone(x).slope)
 
+    tell("slides of the whole range")
     scans = [scan_slides(shown, slope, *ends) for ends in parts]
+    tell("solutions")
     roots = np.concatenate([crossings(gap, one, target) for one in scans])
     turns = np.concatenate([touching(one, target) for one in scans])
     failed = np.concatenate([one.failed(target) for one in scans])

@@ -1,12 +1,14 @@
 """Inverse design at finite eps: a surface whose steady slides have the wanted friction."""
 
 import dataclasses
+import itertools
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..._checks import as_text, require_real, with_nan
+from ..._checks import as_text, require_flags, require_real, with_nan
+from ..._compile import waiting
 from ..._text import Named, ShownNumbers
 from ...bristles import AbstractBristle
 from ...io import ARRAY, AS_IS, TOLD, Document, by_name, nested, several
@@ -160,6 +162,8 @@ def fit_slide_profile(
     rate: Any = 1.0,
     support: Spring | None = None,
     force: str = "mean",
+    *,
+    progress: bool = False,
     **options: Any,
 ) -> SlideProfileFit:
     """A surface whose steady slides at `eps` (m) have the targets' forces.
@@ -175,6 +179,8 @@ def fit_slide_profile(
     meet several targets better. Targets that contradict each other, or are out of reach,
     end as those of `fit_profile` do, with its statuses.
 
+    `progress`: a line on standard error where it takes more than two seconds.
+
     Returns a `SlideProfileFit`: `.profile`, `.slides`, their forces in N, `.success` and
     more.
 
@@ -186,6 +192,7 @@ def fit_slide_profile(
     """
     many, _ = require_targets(targets, options.get("pulling", False))
     require_force(force)
+    require_flags(progress=progress)
     for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
         require_real(name, value, f"{name} > 0", lambda v: v > 0)
     support = spring_of(support)
@@ -204,8 +211,15 @@ def fit_slide_profile(
         off = (shown - np.log(np.abs(has))).ravel() - at
         return _Trial(at, fit, slides, shown, off)
 
-    first = tried(np.zeros(2 * len(many)))
-    last, history = _settled(tried, first)
+    with waiting("fit_slide_profile", progress) as tell:
+        designs = itertools.count(1)
+
+        def heard(at: np.ndarray) -> _Trial:
+            tell(f"design {next(designs)}, and its slides")
+            return tried(at)
+
+        first = heard(np.zeros(2 * len(many)))
+        last, history = _settled(heard, first)
     wanted = np.array([[float(t.rho_plus), float(t.rho_minus)] for t in many])
     return SlideProfileFit(
         force=force,

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..._checks import require, require_flags, require_real, require_whole, with_nan
-from ..._compile import padded_size
+from ..._compile import padded_size, waiting
 from ...effects import AbstractEffect, Engine
 from ...numerics import stacked
 from ..common import (
@@ -65,6 +65,7 @@ def fit_profile(
     max_steps: int = 1000,
     pulling: bool = False,
     effects: Sequence[AbstractEffect] = (),
+    progress: bool = False,
 ) -> ProfileFit:
     """The least bent surface whose friction coefficients are the targets.
 
@@ -95,6 +96,8 @@ def fit_profile(
     Targets that no surface meets come back with the best weighted compromise and a
     `.status` and `.message` that say why.
 
+    `progress`: a line on standard error where it takes more than two seconds.
+
     Returns a `ProfileFit`: `.profile .bristles .coefficients .bending_energy .residuals`
     (N, shape (targets, 2)) `.success` and more.
 
@@ -108,7 +111,7 @@ def fit_profile(
       bending_energy = 0.123945, largest_error = ..., rank = 2
       rho_plus = 0.12 N (target 0.12), rho_minus = -0.05 N (target -0.05)
     """
-    require_flags(pulling=pulling)
+    require_flags(pulling=pulling, progress=progress)
     counts = ("harmonics", harmonics), ("starts", starts), ("max_steps", max_steps)
     for name, value in counts:
         require_whole(name, value)
@@ -117,13 +120,16 @@ def fit_profile(
     problem = surface_problem(targets, harmonics, free, bounds, *given)
     apart: Any = np.array(places(problem.layout, starts))
     array = problem.asked.apart
-    if array is None:
-        runs = least_bent(problem.layout, problem.task, starts)
-    else:
-        runs = fit_to_array(problem.layout, problem.task, array, starts)
-    if runs is None:
-        runs = _descended(problem, apart, seed, max_steps)
-    return report_fit(problem, runs, apart)
+    with waiting("fit_profile", progress) as tell:
+        if array is None:
+            runs = least_bent(problem.layout, problem.task, starts)
+        else:
+            runs = fit_to_array(problem.layout, problem.task, array, starts)
+        if runs is None:
+            tell(f"{starts} starts")
+            runs = _descended(problem, apart, seed, max_steps)
+        tell("what is left open")
+        return report_fit(problem, runs, apart)
 
 
 def _descended(problem: SurfaceProblem, apart: Any, seed: int, max_steps: int) -> StartRuns:

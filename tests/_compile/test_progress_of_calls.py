@@ -1,0 +1,62 @@
+"""Calls that take more than two seconds say what is under way, where they are asked to."""
+
+import inspect
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+
+SURFACE = fx.profiles.Sine(0.1)
+BRISTLE = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
+PARTS = SURFACE, BRISTLE, fx.supports.Spring(1.0), fx.loads.Sine(1.0488, 3.0), 3.0
+SCENE = fx.Scene(*PARTS)
+NOISY = fx.Scene(*PARTS, effects=(fx.effects.Noise(0.01),))
+TARGET = fx.Target(BRISTLE, 0.1, -0.08)
+TIMES = np.linspace(0.0, 3.0, 4)
+# Where the line begins, and a call of little work before it.
+CALLS = {
+    "fit_profile": ("design.surface.fit", (TARGET,), {}),
+    "fit_slide": ("design.slide.bristle_fit", (SURFACE, BRISTLE, 0.02), {"ratio": 1.3}),
+    "fit_slide_profile": ("design.slide.surface_fit", (TARGET, 0.02), {}),
+    "design_map": ("design.ensembles.maps", (BRISTLE,), {}),
+    "tolerance": ("design.ensembles.manufacturing", (SURFACE, BRISTLE, {"angle": 0.1}), {}),
+    "ensemble": ("stochastic.ensembles", (NOISY, 0.1, 1.0, TIMES, 4, 0), {}),
+    "friction_curve": ("rate_dependence.curves", (SCENE, 0.1, 0.1), {}),
+    "friction_curve of noise": ("rate_dependence.curves", (NOISY, 0.1, 0.1), {}),
+}
+
+
+class BegunError(Exception):
+    pass
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_a_call_has_a_line_where_it_is_asked_for(name, monkeypatch):
+    module, given, options = CALLS[name]
+    name = name.partition(" ")[0]
+    call = getattr(fx, name)
+
+    def begun(*args):
+        raise BegunError(*args)
+
+    monkeypatch.setattr(f"frictionjax.{module}.waiting", begun)
+    with pytest.raises(BegunError) as silent:
+        call(*given, **options)
+    assert silent.value.args == (name, False)
+    with pytest.raises(BegunError) as told:
+        call(*given, **options, progress=True)
+    assert told.value.args == (name, True)
+    with pytest.raises(ValueError, match="progress = 'yes': needs True or False"):
+        call(*given, **options, progress="yes")
+
+
+def test_no_line_is_the_default_everywhere_but_of_fits_to_traces():
+    found = {
+        name: inspect.signature(value).parameters["progress"].default
+        for name, value in ((name, getattr(fx, name)) for name in fx.__all__)
+        if callable(value) and "progress" in inspect.signature(value).parameters
+    }
+    assert found.pop("fit_trace") is True
+    asked = {name.partition(" ")[0] for name in CALLS} | {"sweep", "work_precision"}
+    assert found == dict.fromkeys(asked, False)
