@@ -91,7 +91,8 @@ def test_a_largest_force_between_the_nodes_is_reached():
     beyond = fx.fit_slide(ROUND, SLANTED, EPS, rho_plus=most * (1 + 1e-6), **ends)
     assert beyond.status == FitStatus.UNREACHABLE
     # Forces grow to a pole of the angle, which no slide was found next to.
-    pole = fx.fit_slide(ROUND, SLANTED, EPS, rho_plus=1e9, bounds=(-1.5, -1.2))
+    pull = {"bounds": (-1.5, -1.2), "pulling": True}
+    pole = fx.fit_slide(ROUND, SLANTED, EPS, rho_plus=1e9, **pull)
     assert pole.status == FitStatus.UNKNOWN
 
 
