@@ -19,7 +19,9 @@ _MOMENTS = 2001  # of the limit, that tell its way
 _TIMES = 201  # that are asked for where none are
 
 
-def cost_of(effect: AbstractEffect, scene: Scene, at: Setting, accuracy: float) -> float:
+def steps_ratio(
+    effect: AbstractEffect, scene: Scene, at: Setting, accuracy: float
+) -> float:
     """Of an effect that changes what moves; NaN where nothing says.
 
     A step of a path with noise is shorter than one of a lane, about a tenth in time.

@@ -19,7 +19,7 @@ from ..called_for import (
 from ..effects import LeadingOrder, Stage
 from ..model import Scene, composed, known_scene
 from ..wiggly import require_accuracy
-from .costs import cost_of
+from .costs import steps_ratio
 from .equation import composed_equation
 
 _COLUMNS = {
@@ -94,7 +94,7 @@ def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explana
             name = type(effect).__name__
             rows[name], asked[name] = estimate_of(effect, at), True
             if np.isnan(rows[name].cost):
-                cost = cost_of(effect, scene, at, float(as_real(accuracy)))
+                cost = steps_ratio(effect, scene, at, float(as_real(accuracy)))
                 rows[name] = rows[name]._replace(cost=cost)
             known = not np.isnan(rows[name].in_z)
             reads = effect.stage == Stage.READING
