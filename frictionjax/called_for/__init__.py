@@ -10,3 +10,4 @@ from .plain_system import finite_speed as finite_speed
 from .plain_system import higher_order as higher_order
 from .setting import Setting as Setting
 from .setting import setting_of as setting_of
+from .turns_on_folds import turns_on_folds as turns_on_folds

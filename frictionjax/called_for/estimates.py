@@ -36,7 +36,8 @@ _SPREAD = 4.0
 class Estimate(NamedTuple):
     """What an effect changes: the state in m, the friction in N; NaN where nothing says.
 
-    `cost`: time with it over time without. `source`: of the estimate.
+    `cost`: steps with it over steps without, NaN where that takes more than this estimate.
+    `source`: of the estimate.
     """
 
     in_z: float

@@ -10,6 +10,7 @@ from ..model import AbstractPotential
 from ..slide_laws import predict_errors
 from .estimates import Estimate
 from .setting import Setting
+from .turns_on_folds import turns_on_folds
 
 _PLACES = 512  # of a period, for forces of a well and their change
 _SLIP = 130.0  # times eps^(1 + gamma)/max|W''|: a slip, with its way over the fold
@@ -43,7 +44,8 @@ def higher_order(at: Setting) -> Estimate:
     much. A well that has moved holds its tip as far ahead, and until the support has been
     pulled on by as much: `fastest` times less once. (Over a rough surface, eps = 0.02,
     gamma = 2, slips were late by 20 times what the extreme force says.) Where tips rest
-    inside wells they move by `eps^2 Q'/W''`, and slips last longer as forces change.
+    inside wells they move by `eps^2 Q'/W''`, and slips last longer as forces change. Where
+    the load turns while a tip is on a fold that is no bound, and the source says so.
     """
     Y = np.arange(_PLACES) / _PLACES - 0.5
     Y = np.append(Y, [at.data.phase[np.argmax(s * at.data.force)] for s in (1.0, -1.0)])
@@ -62,7 +64,11 @@ def higher_order(at: Setting) -> Estimate:
     slip = _SLIP * at.eps ** (1 + at.gamma) / float(np.max(np.abs(steep)))
     longer = share * min(at.fastest * at.speed * slip, _FELT * at.eps)
     in_z = max(late, inside) + longer
-    return Estimate(in_z, force, 1.0, "eps Q' at the steepest places (Lemma 2)")
+    source = "eps Q' at the steepest places (Lemma 2)"
+    turns = turns_on_folds(at)
+    if turns.size:
+        source += f"; no bound where the load turns on a fold, t = {turns[0]:.3g} s"
+    return Estimate(in_z, force, 1.0, source)
 
 
 def finite_speed(at: Setting) -> Estimate:

@@ -45,6 +45,16 @@ class Setting(NamedTuple):
         fold, `W' = rho - c (Y - Y*)^2/2`, moves as fast as `v sqrt(100 eps k/c)` then, one
         that viscosity holds up at the fold as `8e4 eps^gamma v^2/c`.
         """
+        bend = self.bend
+        if not bend > 0:
+            return _FASTEST
+        resting = np.sqrt(self.eps * self.stiffest / (2 * AWAY * bend))
+        held_up = 2 * self.eps**self.gamma * self.speed / (AWAY**2 * bend)
+        return float(np.clip(max(resting, held_up), 1.0, _FASTEST))
+
+    @property
+    def bend(self) -> float:
+        """Least c of `W' = rho - c (Y - Y*)^2/2` at both folds, in N."""
         phase, force = self.data.phase, self.data.force
         bend = np.inf
         for sign in (1.0, -1.0):
@@ -54,11 +64,7 @@ class Setting(NamedTuple):
             near = np.argsort(np.abs(away))[1:_BESIDE]
             fall = np.abs(force[near] - force[top])
             bend = min(bend, float(np.median(2 * fall / away[near] ** 2)))
-        if not bend > 0:
-            return _FASTEST
-        resting = np.sqrt(self.eps * self.stiffest / (2 * AWAY * bend))
-        held_up = 2 * self.eps**self.gamma * self.speed / (AWAY**2 * bend)
-        return float(np.clip(max(resting, held_up), 1.0, _FASTEST))
+        return bend
 
     @property
     def softest(self) -> float:

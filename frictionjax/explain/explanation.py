@@ -19,13 +19,14 @@ from ..called_for import (
 from ..effects import LeadingOrder, Stage
 from ..model import Scene, composed, known_scene
 from ..wiggly import require_accuracy
+from .costs import steps_ratio
 from .equation import composed_equation
 
 _COLUMNS = {
     "in_z": ("m", "largest change of the state, from above"),
     "in_force": ("N", "largest change of the friction force, from above"),
     "called_for": (None, "whether the change is larger than the accuracy asked for"),
-    "cost": ("1", "time with the effect over time without"),
+    "cost": ("1", "steps with the effect over steps without, of all bristles"),
     "asked": (None, "whether the scene has it"),
     "source": (None, "where the estimate comes from"),
 }
@@ -77,9 +78,9 @@ def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explana
     set over `effect`, with `in_z` (m) and `in_force` (N), estimates from above of what it
     changes in the state at times outside of slips and in the friction force, `called_for`
     (`in_z` is more than `accuracy` eps, or another scene is meant), `asked` (the scene has
-    it), `cost` (time with it over time without) and `source`. Rows: "higher order", what
-    `LeadingOrder` leaves out; "finite speed", what viscosity adds to dry friction; the
-    scene's effects.
+    it), `cost` (steps with it over steps without, by rules and laws of the schemes) and
+    `source`. Rows: "higher order", what `LeadingOrder` leaves out; "finite speed", what
+    viscosity adds to dry friction; the scene's effects.
 
     Raises `ValueError` for arguments out of range, and as `solve` does.
 
@@ -105,6 +106,9 @@ def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explana
         if not isinstance(effect, LeadingOrder):
             name = type(effect).__name__
             rows[name], asked[name] = estimate_of(effect, at), True
+            if np.isnan(rows[name].cost):
+                cost = steps_ratio(effect, scene, at, float(as_real(accuracy)))
+                rows[name] = rows[name]._replace(cost=cost)
             known = not np.isnan(rows[name].in_z)
             reads = effect.stage == Stage.READING
             called[name] = _matters(rows[name], at, accuracy) if known else not reads

@@ -12,6 +12,7 @@ from .paths import PathStatus as PathStatus
 from .paths import mean_interval as mean_interval
 from .paths import noisy_paths as noisy_paths
 from .paths import run_paths as run_paths
+from .paths import steps_of_path as steps_of_path
 from .random_keys import cell_keys as cell_keys
 from .random_keys import key_words as key_words
 from .random_keys import path_keys as path_keys

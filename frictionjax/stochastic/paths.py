@@ -152,6 +152,12 @@ def cell_loop(cell: NoisyCell) -> tuple[TabulatedForce, PathSteps, Bath]:
     return force, plan, bath
 
 
+def steps_of_path(scene: Scene, noise: Noise, *, eps: float, gamma: float) -> int:
+    """How many steps a path takes; raises `ValueError` as `noisy_paths` does."""
+    _, cell, _ = checked_cell(scene, noise, eps, gamma, None)
+    return cell_loop(cell)[1].total
+
+
 def _planned(cell: NoisyCell, force: TabulatedForce) -> PathSteps:
     strongest = 2 * max(force.highest, -force.lowest)
     times = np.linspace(0.0, cell.duration, SETTINGS.moments)

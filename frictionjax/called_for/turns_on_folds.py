@@ -1,0 +1,73 @@
+"""Where the load turns while a tip is on a fold: what is small decides there.
+
+A force `gap` beyond a fold, `W' = rho - c (Y - Y*)^2/2`, lets a tip over it in
+`pi sqrt(2/(c gap)) eps^(1 + gamma)` (the saddle-node's passage). A load that turns stays
+within `gap` of its turn for a time of its own. Where these are alike, a tip slips late or
+stays by what is small, and no estimate that is linear in that bounds its state.
+"""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from ..model import known_turning_points
+from .setting import Setting
+
+# Of the time near a turn: at 0.54 (a vertical spring, eps = 0.02, gamma = 0.5) the estimate
+# is exceeded (`pytest -m slow tests/called_for/test_turns_on_folds.py`).
+_ALIKE = 0.5
+_BESIDE = (np.linspace(0.0, 1.0, 801)[1:]) ** 2  # of the way to the next turn
+
+
+def turns_on_folds(at: Setting) -> Float[np.ndarray, " turns"]:
+    """Times in s at which the load turns while a tip may be on a fold."""
+    scene, duration = at.scene, float(at.scene.duration)
+    turns = known_turning_points(scene.load, duration, scene.turns)
+    turns = turns[turns > 0]
+    edges = np.concatenate([[0.0], turns, [duration]])
+    loads = np.asarray(jax.vmap(scene.load)(jnp.asarray(edges)))
+    z, found = float(scene.z0), []
+    for i in range(1, turns.size + 1):
+        sign = 1.0 if loads[i] > loads[i - 1] else -1.0
+        edge = float(scene.support.state_of(jnp.asarray(loads[i] - sign * _rho(at, sign))))
+        if sign * (edge - z) <= 0:  # the tip does not slide up to this turn
+            continue
+        z = edge
+        ways = edges[i] - edges[i - 1], edges[i + 1] - edges[i]
+        if any(_late(at, gap, edges[i], ways, sign) for gap in _gaps(at, edge, sign)):
+            found.append(edges[i])
+    return np.array(found)
+
+
+def _rho(at: Setting, sign: float) -> float:
+    return float(at.law.rho_plus if sign > 0 else -at.law.rho_minus)
+
+
+def _gaps(at: Setting, edge: float, sign: float) -> tuple[float, float]:
+    """Force in N beyond the last fold, and short of the next one, with the limit there."""
+    top = float(at.data.phase[np.argmax(sign * at.data.force)])
+    passed = np.floor(sign * (edge / at.eps - top))
+    here = float(at.scene.support.force(jnp.asarray(edge)))
+    folds = at.eps * (top + sign * np.array([passed, passed + 1]))
+    last, following = (float(at.scene.support.force(jnp.asarray(z))) for z in folds)
+    return sign * (here - last), sign * (following - here)
+
+
+def _late(
+    at: Setting, gap: float, turn: float, ways: tuple[float, float], sign: float
+) -> bool:
+    """Whether passing a fold with this much force (N) takes about as long as the load is so
+    near to its turn, or longer."""
+    if gap <= 0:
+        return True
+    passing = np.pi * np.sqrt(2 / (at.bend * gap)) * at.eps ** (1 + at.gamma)
+    top, held = float(at.scene.load(jnp.asarray(turn))), 0.0
+    for way in (-ways[0], ways[1]):
+        beside = np.abs(way) * _BESIDE
+        loads = np.asarray(
+            jax.vmap(at.scene.load)(jnp.asarray(turn + np.sign(way) * beside))
+        )
+        off = np.flatnonzero(sign * (top - loads) > gap)
+        held += float(beside[off[0] if off.size else -1])
+    return bool(passing > _ALIKE * held)

@@ -1,0 +1,67 @@
+"""Loads that turn while a tip is on a fold."""
+
+import numpy as np
+import pytest
+from outside_slips import states_outside_slips, times_about
+
+import frictionjax as fx
+from frictionjax.called_for import setting_of, turns_on_folds
+from frictionjax.io.example_scenes import example_text
+from frictionjax.io.scene_files import parse_scene
+
+EPS = 0.02
+SPRING = parse_scene(example_text("vertical-spring"), "vertical-spring").scene
+
+
+def over_the_first_fold(gap):
+    """A load that turns `gap` (N) beyond what lifts the tip over its fifth fold.
+
+    Of the homothetic bristle `W' = 0.1 cos(2 pi Y)`: folds are at whole wells.
+    """
+    parts = fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0), fx.supports.Spring(1.0)
+    load = fx.loads.Sine(0.1 + 5 * EPS + gap, 4.0)
+    return setting_of(fx.Scene(*parts, load, 2.0), EPS, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("share", "found"), [(1e-3, [1.0]), (0.01, [1.0]), (0.5, []), (0.99, [1.0])]
+)
+def test_a_turn_is_on_a_fold_where_the_tip_has_no_time_to_pass(share, found):
+    """`gap` in shares of the force from fold to fold. The load is so near to its turn for
+    `2 sqrt(2 gap/|l''|)`; the tip takes `pi sqrt(2/(0.1 (2 pi)^2 gap)) eps^2`."""
+    gap = share * EPS
+    times = turns_on_folds(over_the_first_fold(gap))
+    np.testing.assert_allclose(times, found, rtol=1e-6)
+    nearest = min(gap, EPS - gap)
+    bend = (0.2 + gap) * (np.pi / 2) ** 2
+    held = 2 * np.sqrt(2 * nearest / bend)
+    passing = np.pi * np.sqrt(2 / (0.1 * 4 * np.pi**2 * nearest)) * EPS**2
+    assert bool(found) == (passing > 0.5 * held)
+
+
+def test_a_turn_inside_the_strip_is_on_no_fold():
+    parts = fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0), fx.supports.Spring(1.0)
+    load = fx.loads.PiecewiseLinear([0.0, 1.0, 1.5, 2.0], [0.0, 0.51, 0.45, 0.5])
+    times = turns_on_folds(setting_of(fx.Scene(*parts, load, 2.0), EPS, 1.0))
+    assert 1.5 not in times.tolist()
+
+
+def test_explain_says_where_its_estimate_is_no_bound():
+    words = "no bound where the load turns on a fold, t = 0.75 s"
+    for gamma, said in ((0.5, True), (2.0, False)):
+        row = fx.explain(SPRING, EPS, gamma).effects.sel(effect="higher order")
+        assert (words in str(row.source.values)) == said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("gamma", "bound"), [(0.5, False), (1.0, True)])
+def test_there_it_is_none_and_elsewhere_it_is_one(gamma, bound):
+    leading = SPRING.replace(effects=(fx.effects.LeadingOrder(),))
+    times = times_about(SPRING, EPS)
+    pair = [states_outside_slips(s, gamma, EPS, times) for s in (SPRING, leading)]
+    (z, calm), (other, still) = pair
+    off = np.where(calm & still, np.abs(z - other), 0.0)
+    told = float(fx.explain(SPRING, EPS, gamma).effects.in_z.sel(effect="higher order"))
+    assert (np.max(off) <= told) == bound
+    worst = times[1][np.argmax(off)]
+    assert bound or 0.75 < worst < 1.0
