@@ -4,6 +4,7 @@ Imports no JAX at the top: the flags must be set before it.
 """
 
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -24,7 +25,8 @@ def fast_cpu_flags() -> list[str]:
     """What `use_fast_cpu` adds to `XLA_FLAGS`, for the jaxlib that is installed."""
     from importlib.metadata import version  # 50 ms, which jax takes anyway
 
-    early = tuple(int(n) for n in version("jaxlib").split(".")[:3]) < _OLDER_UNTIL
+    numbers = re.findall(r"\d+", version("jaxlib"))  # also of 0.13.0rc1
+    early = tuple(map(int, numbers[:3])) < _OLDER_UNTIL
     flags = [_LOOPS, "--xla_cpu_prefer_vector_width=512", _QUICK]
     return [*flags, _OLDER] if early else flags
 

@@ -63,7 +63,9 @@ class CostPrediction(ShownNumbers, SelfDrawn, _Costs):
     def __str__(self) -> str:
         if not np.isfinite(self.seconds):
             return "unknown: the load turns too often, or floats do not hold eps^gamma"
-        where = "" if self.measured else " (another machine; this one is not measured)"
+        where = (
+            "" if self.measured else " (on another machine; this one has not been measured)"
+        )
         return (
             f"{_seconds(self.low)} to {_seconds(self.high)} s of computation, up to "
             f"{_seconds(self.compilation)} s of compilation the first time, "

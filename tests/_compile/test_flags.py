@@ -54,7 +54,8 @@ def test_flags_of_your_own_are_left_alone(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("installed", "known"), [("0.11.0", True), ("0.11.2", False), ("0.12.0.1", False)]
+    ("installed", "known"),
+    [("0.11.0", True), ("0.11.2", False), ("0.12.0.1", False), ("0.13.0rc1", False)],
 )
 def test_later_versions_are_told_nothing_that_they_may_not_know(
     installed, known, monkeypatch
