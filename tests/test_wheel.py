@@ -16,7 +16,7 @@ from readme import HOME, README, require_what_ten_lines_print, shell_lines, ten_
 from frictionjax.cli import main
 
 SHIPPED = {".py", ".pyi", ".toml", ".css", ".js", ".typed"}
-LEFT_OUT = {".md", ".png", ".pyc"}
+LEFT_OUT = {".md", ".png", ".gif", ".pyc"}
 BESIDE = {"METADATA", "WHEEL", "RECORD", "entry_points.txt", "licenses/LICENSE"}
 
 
