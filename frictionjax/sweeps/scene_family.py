@@ -115,7 +115,7 @@ def _at_all_times(value: Any, shape: tuple[int, ...]) -> np.ndarray:
     """Values of cells, where other scenes have them over time too."""
     value = np.asarray(value)
     more = (1,) * (len(shape) - value.ndim)
-    return np.broadcast_to(value.reshape(*value.shape, *more), shape)
+    return np.broadcast_to(value.reshape(value.shape + more), shape)
 
 
 def columns_of_family(found: list[SceneColumns], scenes: list[Scene]) -> Columns:
