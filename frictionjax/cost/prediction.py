@@ -128,8 +128,8 @@ def predict_cost(
 
     `eps` in m and `gamma`: numbers or lists; `scene`, `accuracy` and `ts` as in `sweep`,
     and `method` one of the library's own. The first call on a machine measures it, 5 to 20
-    s, and keeps that in the user's cache folder; `measure=False` takes another machine's
-    numbers instead.
+    s, and keeps that in the user's cache folder; `measure=False` measures
+    nothing: of a machine that was never measured it takes another's numbers.
 
     The work of lanes follows from the plan of the sweep: wells, windows, tolerances. Where
     surveys have to be made again, which nobody knows before, a cell takes longer.
