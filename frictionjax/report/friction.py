@@ -16,7 +16,6 @@ from ..limit import solve_limit
 from ..model import Scene, friction
 from ..profiles import AbstractProfile
 from .job import Job, joined
-from .nap_page import NapFacts, nap_page
 from .tables import row_table
 
 if TYPE_CHECKING:
@@ -104,6 +103,8 @@ def _write_report(
     job: Job, asked: float | None, pictures: "Mapping[str, Figure]", folder: Path
 ) -> list[str]:
     """Write the report and the scene; their names."""
+    from .nap_page import NapFacts, nap_page  # draws, and tables need not
+
     assert job.report is not None
     toml = scene_document(job.scene, job.study)
     coefficients = coefficient_table(friction(job.scene), job.error)

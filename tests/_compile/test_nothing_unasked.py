@@ -122,3 +122,12 @@ def test_planning_a_sweep_imports_no_general_solvers():
         "assert not heavy, heavy\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_tables_of_friction_import_nothing_that_draws():
+    code = (
+        "import frictionjax.report.friction, sys\n"
+        "heavy = {'diffrax', 'matplotlib', 'xarray'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
