@@ -61,7 +61,9 @@ def _late(
     near to its turn, or longer."""
     if gap <= 0:
         return True
-    passing = np.pi * np.sqrt(2 / (at.bend * gap)) * at.eps ** (1 + at.gamma)
+    # Beyond the fold no force is less than the gap, however flat it is.
+    curved = np.pi * np.sqrt(2 / (at.bend * gap)) if at.bend > 0 else np.inf
+    passing = min(curved, 1 / gap) * at.eps ** (1 + at.gamma)
     top, held = float(at.scene.load(jnp.asarray(turn))), 0.0
     for way in (-ways[0], ways[1]):
         beside = np.abs(way) * _BESIDE

@@ -17,7 +17,7 @@ from .options import (
 )
 from .running import interruptible, report_asked, start, write_folder
 
-# About a hundred slips and a thousand: of ten thousand the reference alone took 13 s.
+# About a hundred slips and a thousand: references of ten thousand take all the time.
 _CELLS = 2
 # Seconds, so that what was begun, and the writing, end after 30 or so.
 _TOTAL = 25.0
@@ -92,8 +92,8 @@ def cost(
     job = job._replace(study=job.study | cells, report=report_asked(report, started))
     if total is None and names is None:
         total = _TOTAL
-    left = None if total is None else total - (time.perf_counter() - started)
-    left = None if left is None else max(_LEAST, left)
+    spent = time.perf_counter() - started
+    left = None if total is None else max(_LEAST, total - spent)
     write_folder(
         folder, lambda place: run_cost(job, place, names, asked, seconds, progress, left)
     )

@@ -65,6 +65,10 @@ class _Effort(NamedTuple):
     until: float  # on the clock of `perf_counter`: nothing begins later
     anyway: Any  # the method that is measured in any case
 
+    def goes_first(self, method: Any) -> bool:
+        """Whether it comes before all others: ours, one of them where time is short."""
+        return is_ours(method) and (method is self.anyway or self.until == float("inf"))
+
     def allows(self, method: Any, first: bool) -> bool:
         """Whether there is time to begin, and to compile what is not SciPy's.
 
@@ -124,11 +128,10 @@ def _first_calls(
     Before the reference, which would compile the same programs for them. Where time is
     short only of what is measured in any case. (The windowed method compiles for 8 s.)
     """
-    bounded = effort.until < float("inf")
     loosest = float(effort.accuracies[0])
     return [
         clocked(runner(scene, eps, gamma, ts, loosest, name, effort.seconds))[1]
-        if is_ours(name) and (name is effort.anyway or not bounded)
+        if effort.goes_first(name)
         else None
         for name in names
     ]
@@ -288,13 +291,7 @@ def _all_cells(
     count = len(columns) * effort.accuracies.size
     found: dict[tuple[int, int], list[dict]] = {}
     with tqdm(total=count, disable=not progress, desc="runs") as bar:
-        bounded = effort.until < float("inf")
-
-        def is_late(place: tuple[int, int]) -> bool:
-            name = names[place[1]]
-            return name is not effort.anyway if bounded else not is_ours(name)
-
-        for place in sorted(columns, key=is_late):
+        for place in sorted(columns, key=lambda at: not effort.goes_first(names[at[1]])):
             found[place] = _measured(columns[place], effort, first[place], bar)
     cells = [run for place in columns for run in found[place]]
     return cells, [columns[row, 0].truth for row in range(len(grid))]

@@ -8,6 +8,7 @@ a harmonic well at any step (Euler's variance: off by 1/(1 - h c/2 viscosity), c
 Noise is counted: R_n of a path depends on its key and on n alone.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import jax
@@ -71,6 +72,18 @@ def first_draw(key: UInt32[Array, " words"]) -> Float[Array, ""]:
     return block_draws(key, jnp.uint32(_BEFORE), 1)[0]
 
 
+def stepper(table: ForceTable, support: AbstractSupport, bath: Bath) -> Callable:
+    """The step of tips at z (m) under a pull (N), `noise` the sum of R_n and the next."""
+    mobility = bath.step / bath.viscosity
+    spread = jnp.sqrt(0.5 * bath.temperature * mobility)
+
+    def stepped(z: Array, pull: Array, noise: Array) -> Array:
+        force = pull - jax.vmap(support.force)(z) - table.force(z, bath.eps)
+        return z + mobility * force + spread * noise
+
+    return stepped
+
+
 @Program
 def run_lanes(
     table: ForceTable,
@@ -82,22 +95,19 @@ def run_lanes(
     z0: Float[Array, " lanes"],
 ) -> PathValues:
     """Paths from `z0` (m) at the steps `wanted`, whole numbers that do not decrease."""
-    eps, viscosity, temperature, step = bath
-    mobility = step / viscosity
-    spread = jnp.sqrt(0.5 * temperature * mobility)
+    stepped = stepper(table, support, bath)
     size = SETTINGS.block
 
     def advance(state: _State, now: tuple) -> tuple[_State, Array]:
         noise, pull, pull_after = now
-        force = pull - jax.vmap(support.force)(state.z) - table.force(state.z, eps)
-        z = state.z + mobility * force + spread * (state.noise + noise)
+        z = stepped(state.z, pull, state.noise + noise)
         work = state.work - 0.5 * (pull_after - pull) * (state.z + z)
         return _State(z, work, noise), jnp.stack([z, work])
 
     def march(march: _March) -> _March:
         first = march.block * size
         noise = jax.vmap(lambda key: block_draws(key, march.block, size))(keys).T
-        pulls = jax.vmap(load)(step * (first + jnp.arange(size + 1)))
+        pulls = jax.vmap(load)(bath.step * (first + jnp.arange(size + 1)))
         steps = noise, pulls[:-1], pulls[1:]
         state, values = jax.lax.scan(advance, march.state, steps)
 

@@ -13,7 +13,7 @@ from .._compile import Program
 from ..loads import AbstractPull
 from ..supports import AbstractSupport
 from .force_table import ForceTable
-from .path_loop import Bath, block_draws, first_draw
+from .path_loop import Bath, block_draws, first_draw, stepper
 from .settings import SETTINGS
 
 
@@ -51,16 +51,14 @@ def run_tiles(
     `wanted`: steps from t = 0, which do not decrease along a tile; none after its end is
     told.
     """
-    mobility = bath.step / bath.viscosity
-    spread = jnp.sqrt(0.5 * bath.temperature * mobility)
+    stepped = stepper(table, support, bath)
     size, tiles = SETTINGS.block, jnp.arange(z0.size)
     rooms = wanted.shape[0]
 
     def advance(state: tuple, now: tuple) -> tuple[tuple, Array]:
         z, before = state
         noise, pull = now
-        force = pull - jax.vmap(support.force)(z) - table.force(z, bath.eps)
-        z = z + mobility * force + spread * (before + noise)
+        z = stepped(z, pull, before + noise)
         return (z, noise), z
 
     def march(march: _March) -> _March:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax._checks import exact_text
 
 PROFILE = fx.profiles.Sine(0.1)
 SCENE = fx.Scene(
@@ -61,3 +62,14 @@ def test_traced_numbers_have_a_shape_only():
     assert "f64[]" in seen[0]
     batch = jax.vmap(fx.bristles.Homothetic)(jnp.array([0.5, 1.0]))
     assert repr(batch) == "Homothetic(alpha=[0.5, 1])"
+
+
+def test_provenance_has_every_digit_of_every_field():
+    scene = SCENE.replace(
+        support=fx.supports.Spring(1 / 3), effects=(fx.effects.LeadingOrder(),)
+    )
+    text = exact_text(scene)
+    for told in (f"stiffness={1 / 3!r}", "effects=(LeadingOrder(),)", "z0=0.0", "turns="):
+        assert told in text
+    waves = np.linspace(0.0, 1e-3, 9)
+    assert str((waves / 7).tolist()) in exact_text(fx.profiles.Fourier(waves / 7, waves))

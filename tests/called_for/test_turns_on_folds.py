@@ -46,6 +46,20 @@ def test_a_turn_inside_the_strip_is_on_no_fold():
     assert 1.5 not in times.tolist()
 
 
+@pytest.mark.parametrize(("share", "found"), [(1e-3, [1.0]), (0.5, [])])
+def test_straight_flanks_are_passed_by_the_force_that_is_left(share, found):
+    """Without a curvature the tip takes `eps^2/gap` for a well at most."""
+    profile = fx.profiles.Polyline([0.25, 0.75], [0.03, -0.03], radius=0.02)
+    parts = profile, fx.bristles.Homothetic(1.0), fx.supports.Spring(1.0)
+    rho = float(fx.friction(*parts[:2]).rho_plus)
+    still = fx.Scene(*parts, fx.loads.Sine(2 * rho, 4.0), 2.0)
+    data = setting_of(still, EPS, 1.0).data
+    top = float(data.phase[np.argmax(data.force)])
+    load = fx.loads.Sine(rho + EPS * (top + 5 + share), 4.0)
+    times = turns_on_folds(setting_of(still.replace(load=load), EPS, 1.0))
+    np.testing.assert_allclose(times, found, rtol=1e-6)
+
+
 def test_explain_says_where_its_estimate_is_no_bound():
     words = "no bound where the load turns on a fold, t = 0.75 s"
     for gamma, said in ((0.5, True), (2.0, False)):

@@ -183,8 +183,8 @@ def step_of_lane(
 ) -> LaneState:
     """One step of one lane; a lane that has reached its stop stays as it is.
 
-    `summed`: whether energies and extremes of the way are added up. (Extremes alone were
-    a loop of their own: a quarter less time a step, 12 CPU s more to compile.)
+    `summed`: whether energies and extremes of the way are added up. (Extremes alone would
+    be a loop of their own to compile, for steps that are little shorter.)
     """
     field = field_of_lane(scene, task)
     step, tip, time, unseen, end, judged, live = _try_step(scene, tableau, task, motion)
