@@ -49,7 +49,8 @@ FLOORS = {
         {"plans_ahead", "attempts"},
         {"predicted_work"},
         {"batch"},
-        {"arrays"},
+        {"arrays", "differentiable"},
+        {"engine_solutions"},
         {"trajectory"},
     ],
     "design": [

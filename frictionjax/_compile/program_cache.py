@@ -1,9 +1,10 @@
-"""Programs kept in a folder as they were traced, so that later processes only load them.
+"""Programs kept in a folder as they were compiled, so that later processes only load them.
 
 JAX's own cache keeps what XLA makes of a program, found by the program's text: tracing and
-lowering come first, and were 2 s of the 6.5 s of a warm study. A program is found by the
-library's source and by what it is called with: constants of modules that a running process
-has changed are not seen.
+lowering come first, and were 2 s of the 6.5 s of a warm study. (Kept as they were traced,
+they are lowered once more: XXX.) A program is found by the library's source, by the
+processor and by what it is called with: constants of modules that a running process has
+changed are not seen.
 """
 
 import contextlib
@@ -13,39 +14,62 @@ import os
 import pickle
 import sys
 import sysconfig
+import threading
 import warnings
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import equinox as eqx
 import jax
-from jax import export
+from jax.experimental.serialize_executable import deserialize_and_load, serialize
 
 from .._checks import write_whole
+from .processor import processor
 
 # Where what belongs to a program may come from: a user's function or class can change
 # while its name stays the same.
 _OURS = __name__.partition(".")[0]
 _TRUSTED = {_OURS, "builtins", "collections", "equinox", "jax", "jaxlib", "numpy"}
-_MOST = 300  # files in the folder; the oldest go first
-_place: Path | None = None
-_writes = True  # until something could not be written
+_MOST = 1000  # files in the folder; the oldest go first
 _PROBE = 4096  # bytes
 _NEVER = 1e9  # s of compilation from which on JAX keeps a program
+# Of other libraries' code a program holds an address, which loading does not fill in.
+_CALL = "stablehlo.custom_call"
+_FOUND = "/jax/compilation_cache/cache_hits"
+_place: Path | None = None
+_writes = True  # until something could not be written
 
 
-def keep_in(folder: Path | None) -> None:
-    """Keep the programs that are traced from now on in a folder; None: keep none.
+class _Fetched(threading.local):
+    """How many programs JAX's own cache has given this thread."""
 
-    Where it cannot be written, what is in it is used, and one warning says so.
+    count = 0
+
+    def note(self, event: str, **_: Any) -> None:
+        """One more, if that is what an event of JAX tells."""
+        self.count += event == _FOUND
+
+
+_FETCHED = _Fetched()
+jax.monitoring.register_event_listener(_FETCHED.note)
+
+
+def keep_in(folder: Path | None) -> Path | None:
+    """Keep the programs that are compiled from now on in a folder; None: keep none.
+
+    Returns where in it, which is a place of its own for each version of the library; None
+    where it cannot be written: what is in it is used, and one warning says so.
     """
     global _place, _writes
     _place, _writes = None if folder is None else folder / _stamp(), True
-    if _place is not None:
-        _try_to_write(_place / f"probe-{os.getpid()}", bytes(_PROBE))
-        with contextlib.suppress(OSError):
-            (_place / f"probe-{os.getpid()}").unlink()
+    if _place is None:
+        return None
+    _try_to_write(_place / f"probe-{os.getpid()}", bytes(_PROBE))
+    with contextlib.suppress(OSError):
+        (_place / f"probe-{os.getpid()}").unlink()
+    return _place if _place.is_dir() else None
 
 
 def _try_to_write(path: Path, data: bytes) -> None:
@@ -66,8 +90,8 @@ def _try_to_write(path: Path, data: bytes) -> None:
 
 
 def _stamp() -> str:
-    """Of this library's source and of the packages installed beside it."""
-    found = hashlib.sha256()
+    """Of this library's source, the packages installed beside it and the processor."""
+    found = hashlib.sha256(processor().encode())
     for path in sorted(Path(__file__).parents[1].rglob("*.py")):
         found.update(path.read_bytes())
     installed = Path(sysconfig.get_path("purelib")).glob("*.dist-info")
@@ -102,6 +126,7 @@ def _described(fn: Callable, structure: Any, rest: tuple) -> bytes:
         leaves[index] = leaf
     names = "enable_x64", "default_matmul_precision", "numpy_dtype_promotion"
     settings = [str(getattr(jax.config, f"jax_{name}")) for name in names]
+    settings.append(os.environ.get("XLA_FLAGS", ""))
     name = fn.__module__, fn.__qualname__, settings
     file = io.BytesIO()
     tree = jax.tree_util.tree_unflatten(structure, leaves)
@@ -115,79 +140,94 @@ def kept(fn: Callable, run: Callable, structure: Any, rest: tuple) -> Callable:
     `run` takes a list of arrays. `fn` of the library, called with the tree `structure` in
     which the leaves `rest` are no arrays, says which program it is.
     """
-    compiled = jax.jit(run)
+    jitted = jax.jit(run)
     checked = [getattr(jax.config, f"jax_{name}") for name in ("disable_jit", "debug_nans")]
-    # What was traced for one platform does not run on another, to which arrays may belong.
-    if _place is None or any(checked) or jax.default_backend() != "cpu":
-        return compiled
+    if _place is None or any(checked) or not _alone():
+        return jitted
     try:
         what = _described(fn, structure, rest)
     except Exception:  # of any kind: what cannot be described is not kept
-        return compiled
-    return _Kept(compiled, what, _place)
+        return jitted
+    return _Kept(jitted, what, _place)
+
+
+def _alone() -> bool:
+    """Whether arrays can only be where programs from the folder run."""
+    return jax.default_backend() == "cpu" and jax.device_count() == 1
 
 
 class _Kept:
-    """A program, fetched or traced once for each set of shapes."""
+    """A program, fetched or compiled once for each set of shapes."""
 
-    def __init__(self, compiled: Callable, what: bytes, place: Path):
-        self._compiled, self._what, self._place = compiled, what, place
+    def __init__(self, jitted: Callable, what: bytes, place: Path):
+        self._jitted, self._what, self._place = jitted, what, place
         self._known: dict[tuple, Callable] = {}
 
     def __call__(self, numbers: list) -> Any:
         # Programs from the folder know no derivatives or batches.
         if any(isinstance(x, jax.core.Tracer) for x in numbers):
-            return self._compiled(numbers)
+            return self._jitted(numbers)
         shapes = tuple([(x.shape, x.dtype) for x in numbers])
         program = self._known.get(shapes)
         if program is None:
-            program = self._known[shapes] = self._found(numbers, shapes)
+            return self._first(numbers, shapes)
         return program(numbers)
 
-    def _found(self, numbers: list, shapes: tuple) -> Callable:
+    def _first(self, numbers: list, shapes: tuple) -> Any:
         name = hashlib.sha256(self._what + repr(shapes).encode()).hexdigest()
         path = self._place / f"{name[:40]}.bin"
-        with contextlib.suppress(Exception):  # no such file, or one that does not load
-            return _loaded(path.read_bytes())
+        with contextlib.suppress(Exception):  # no such file, or one that is of no use
+            program = _loaded(path.read_bytes())
+            found = jax.block_until_ready(program(numbers))
+            self._known[shapes] = program
+            return found
+        self._known[shapes] = program = self._made(numbers, path)
+        return program(numbers)
+
+    def _made(self, numbers: list, path: Path) -> Callable:
         try:
-            data, program = _traced(self._compiled, numbers)
+            data, program = _compiled(self._jitted, numbers)
         except Exception:  # not every program can be written down
-            return self._compiled
-        _try_to_write(path, data)
+            return self._jitted
+        if data is not None:
+            _try_to_write(path, data)
         return program
 
 
-def _traced(compiled: Callable, numbers: list) -> tuple[bytes, Callable]:
-    """A program as a file and as a function: the same one, whoever traced it."""
+def _compiled(jitted: Callable, numbers: list) -> tuple[bytes | None, Callable]:
+    """A program as a file and as a function; no file of what JAX's cache has given.
+
+    Such a program cannot be written down once more: it lacks its code.
+    """
     structures: list = []
 
     def flat(numbers: list) -> list:
-        leaves, structure = jax.tree_util.tree_flatten(compiled(numbers))
+        leaves, structure = jax.tree_util.tree_flatten(jitted(numbers))
         structures.append(structure)
         return leaves
 
-    flat.__name__ = compiled.__name__  # as profilers and logs of compilations call it
-    exported = export.export(jax.jit(flat))(numbers)
-    out = structures[0]
+    flat.__name__ = jitted.__name__  # as profilers and logs of compilations call it
+    lowered = jax.jit(flat).lower(numbers)
+    if _CALL in lowered.as_text():
+        raise _ForeignError(f"{flat.__name__} calls another library")
+    fetched = _FETCHED.count
+    whole, out = lowered.compile(), structures[0]
+    program = _called(whole, out)
+    if _FETCHED.count > fetched:
+        return None, program
     example = jax.tree_util.tree_unflatten(out, range(out.num_leaves))
-    return pickle.dumps((exported.serialize(), example)), _called(exported, out)
+    return zlib.compress(pickle.dumps((serialize(whole), example)), level=1), program
 
 
 def _loaded(data: bytes) -> Callable:
     """The program in a file, which a process of this user wrote."""
-    exported, example = pickle.loads(data)
-    return _called(export.deserialize(exported), jax.tree_util.tree_structure(example))
+    whole, example = pickle.loads(zlib.decompress(data))
+    return _called(deserialize_and_load(*whole), jax.tree_util.tree_structure(example))
 
 
-def _called(exported: export.Exported, out: Any) -> Callable:
-    def run(numbers: list) -> Any:
-        return exported.call(numbers)
-
-    run.__name__ = exported.fun_name
-    call = jax.jit(run)
-
+def _called(whole: Callable, out: Any) -> Callable:
     def program(numbers: list) -> Any:
-        return jax.tree_util.tree_unflatten(out, call(numbers))
+        return jax.tree_util.tree_unflatten(out, whole(numbers))
 
     return program
 

@@ -13,7 +13,7 @@ from ..cost import PREDICTED_ACCURACIES, CostPrediction, fit_budget, predict_cos
 from ..effects import Engine, does
 from ..model import require_reach
 from ..sweeps import sweep
-from ..wiggly import is_ours, prepare_cells, require_accuracy, solver_of
+from ..wiggly import is_ours, prepare_cells, require_accuracy
 from .job import Job
 
 _TIMES = 401  # pictures follow the slips of the larger eps
@@ -54,6 +54,8 @@ def expectation(job: Job, method: str) -> str:
     if found is None and is_ours(method):
         return "unknown time, as nobody has measured scenes with such effects"
     if found is None:
+        from ..wiggly import solver_of  # and diffrax, 0.5 s
+
         solver_of(method)
         return f"unknown time, as nobody has measured {method}"
     if job.scenes:

@@ -1,17 +1,11 @@
 """One trajectory of the wiggly system."""
 
 import dataclasses
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-import diffrax
-import equinox as eqx
-import jax
 import jax.numpy as jnp
-import numpy as np
-from jaxtyping import Array
 
 from .._checks import (
-    Real,
     as_real,
     is_concrete,
     noting_the_scene,
@@ -21,12 +15,8 @@ from .._checks import (
     require_whole,
     with_nan,
 )
-from .._compile import Program
 from ..called_for import Simulated, simulated
 from ..effects import (
-    Inertia,
-    NapFlip,
-    Noise,
     engine_of,
     inertia_among,
     nap_flip_among,
@@ -34,190 +24,35 @@ from ..effects import (
 )
 from ..model import (
     Scene,
-    TabulatedScene,
     require_reach,
     require_times,
     require_told_apart,
     scene_for,
-    tabulated_scene,
 )
-from .arrays import integrate_scene
-from .equation import Status, StepPlan, plan_steps, require_accuracy
-from .sequential import MAX_STEPS, integrate, is_ours, solver_of
+from .engine_solutions import along_one_path, through_lanes, with_mass, with_turning
+from .equation import require_accuracy
+from .sequential import MAX_STEPS, is_ours
 from .solution import Solution
+
+if TYPE_CHECKING:
+    import diffrax
 
 _ACCURACY = 1e-3
 
 
-class _Problem(NamedTuple):
-    """What trajectories have derivatives by."""
+def _require_adjoint(adjoint: Any) -> None:
+    if adjoint is not None:
+        from diffrax import AbstractAdjoint  # 0.5 s
 
-    scene: Scene
-    eps: Real
-    gamma: Real
-    ts: Array
-    accuracy: Real
+        known, told = isinstance(adjoint, AbstractAdjoint), "None or an adjoint of diffrax"
+        require(known, "adjoint", type(adjoint).__name__, told)
 
 
-class _Options(NamedTuple):
-    solver: Any
-    balanced: bool
-    max_steps: int
-    adjoint: Any
+def _require_method(method: Any) -> None:
+    if not is_ours(method):
+        from .sequential import solver_of  # and diffrax, 0.5 s
 
-
-class _Curve(NamedTuple):
-    """What of a `Solution` has derivatives."""
-
-    z: Array
-    dissipation: Array | None
-    residual: Array | None
-
-
-@Program
-def _planned(problem: _Problem) -> StepPlan:
-    scene, eps, gamma, _, accuracy = problem
-    return plan_steps(scene, eps, gamma, accuracy)
-
-
-def _answered(
-    problem: _Problem, plan: StepPlan, options: _Options, past: Any = None
-) -> tuple:
-    scene, eps, gamma, ts, _ = problem
-    found = integrate(
-        scene,
-        eps,
-        gamma,
-        ts,
-        plan,
-        options.solver,
-        until=ts[-1],
-        balanced=options.balanced,
-        max_steps=options.max_steps,
-        adjoint=options.adjoint,
-        past=past,
-    )
-    counts = {
-        "steps": found.steps,
-        "rejected": found.rejected,
-        "tolerance": plan.tolerance,
-        "dissipation_gap": found.dissipation_gap,
-    }
-    curve = _Curve(found.z, found.dissipation, found.residual)
-    return curve, (found.status, counts), found.past
-
-
-@Program
-def _forth(problem: _Problem, plan: StepPlan, options: _Options) -> tuple:
-    return _answered(problem, plan, options)
-
-
-@Program
-def _back(
-    problem: _Problem, plan: StepPlan, options: _Options, past: Any, by: _Curve
-) -> _Problem:
-    """Derivatives by the problem of what has those `by` the curve."""
-    moving, still = eqx.partition(problem, eqx.is_inexact_array)
-
-    def curve(moving: _Problem) -> _Curve:
-        return _answered(eqx.combine(moving, still), plan, options, past)[0]
-
-    return jax.vjp(curve, moving)[1](by)[0]
-
-
-@eqx.filter_custom_vjp
-def _differentiable(problem: _Problem, options: _Options) -> tuple:
-    """Forth and back in a program each, kept for later processes as others are.
-
-    Derivatives of one program were traced anew in every process, for 10 s.
-    """
-    return _forth(problem, _planned(problem), options)[:2]
-
-
-@_differentiable.def_fwd
-def _with_past(perturbed: Any, problem: _Problem, options: _Options) -> tuple:
-    plan = _planned(problem)
-    curve, told, past = _forth(problem, plan, options)
-    return (curve, told), (plan, past, curve)
-
-
-@_differentiable.def_bwd
-def _pulled_back(
-    known: tuple, by: tuple, perturbed: Any, problem: _Problem, options: _Options
-) -> _Problem:
-    plan, past, curve = known
-    whole = jax.tree_util.tree_map(
-        lambda value, by_value: jnp.zeros_like(value) if by_value is None else by_value,
-        curve,
-        by[0],
-    )
-    return _back(problem, plan, options, past, whole)
-
-
-def _solve(problem: _Problem, options: _Options) -> Solution:
-    if options.adjoint is None:
-        curve, (status, counts) = _differentiable(problem, options)
-    else:
-        curve, (status, counts), _ = _forth(problem, _planned(problem), options)
-    how = f"resolved, every slip, by {type(options.solver).__name__}"
-    z, dissipation, residual = curve
-    return Solution(problem.ts, z, dissipation, residual, status, counts, how)
-
-
-def _through_lanes(scene, eps, gamma, ts, accuracy, method, balanced) -> Solution | None:
-    """The solution by lanes; None where the scene has no room for the load's turns."""
-    found, apart = integrate_scene(
-        scene=scene,
-        eps=np.atleast_1d(float(eps)),
-        gamma=np.atleast_1d(float(gamma)),
-        ts=np.asarray(ts),
-        accuracy=accuracy,
-        method=method,
-        balanced=balanced,
-        suprema=False,
-    )
-    if found is None:
-        return None
-    dissipation = jnp.asarray(found.dissipation[0]) if balanced else None
-    residual = jnp.asarray(found.running_residual[0]) if balanced else None
-    counts = {
-        "steps": int(found.steps[0]),
-        "rejected": int(found.rejected[0]),
-        "tolerance": float(found.tolerance[0]),
-        "dissipation_gap": float(found.dissipation_gap[0]) if balanced else None,
-        "how": found.how[0],
-        "bracket": found.gap[0],
-        "sampled": float(found.sampled[0]),
-    }
-    if apart is not None:
-        counts["spread"] = apart[0]
-    return Solution(
-        ts,
-        jnp.asarray(found.z[0]),
-        dissipation,
-        residual,
-        jnp.asarray(found.status[0]),
-        counts,
-        _in_words(found.how[0], float(found.sampled[0]), tabulated_scene(scene, eps)),
-    )
-
-
-def _in_words(how: np.ndarray, sampled: float, scene: TabulatedScene) -> str:
-    own = scene.untabulated
-    return _found_in_words(how, sampled) + (f"; compiled for {own}" if own else "")
-
-
-def _found_in_words(how: np.ndarray, sampled: float) -> str:
-    if not how.any():
-        return "resolved, every slip since z0, by one lane"
-    share = f"{np.mean(how > 0):.0%} of them from brackets that closed"
-    if np.any(how == 2):
-        share += f", {np.mean(how == 2):.0%} set off from a slip map"
-    if np.isnan(sampled):
-        return f"windowed, values at the times alone; {share}"
-    if sampled:
-        return f"windowed, {share}; {sampled:.0%} of the way known from some of its slips"
-    return f"resolved, every slip, in tiles; {share}"
+        solver_of(method)
 
 
 def _require_unasked(accuracy: Any, max_steps: int, adjoint: Any) -> None:
@@ -228,115 +63,11 @@ def _require_unasked(accuracy: Any, max_steps: int, adjoint: Any) -> None:
     require(adjoint is None, "adjoint", adjoint, told)
 
 
-def _one_path(
-    scene: Scene, noise: Noise, eps: Any, gamma: Any, ts: Array, key: Any
-) -> Solution:
-    from ..stochastic import key_words, noisy_path  # nothing else needs it
-
-    words = key_words(key)
-    found = noisy_path(scene, noise, eps=eps, gamma=gamma, key=words, ts=ts)
-    status = Status.OK if found.ok else Status.NOT_FINITE
-    counts = {
-        "steps": found.steps,
-        "rejected": 0,
-        "tolerance": None,
-        "dissipation_gap": None,
-        "step": found.step,
-    }
-    how = "a path with noise, by fixed steps (Leimkuhler and Matthews)"
-    z = jnp.asarray(found.z)
-    return Solution(ts, z, None, None, jnp.asarray(int(status)), counts, how)
-
-
 def _require_known(numbers: tuple, adjoint: Any, who: str) -> None:
     """What has no derivatives needs known numbers."""
     needs = f"known numbers and no adjoint: {who} no derivatives"
     known = is_concrete(*numbers) and adjoint is None
     require(known, "scene", "traced, or with an adjoint", needs)
-
-
-def _with_mass(
-    scene: Scene,
-    inertia: Inertia,
-    eps: Any,
-    gamma: Any,
-    ts: Array,
-    accuracy: float,
-    balanced: bool,
-    max_steps: int,
-) -> Solution:
-    from .inertial import integrate_with_mass  # nothing else needs it
-
-    found = integrate_with_mass(
-        scene,
-        np.atleast_1d(float(eps)),
-        np.atleast_1d(float(gamma)),
-        inertia=inertia,
-        ts=np.asarray(ts),
-        accuracy=accuracy,
-        suprema=False,
-        budget=max_steps,
-    )
-    counts = {
-        "steps": int(found.steps[0]),
-        "rejected": int(found.rejected[0]),
-        "tolerance": float(found.tolerance[0]),
-        "dissipation_gap": float(found.running_residual[0, -1]) if balanced else None,
-        "spread": found.spread[0],
-        "beta": float(found.beta[0]),
-    }
-    return Solution(
-        ts,
-        jnp.asarray(found.z[0]),
-        jnp.asarray(found.dissipation[0]) if balanced else None,
-        jnp.asarray(found.running_residual[0]) if balanced else None,
-        jnp.asarray(found.status[0]),
-        counts,
-        "resolved, every slip since z0, with mass, at three tolerances",
-        jnp.asarray(found.velocity[0]),
-    )
-
-
-def _with_turning(
-    scene: Scene,
-    effect: NapFlip,
-    *,
-    eps: Any,
-    gamma: Any,
-    ts: Array,
-    accuracy: float,
-    balanced: bool,
-    max_steps: int,
-) -> Solution:
-    from .turning import integrate_turning  # nothing else needs it
-
-    found = integrate_turning(
-        scene,
-        float(eps),
-        float(gamma),
-        effect=effect,
-        ts=np.asarray(ts),
-        accuracy=accuracy,
-        budget=max_steps,
-    )
-    counts = {
-        "steps": found.steps,
-        "rejected": found.rejected,
-        "tolerance": found.tolerance,
-        "dissipation_gap": found.gap if balanced else None,
-    }
-    return Solution(
-        ts=ts,
-        z=jnp.asarray(found.z),
-        dissipation=jnp.asarray(found.dissipation) if balanced else None,
-        residual=jnp.asarray(found.residual) if balanced else None,
-        status_code=jnp.asarray(found.status),
-        counts=counts,
-        how="resolved, every slip, with a rod that turns over",
-        root=jnp.asarray(found.root),
-        mode=jnp.asarray(found.mode),
-        tip=jnp.asarray(found.tip),
-    )
 
 
 def _called_for(found: Simulated, *numbers: Any, key: Any, **options: Any) -> Solution:
@@ -362,7 +93,7 @@ def solve(
     *,
     dissipation: bool = True,
     max_steps: int = MAX_STEPS,
-    adjoint: diffrax.AbstractAdjoint | None = None,
+    adjoint: "diffrax.AbstractAdjoint | None" = None,
     key: Any = None,
     effects: str = "all",
 ) -> Solution:
@@ -423,14 +154,13 @@ def solve(
     scene = scene_for(engine_of(method), scene)
     require_flags(dissipation=dissipation)
     require_whole("max_steps", max_steps)
-    known = adjoint is None or isinstance(adjoint, diffrax.AbstractAdjoint)
-    require(known, "adjoint", type(adjoint).__name__, "None or an adjoint of diffrax")
+    _require_adjoint(adjoint)
+    _require_method(method)
     ts = require_times(scene, ts)
-    solver = solver_of(method)
     noise = noise_among(scene.effects)
     if noise is not None:
         _require_unasked(accuracy, max_steps, adjoint)
-        return _one_path(scene, noise, eps, gamma, ts, key)
+        return along_one_path(scene, noise, eps, gamma, ts, key)
     require(key is None, "key", key, "None, or a scene with effects.Noise")
     eps, gamma = jnp.asarray(as_real(eps)), jnp.asarray(as_real(gamma))
     require_reach(scene.potential, eps)
@@ -438,7 +168,7 @@ def solve(
     inertia = inertia_among(scene.effects)
     if inertia is not None:
         _require_known((scene, eps, gamma, ts, accuracy), adjoint, "effects.Inertia has")
-        return _with_mass(
+        return with_mass(
             scene=scene,
             inertia=inertia,
             eps=eps,
@@ -451,7 +181,7 @@ def solve(
     turning = nap_flip_among(scene.effects)
     if turning is not None:
         _require_known((scene, eps, gamma, ts, accuracy), adjoint, "effects.NapFlip has")
-        return _with_turning(
+        return with_turning(
             scene,
             turning,
             eps=eps,
@@ -463,7 +193,7 @@ def solve(
         )
     plain = adjoint is None and max_steps == MAX_STEPS
     if plain and is_ours(method) and is_concrete(scene, eps, gamma, ts, accuracy):
-        found = _through_lanes(
+        found = through_lanes(
             scene=scene,
             eps=eps,
             gamma=gamma,
@@ -474,6 +204,9 @@ def solve(
         )
         if found is not None:
             return found
-    problem = _Problem(scene, eps, gamma, ts, jnp.asarray(as_real(accuracy)))
-    options = _Options(solver, bool(dissipation), int(max_steps), adjoint)
-    return _solve(problem, options)
+    from .differentiable import Options, Problem, solve_one_after_the_other
+    from .sequential import solver_of  # and diffrax, 0.5 s
+
+    problem = Problem(scene, eps, gamma, ts, jnp.asarray(as_real(accuracy)))
+    options = Options(solver_of(method), bool(dissipation), int(max_steps), adjoint)
+    return solve_one_after_the_other(problem, options)

@@ -118,9 +118,15 @@ def test_coefficients_import_no_solver():
 def test_planning_a_sweep_imports_no_general_solvers():
     code = (
         "import frictionjax.cost.prediction, frictionjax.sweeps.sweep_cells, sys\n"
+        "import frictionjax.wiggly.trajectory\n"
         "heavy = {'diffrax', 'matplotlib', 'scipy', 'xarray'} & set(sys.modules)\n"
         "assert not heavy, heavy\n"
     )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_study_foretells_its_cost_without_general_solvers():
+    code = "import frictionjax.report.study, sys\nassert 'diffrax' not in sys.modules\n"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

@@ -18,11 +18,10 @@ from .checkpoints import (
     first_of,
     times_of_stops,
 )
+from .own_methods import MAX_STEPS
 from .segment_adjoint import Past
 from .settings import SETTINGS
 from .solvers_by_name import with_tolerance
-
-MAX_STEPS = SETTINGS.max_steps
 
 
 class Trajectory(NamedTuple):

@@ -1,5 +1,8 @@
 """The library's own methods by name: known before diffrax is imported, 0.5 s."""
 
+from .settings import SETTINGS
+
+MAX_STEPS = SETTINGS.max_steps
 OURS = ("auto", "resolved", "windowed")
 
 

@@ -1,0 +1,132 @@
+"""A trajectory with derivatives: every slip after the other, by `diffeqsolve`."""
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array
+
+from .._checks import Real
+from .._compile import Program
+from ..model import Scene
+from .equation import StepPlan, plan_steps
+from .sequential import integrate
+from .solution import Solution
+
+
+class Problem(NamedTuple):
+    """What trajectories have derivatives by."""
+
+    scene: Scene
+    eps: Real
+    gamma: Real
+    ts: Array
+    accuracy: Real
+
+
+class Options(NamedTuple):
+    """How a trajectory is integrated; `adjoint`: of diffrax, None for that of the steps."""
+
+    solver: Any
+    balanced: bool
+    max_steps: int
+    adjoint: Any
+
+
+class _Curve(NamedTuple):
+    """What of a `Solution` has derivatives."""
+
+    z: Array
+    dissipation: Array | None
+    residual: Array | None
+
+
+@Program
+def _planned(problem: Problem) -> StepPlan:
+    scene, eps, gamma, _, accuracy = problem
+    return plan_steps(scene, eps, gamma, accuracy)
+
+
+def _answered(
+    problem: Problem, plan: StepPlan, options: Options, past: Any = None
+) -> tuple:
+    scene, eps, gamma, ts, _ = problem
+    found = integrate(
+        scene,
+        eps,
+        gamma,
+        ts,
+        plan,
+        options.solver,
+        until=ts[-1],
+        balanced=options.balanced,
+        max_steps=options.max_steps,
+        adjoint=options.adjoint,
+        past=past,
+    )
+    counts = {
+        "steps": found.steps,
+        "rejected": found.rejected,
+        "tolerance": plan.tolerance,
+        "dissipation_gap": found.dissipation_gap,
+    }
+    curve = _Curve(found.z, found.dissipation, found.residual)
+    return curve, (found.status, counts), found.past
+
+
+@Program
+def _forth(problem: Problem, plan: StepPlan, options: Options) -> tuple:
+    return _answered(problem, plan, options)
+
+
+@Program
+def _back(
+    problem: Problem, plan: StepPlan, options: Options, past: Any, by: _Curve
+) -> Problem:
+    """Derivatives by the problem of what has those `by` the curve."""
+    moving, still = eqx.partition(problem, eqx.is_inexact_array)
+
+    def curve(moving: Problem) -> _Curve:
+        return _answered(eqx.combine(moving, still), plan, options, past)[0]
+
+    return jax.vjp(curve, moving)[1](by)[0]
+
+
+@eqx.filter_custom_vjp
+def _differentiable(problem: Problem, options: Options) -> tuple:
+    """Forth and back in a program each, kept for later processes as others are.
+
+    Derivatives of one program were traced anew in every process, for 10 s.
+    """
+    return _forth(problem, _planned(problem), options)[:2]
+
+
+@_differentiable.def_fwd
+def _with_past(perturbed: Any, problem: Problem, options: Options) -> tuple:
+    plan = _planned(problem)
+    curve, told, past = _forth(problem, plan, options)
+    return (curve, told), (plan, past, curve)
+
+
+@_differentiable.def_bwd
+def _pulled_back(
+    known: tuple, by: tuple, perturbed: Any, problem: Problem, options: Options
+) -> Problem:
+    plan, past, curve = known
+    whole = jax.tree_util.tree_map(
+        lambda value, by_value: jnp.zeros_like(value) if by_value is None else by_value,
+        curve,
+        by[0],
+    )
+    return _back(problem, plan, options, past, whole)
+
+
+def solve_one_after_the_other(problem: Problem, options: Options) -> Solution:
+    if options.adjoint is None:
+        curve, (status, counts) = _differentiable(problem, options)
+    else:
+        curve, (status, counts), _ = _forth(problem, _planned(problem), options)
+    how = f"resolved, every slip, by {type(options.solver).__name__}"
+    z, dissipation, residual = curve
+    return Solution(problem.ts, z, dissipation, residual, status, counts, how)
