@@ -1,5 +1,6 @@
 """How commands begin, and how what they find is written."""
 
+import gc
 import os
 import sys
 import warnings
@@ -16,6 +17,9 @@ def start() -> None:
     """Ask for what suits a CPU and a shell; before anything is computed."""
     from .._compile import keep_compiled, use_fast_cpu
 
+    # Imports make many objects and little garbage: a study spent an eighth of its time in
+    # looking for it.
+    gc.set_threshold(100_000, 50, 100)
     use_fast_cpu()
     os.environ["MPLBACKEND"] = "Agg"  # heard when it is imported, which can wait
     import jax
