@@ -127,11 +127,13 @@ def never_seen(count, seed):
 
 def called(checkout, cache, *arguments):
     """A worker's answer, or a command's seconds of CPU."""
-    home = {"PYTHONPATH": str(checkout), "XDG_CACHE_HOME": str(cache)}
+    # As installed, with the source compiled once, whatever the shell around says.
+    home = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
+    home |= {"PYTHONPATH": str(checkout), "XDG_CACHE_HOME": str(cache)}
     before = os.times()
     done = subprocess.run(
         [sys.executable, *arguments],
-        env=os.environ | home,
+        env=home,
         capture_output=True,
         text=True,
         cwd=tempfile.mkdtemp(),
