@@ -5,8 +5,10 @@ from typing import Any
 import equinox as eqx
 import jax
 import numpy as np
+from jaxtyping import Array
 
 from .._checks import as_text, is_concrete
+from .._compile import Interpreted
 from .bristle import AbstractBristle
 from .slanted_spring import SlantedSpring
 from .vertical_spring import VerticalSpring
@@ -51,4 +53,9 @@ def swapped_text(bristle: AbstractBristle | None) -> str:
 
 def normal_force(bristle: AbstractBristle) -> float:
     """alpha = F'(0) in N, of known numbers."""
-    return float(jax.grad(bristle.energy)(np.float64(0.0)))
+    return float(_slope_of_energy(bristle, np.float64(0.0)))
+
+
+@Interpreted
+def _slope_of_energy(bristle: AbstractBristle, eta: Array) -> Array:
+    return jax.grad(bristle.energy)(eta)
