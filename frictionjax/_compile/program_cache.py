@@ -1,10 +1,10 @@
 """Programs kept in a folder as they were compiled, so that later processes only load them.
 
 JAX's own cache keeps what XLA makes of a program, found by the program's text: tracing and
-lowering come first, and were 2 s of the 6.5 s of a warm study. (Kept as they were traced,
-they are lowered once more: XXX.) A program is found by the library's source, by the
-processor and by what it is called with: constants of modules that a running process has
-changed are not seen.
+lowering come first, and were 2 s of the 6.5 s of a warm study. (Programs kept as they were
+traced are lowered once more: 18 of a study took 0.8 s to fetch, kept so 0.08 s, in turn on
+one machine.) A program is found by the library's source, by the processor and by what it is
+called with: constants of modules that a running process has changed are not seen.
 """
 
 import contextlib
