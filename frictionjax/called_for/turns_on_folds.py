@@ -8,7 +8,9 @@ stays by what is small, and no estimate that is linear in that bounds its state:
 branch. Of a load `f = g - t^2` that is at g = 1, of a kink `f = g - |t|` at g = 1.0188 (the
 first zero of Ai'), where the ratio of the times is 1.6 and 1.5. With much less force a tip
 stays, with much more it has slipped. A load that turns nearer to a fold than what moves
-the fold, or than half a percent of a well, leaves a tip where wells are flat.
+the fold, or than half a percent of a well, leaves a tip where wells are flat. Where drag
+is not small beside friction within the time `eps^gamma/Phi''` that a tip lags behind, it
+goes over its last folds after the turn, and where the limit turns says nothing of them.
 """
 
 import jax
@@ -23,6 +25,9 @@ from .setting import AWAY, Setting
 # 1.1, 1.0 and 0.54 it is (`pytest -m slow tests/called_for/test_turns_on_folds.py`).
 _DECIDED = 0.5, 2.5
 _WELLS = 40  # that a tip may lag behind
+# Of friction, drag that is not small: at 0.4 of it a tip with 1.6 instead of 1.0 of the
+# force is on the brink, at 2 some that are far from it.
+_DRAGGED = 0.4
 _MOVED = 2.0  # times a change of the force at a fold: as near to it
 _BESIDE = (np.linspace(0.0, 1.0, 801)[1:]) ** 2  # of the way to the next turn
 
@@ -49,8 +54,10 @@ def turns_on_folds(at: Setting, change: float = 0.0) -> Float[np.ndarray, " turn
         well = last + following
         near = max(AWAY * well, _MOVED * change)
         behind = last + well * np.arange(_WELLS)
-        if min(last, following) < near or any(
-            _undecided(at, gap, edges[i], ways, sign) for gap in behind
+        if (
+            min(last, following) < near
+            or _dragged(at, edges[i], ways[0]) > _DRAGGED * _rho(at, sign)
+            or any(_undecided(at, gap, edges[i], ways, sign) for gap in behind)
         ):
             found.append(edges[i])
     return np.array(found)
@@ -68,6 +75,14 @@ def _gaps(at: Setting, edge: float, sign: float) -> tuple[float, float]:
     folds = at.eps * (top + sign * np.array([passed, passed + 1]))
     last, following = (float(at.scene.support.force(jnp.asarray(z))) for z in folds)
     return sign * (here - last), sign * (following - here)
+
+
+def _dragged(at: Setting, turn: float, way: float) -> float:
+    """Viscous force in N on a slide, as long before a turn as a tip lags behind."""
+    viscosity = at.eps**at.gamma
+    lag = min(viscosity / at.softest, way)
+    pull = float(jax.grad(at.scene.load)(jnp.asarray(turn - lag)))
+    return viscosity * abs(pull) / at.softest
 
 
 def _undecided(

@@ -92,18 +92,29 @@ def force_unit(load, bend, eps, gamma):
 
 @pytest.mark.parametrize("kind", [fx.loads.Sine, fx.loads.Triangle])
 @pytest.mark.parametrize(
-    ("gap", "found"), [(0.4, []), (1.0, [1.0]), (1.8, [1.0]), (4.0, [])]
+    ("gap", "found"), [(0.4, []), (1.0, [1.0]), (1.8, [1.0]), (3.4, [])]
 )
 def test_a_tip_with_much_less_force_stays_and_one_with_much_more_has_slipped(
     kind, gap, found
 ):
     """On either side of 1 (`t^2`) and 1.0188 (`|t|`), where the tip stays on the brink."""
     parts = fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0), fx.supports.Spring(1.0)
-    eps, gamma = 1e-2, 0.5
+    eps, gamma = 2e-3, 0.5
     unit = force_unit(kind(0.1 + 50 * eps, 4.0), 0.1 * (2 * np.pi) ** 2, eps, gamma)
     load = kind(0.1 + 50 * eps + gap * unit, 4.0)
     times = turns_on_folds(setting_of(fx.Scene(*parts, load, 2.0), eps, gamma))
     np.testing.assert_allclose(times, found, rtol=1e-6)
+
+
+def test_a_tip_that_drag_carries_over_its_last_folds_is_told_nothing():
+    """Drag `eps^gamma l'/k` as long before the turn as `eps^gamma/k`, beside rho = 0.1."""
+    parts = fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0), fx.supports.Spring(1.0)
+    eps, gamma = 0.05, 0.5
+    for period, found in ((3.0, [0.75]), (300.0, [])):
+        load = fx.loads.Sine(0.1 + eps * 18.07, period)
+        scene = fx.Scene(*parts, load, 0.5 * period)
+        times = turns_on_folds(setting_of(scene, eps, gamma))
+        assert times.tolist() == pytest.approx(found)
 
 
 def test_what_moves_a_fold_tells_how_near_to_it_is_too_near():
