@@ -65,7 +65,8 @@ def higher_order(at: Setting) -> Estimate:
     longer = share * min(at.fastest * at.speed * slip, _FELT * at.eps)
     in_z = max(late, inside) + longer
     source = "eps Q' at the steepest places (Lemma 2)"
-    turns = turns_on_folds(at)
+    moved = float(np.max(forces + at.stiffest * at.eps * place))
+    turns = turns_on_folds(at, moved)
     if turns.size:
         source += f"; no bound where the load turns on a fold, t = {turns[0]:.3g} s"
     return Estimate(in_z, force, 1.0, source)

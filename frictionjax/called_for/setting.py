@@ -42,15 +42,25 @@ class Setting(NamedTuple):
         Outside is further from one than half a percent of the time a well takes, and where
         a tip moves by less than 0.05 eps in that. What makes a slip early is felt so many
         times. With k the stiffness and v the speed of the slide, a tip on the way to a
-        fold, `W' = rho - c (Y - Y*)^2/2`, moves as fast as `v sqrt(100 eps k/c)` then, one
-        that viscosity holds up at the fold as `8e4 eps^gamma v^2/c`.
+        fold, `W' = rho - c (Y - Y*)^2/2`, moves `sqrt(100 eps k/c)` times as fast then: in
+        stiff wells it hardly moves. One that viscosity holds up at the fold moves
+        `8e4 eps^gamma v/c` times as fast. The force is at most `rho_plus + eps^gamma v`, as
+        it grows only where the tip is slower than the slide, and so no tip is faster than
+        `v + (rho_plus - rho_minus)/eps^gamma`.
         """
         bend = self.bend
         if not bend > 0:
             return _FASTEST
         resting = np.sqrt(self.eps * self.stiffest / (2 * AWAY * bend))
-        held_up = 2 * self.eps**self.gamma * self.speed / (AWAY**2 * bend)
-        return float(np.clip(max(resting, held_up), 1.0, _FASTEST))
+        speeds = np.abs(self.data.speed)
+        speeds = speeds[speeds > 0]
+        if not speeds.size:
+            return float(min(resting, _FASTEST))
+        viscous = self.eps**self.gamma * speeds
+        held_up = 2 * viscous / (AWAY**2 * bend)
+        width = float(self.law.rho_plus) - float(self.law.rho_minus)
+        driven = np.minimum(np.maximum(resting, held_up), 1 + width / viscous)
+        return float(min(np.max(driven), _FASTEST))
 
     @property
     def bend(self) -> float:

@@ -17,7 +17,7 @@ from .._checks import (
 )
 from .._compile import waiting
 from ..design import slides_at_speeds
-from ..effects import Engine, noise_among
+from ..effects import CompliantArray, Engine, noise_among
 from ..model import Scene, require_reach, require_told_apart, scene_for
 from ..stochastic import SmoluchowskiStatus, smoluchowski_friction
 from ..supports import Spring
@@ -75,6 +75,9 @@ def friction_curve(
     m^exponent; variables are then over `temperature` and `speed`, and `thermal_energy` is
     `T_eps` in J. `fx.plot.draw_friction_curve` draws them.
 
+    With `effects.CompliantArray` forces are means over its bristles, as attributes say: of
+    a slide that of one, as each does at other times what one does; `peak_force` is lower.
+
     `progress`: a line on standard error where it takes more than two seconds.
 
     Raises `ValueError` for arguments out of range, and supports that are no `Spring`. A
@@ -108,8 +111,10 @@ def friction_curve(
         require(temperatures is None, "temperatures", temperatures, needs)
         with waiting("friction_curve", progress) as tell:
             tell(f"{asked.size} slides")
-            slides = _plain(scene, spring, asked, size, power)
-        return _data_set(slides, drag, coords, numbers)
+            phases = _phases_of(scene)
+            slides = _plain(scene, spring, asked, size, power, phases)
+        found = _data_set(slides, drag, coords, numbers)
+        return found if phases is None else found.assign_attrs(_told_of(phases))
     if temperatures is None:
         energies = np.asarray(float(noise.temperature_at(size)))
     else:
@@ -140,16 +145,31 @@ def _spring_of(scene: Scene) -> Spring:
     raise ValueError(f"scene.support = {type(support).__name__!r}: {springs}")
 
 
+def _phases_of(scene: Scene) -> Float[np.ndarray, " bristles"] | None:
+    array = next((e for e in scene.effects if isinstance(e, CompliantArray)), None)
+    return None if array is None else np.asarray(array.offsets, dtype=float)
+
+
+def _told_of(phases: Float[np.ndarray, " bristles"]) -> dict[str, Any]:
+    forces = "means over bristles: mean_force is that of one, peak_force of their mean"
+    return {"bristles": phases.size, "forces": forces}
+
+
 def _plain(
     scene: Scene,
     spring: Spring,
     speeds: Float[np.ndarray, " speeds"],
     eps: float,
     gamma: float,
+    phases: Float[np.ndarray, " bristles"] | None,
 ) -> _Slides:
-    stiffness = float(spring.stiffness)
     found = slides_at_speeds(
-        scene.potential, speeds, eps=eps, gamma=gamma, stiffness=stiffness
+        scene.potential,
+        speeds,
+        eps=eps,
+        gamma=gamma,
+        stiffness=float(spring.stiffness),
+        phases=phases,
     )
     mean, peak, codes = (np.asarray(v) for v in (found.mean, found.peak, found.code))
     return _Slides(mean, peak, codes, Status, None)

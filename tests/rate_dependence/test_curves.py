@@ -50,6 +50,29 @@ def test_a_slide_has_the_same_bits_alone_and_in_company():
             assert np.array_equal(alone[name].values, found[name].values[[i]])
 
 
+@pytest.mark.slow
+def test_of_a_compliant_array_the_mean_is_that_of_one_and_the_peak_of_a_sum():
+    speeds, phases = np.array([0.3, -0.3, 1.4]), [0.0, 0.2, 0.7]
+    one = fx.friction_curve(scene_with(stiffness=0.7), speeds, 0.05)
+    array = fx.effects.CompliantArray(phases)
+    found = fx.friction_curve(scene_with(array, stiffness=0.7), speeds, 0.05)
+    for name in ("mean_force", "friction_force", "drag", "status"):
+        assert np.array_equal(found[name], one[name])
+    assert np.all(np.abs(found.peak_force) < 0.99 * np.abs(one.peak_force))
+    assert np.all(np.abs(found.peak_force) > np.abs(found.mean_force))
+    assert found.attrs["bristles"] == 3
+    assert found.attrs["forces"].startswith("means over bristles")
+    assert "bristles" not in one.attrs
+    parts = fx.profiles.Sine(0.1), VERTICAL
+    numbers = 0.05, 1.0, 0.21, fx.supports.Spring(0.7)
+    slide = fx.steady_slide(*parts, *numbers, effects=(array,))
+    expected = [float(slide.peak_plus), float(slide.peak_minus)]
+    assert found.peak_force.values[:2] == pytest.approx(expected, rel=1e-7)
+    together = fx.effects.CompliantArray([0.4, 0.4])
+    same = fx.friction_curve(scene_with(together, stiffness=0.7), speeds, 0.05)
+    assert np.array_equal(same.peak_force, one.peak_force)
+
+
 def test_tips_that_never_rest_obey_the_law_of_a_constant_force():
     """`sqrt(rho^2 + (zeta v)^2)`: exact for a sine as k eps falls.
 
@@ -216,9 +239,9 @@ NOISE = fx.effects.Noise(1e-3)
             r"scene\.support = 'Convex': needs a Spring",
         ),
         (
-            scene_with(fx.effects.CompliantArray([0.0, 0.5])),
+            scene_with(fx.effects.CompliantArray(np.linspace(0, 1, 10**6))),
             {},
-            "friction_curve does not do CompliantArray: needs a bristle at a time",
+            r"offsets: number of bristles = 1e\+06: needs at most",
         ),
     ],
 )

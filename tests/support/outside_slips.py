@@ -7,11 +7,16 @@ import frictionjax as fx
 
 
 def times_about(scene, eps):
-    """Times, and those half a percent of a well's time before and after."""
+    """Times, and those half a percent of a well's time before and after.
+
+    The time of a well is `eps Phi''/|l'|`, Phi'' that of the support at rest.
+    """
     duration = float(scene.duration)
     middle = np.linspace(0.003, 0.995, 4000) * duration
     pull = np.abs(jax.vmap(jax.grad(scene.load))(middle))
-    away = np.minimum(0.005 * eps / np.maximum(pull, 1e-3 * pull.max()), duration / 600)
+    stiffness = float(jax.grad(scene.support.force)(0.0))
+    speed = np.maximum(pull, 1e-3 * pull.max()) / stiffness
+    away = np.minimum(0.005 * eps / speed, duration / 600)
     return np.maximum(middle - away, 0.0), middle, middle + away
 
 

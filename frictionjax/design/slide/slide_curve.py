@@ -7,10 +7,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..._checks import Real
+from ..._checks import Real, require
 from ..._compile import Program
 from ...model import AbstractPotential
-from ...wiggly import RODAS5P, dense_output
+from ...wiggly import RODAS5P, Status, dense_output
 from .periodic_orbit import (
     SlideScene,
     find_periodic_orbit,
@@ -19,7 +19,7 @@ from .periodic_orbit import (
     slide_step,
 )
 from .settings import SETTINGS
-from .slide_sides import slide_scene
+from .slide_sides import Sides, slide_scene
 
 _KNOTS = SETTINGS.knots
 _X, _W = np.polynomial.legendre.leggauss(4)
@@ -69,6 +69,26 @@ def array_peaks(
     together = [c.of_many(s * phases) for c, s in zip(curves, signs, strict=True)]
     peaks = signs * [np.max(curve.force) for curve in together]
     return peaks, numbers[-1] * eps * np.array([curve.closed for curve in curves])
+
+
+def with_peaks(
+    one: Sides, peak: Float[np.ndarray, "*slides"], off: Float[np.ndarray, "*slides"]
+) -> Sides:
+    """Slides of arrays: forces of one bristle, but these peaks, off by so much at most, N.
+
+    Where that is more than 1e-5 of a force the code is `STEP_TOO_SMALL`.
+    """
+    code, mean = np.asarray(one.code), np.abs(np.asarray(one.mean))
+    rough = (code == int(Status.OK)) & ~(off <= SETTINGS.added * mean)
+    code = np.where(rough, int(Status.STEP_TOO_SMALL), code)
+    return one._replace(peak=jnp.asarray(peak), code=jnp.asarray(code))
+
+
+def require_bristles(phases: Float[np.ndarray, " n"]) -> None:
+    """Raise `ValueError` for more bristles than curves are summed of."""
+    most = f"at most {SETTINGS.bristles} bristles; fewer at random phases ripple as these"
+    name = "effects.CompliantArray.offsets: number of bristles"
+    require(phases.size <= SETTINGS.bristles, name, phases.size, most)
 
 
 def slide_curves(

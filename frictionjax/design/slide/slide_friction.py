@@ -47,7 +47,7 @@ from ...profiles import AbstractProfile
 from ...supports import Spring
 from ...wiggly import Status
 from .settings import SETTINGS
-from .slide_curve import array_peaks
+from .slide_curve import array_peaks, require_bristles, with_peaks
 from .slide_rows import find_both_ways, slide_table
 from .slide_sides import Sides, one_side
 
@@ -277,20 +277,11 @@ def _of_many(
     phases: Float[np.ndarray, " bristles"],
 ) -> Sides:
     """Means over bristles at these phases, of the slides of one in each cell (n, 2)."""
-    require(phases.size <= SETTINGS.bristles, *_too_many(phases.size))
+    require_bristles(phases)
     if np.all(phases == phases[0]):
         return one
     rows = [array_peaks(table, eps, numbers, phases) for table, eps in cells]
-    peak, off = (np.stack(column) for column in zip(*rows, strict=True))
-    code, mean = np.asarray(one.code), np.abs(np.asarray(one.mean))
-    rough = (code == int(Status.OK)) & ~(off <= SETTINGS.added * mean)
-    code = np.where(rough, int(Status.STEP_TOO_SMALL), code)
-    return one._replace(peak=jnp.asarray(peak), code=jnp.asarray(code))
-
-
-def _too_many(count: int) -> tuple[str, int, str]:
-    most = f"at most {SETTINGS.bristles} bristles; fewer at random phases ripple as these"
-    return "effects.CompliantArray.offsets: number of bristles", count, most
+    return with_peaks(one, *(np.stack(column) for column in zip(*rows, strict=True)))
 
 
 def _forces_of(
