@@ -2,14 +2,14 @@
 
 import itertools
 import time
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from tqdm import tqdm
 
 from .._checks import grid_of, require, require_flags, require_real, require_whole, with_nan
+from .._compile import progress_bar, waiting
 from ..effects import Engine
 from ..model import (
     Scene,
@@ -138,11 +138,12 @@ def _first_calls(
 
 
 def _measured(
-    column: _Column, effort: _Effort, first: float | None, bar: tqdm
+    column: _Column, effort: _Effort, first: float | None, done: Callable[[], None]
 ) -> list[dict[str, float]]:
     """From the loosest accuracy to the tightest, until runs take too long.
 
-    `first`: seconds of a call at the loosest, where there was one.
+    `first`: seconds of a call at the loosest, where there was one. `done`: called after
+    each.
     """
     scene, eps, gamma, when, _, method = column
     cells: list[dict[str, float]] = []
@@ -160,7 +161,7 @@ def _measured(
             cells.append(_values(found, times, column, accuracy))
             slow = times["seconds"] > effort.seconds
             given_up = found.status == Status.TOO_SLOW or slow
-        bar.update()
+        done()
     return cells
 
 
@@ -217,7 +218,7 @@ def work_precision(
     of all together after which no run is begun, but those of the first of ours, which come
     before all others, in all cells; what is left out is NOT_TRIED. None: no bound, and all
     of ours come first.
-    `progress`: a bar on standard error.
+    `progress`: a line on standard error until there are references, then a bar.
 
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took
@@ -281,18 +282,24 @@ def _all_cells(
     grid = list(itertools.product(gamma.tolist(), eps.tolist()))
     columns: dict[tuple[int, int], _Column] = {}
     first: dict[tuple[int, int], float | None] = {}
-    for row, (g, e) in enumerate(grid):
-        when = instants(scene, e, ts)
-        longer = _first_calls(scene, e, g, when.ts, names, effort)
-        truth = reference(scene, e, g, when, float(effort.accuracies[-1]))
-        for index, name in enumerate(names):
-            columns[row, index] = _Column(scene, e, g, when, truth, name)
-            first[row, index] = longer[index]
-    count = len(columns) * effort.accuracies.size
+    with waiting("work_precision", progress) as tell:
+        for row, (g, e) in enumerate(grid):
+            tell(f"first calls and a reference, gamma = {g:.4g}, eps = {e:.4g} m")
+            when = instants(scene, e, ts)
+            longer = _first_calls(scene, e, g, when.ts, names, effort)
+            truth = reference(scene, e, g, when, float(effort.accuracies[-1]))
+            for index, name in enumerate(names):
+                columns[row, index] = _Column(scene, e, g, when, truth, name)
+                first[row, index] = longer[index]
     found: dict[tuple[int, int], list[dict]] = {}
-    with tqdm(total=count, disable=not progress, desc="runs") as bar:
+    with progress_bar("runs", progress) as bar:
+        share = 1.0 / (len(columns) * effort.accuracies.size)
+
+        def told() -> None:
+            bar.update(share)
+
         for place in sorted(columns, key=lambda at: not effort.goes_first(names[at[1]])):
-            found[place] = _measured(columns[place], effort, first[place], bar)
+            found[place] = _measured(columns[place], effort, first[place], told)
     cells = [run for place in columns for run in found[place]]
     return cells, [columns[row, 0].truth for row in range(len(grid))]
 

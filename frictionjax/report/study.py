@@ -124,7 +124,7 @@ def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
     seconds = time.perf_counter() - started
     from .study_results import write_results
 
-    return write_results(job, data, folder, seconds)
+    return write_results(job, data, folder, seconds, progress)
 
 
 def _import_results() -> None:
