@@ -64,6 +64,7 @@ class _Effort(NamedTuple):
     seconds: float
     until: float  # on the clock of `perf_counter`: nothing begins later
     anyway: Any  # the method that is measured in any case
+    loosest: tuple  # SciPy's that are so at the loosest accuracy
 
     def goes_first(self, method: Any) -> bool:
         """Whether it comes before all others: ours, one of them where time is short."""
@@ -74,7 +75,7 @@ class _Effort(NamedTuple):
 
         The first of ours always may: what others take is to be held against something.
         """
-        if method is self.anyway:
+        if method is self.anyway or (first and method in self.loosest):
             return True
         compiled = method in SCIPY or not first
         needs = 0.0 if compiled else SETTINGS.compiles
@@ -154,6 +155,8 @@ def _measured(
             cells.append(_NOTHING)
         else:
             run = runner(scene, eps, gamma, when.ts, accuracy, method, effort.seconds)
+            if cells and method in SCIPY:
+                first = 0.0  # rates and Jacobian are compiled: the next run is a warm one
             found, times = timed(run, effort.repeats, effort.seconds, first)
             first = None
             if method in SCIPY:
@@ -183,6 +186,17 @@ def _required(methods: Any, accuracies: Any, repeats: Any, seconds: Any):
     return names, labels, asked
 
 
+def _required_anyway(anyway: Any, names: list) -> tuple[str, ...]:
+    given = [anyway] if isinstance(anyway, str) else anyway
+    known = [name for name in names if isinstance(name, str) and name in SCIPY]
+    allowed = f"some of SciPy's among methods: {', '.join(known) or 'none'}"
+    listed = isinstance(given, Iterable) and not isinstance(given, Mapping)
+    require(listed, "anyway", anyway, allowed)
+    asked = list(given)
+    require(all(name in known for name in asked), "anyway", anyway, allowed)
+    return tuple(str(name) for name in asked)
+
+
 def _is_one(methods: Any) -> bool:
     return isinstance(methods, str) or not isinstance(methods, Iterable)
 
@@ -204,6 +218,7 @@ def work_precision(
     seconds: float = 10.0,
     total: float | None = None,
     progress: bool = False,
+    anyway: Any = (),
 ) -> xr.Dataset:
     """Measure what accuracy costs: time and error of methods on a `scene`, cell by cell.
 
@@ -217,7 +232,8 @@ def work_precision(
     after a million steps for each second, ours, which cannot be, go on. `total`: seconds
     of all together after which no run is begun, but those of the first of ours, which come
     before all others, in all cells; what is left out is NOT_TRIED. None: no bound, and all
-    of ours come first.
+    of ours come first. `anyway`: of `methods`, those of SciPy's that are run at the loosest
+    accuracy after `total` too, so that ours are held against one.
     `progress`: a line on standard error until there are references, then a bar.
 
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
@@ -257,7 +273,8 @@ def work_precision(
     ts = np.asarray(require_times(scene, ts, SETTINGS.times))
     until = float("inf") if total is None else time.perf_counter() + float(total)
     ours = next((name for name in names if is_ours(name)), None)
-    effort = _Effort(asked, int(repeats), float(seconds), until, ours)
+    loosest = _required_anyway(anyway, names)
+    effort = _Effort(asked, int(repeats), float(seconds), until, ours, loosest)
     cells, truths = _all_cells(scene, eps, gamma, ts, names, effort, progress)
     shape = gamma.size, eps.size, len(names), asked.size
     data = _dataset(cells, truths, shape)
