@@ -8,7 +8,7 @@ import xarray as xr
 
 from .._checks import as_real, require_flags, require_numbers, with_nan
 from .._compile import waiting
-from .._text import ResultTable
+from .._text import ResultTable, SelfDrawn
 from ..called_for import (
     Estimate,
     Setting,
@@ -33,11 +33,16 @@ _COLUMNS = {
 }
 
 
-class Explanation(NamedTuple):
-    """`equation`: text. `effects`: data set over `effect`, see `explain`."""
-
+class _Parts(NamedTuple):
     equation: str
     effects: xr.Dataset
+
+
+class Explanation(SelfDrawn, _Parts):
+    """`equation`: text. `effects`: data set over `effect`, see `explain`."""
+
+    __slots__ = ()
+    _picture = "draw_explanation"
 
     def table(self) -> ResultTable:
         """A line for each effect: what it changes, whether it is called for, its cost.
@@ -123,7 +128,8 @@ def explain(
     for name, (units, meaning) in _COLUMNS.items():
         effects[name].attrs = {"long_name": meaning} | ({"units": units} if units else {})
     text = composed_equation(scene, size, power).text()
-    return Explanation(text, effects.assign_attrs(accuracy=float(as_real(accuracy))))
+    asked_for = {"eps": size, "gamma": power, "accuracy": float(as_real(accuracy))}
+    return Explanation(text, effects.assign_attrs(asked_for))
 
 
 _NUMBERS = Estimate._fields

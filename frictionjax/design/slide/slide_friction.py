@@ -25,7 +25,7 @@ from ..._checks import (
     with_nan,
 )
 from ..._compile import Program, padded_size, waiting
-from ..._text import Named, ShownNumbers
+from ..._text import Named, SelfDrawn, ShownNumbers
 from ...bristles import AbstractBristle
 from ...effects import (
     AbstractEffect,
@@ -55,7 +55,7 @@ from .slide_sides import Sides, one_side
 SLIDE_FORCES = ("mean", "peak")  # of a slide, that designs may ask for
 
 
-class SteadySlide(ShownNumbers, CodedResult, eqx.Module):
+class SteadySlide(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
     """Forces in the spring while a tip slides steadily, of the shape of `eps`.
 
     `mean_plus`, `peak_plus` (N, > 0): mean over time, and largest, of `l - Phi'(z)` in a
@@ -72,6 +72,7 @@ class SteadySlide(ShownNumbers, CodedResult, eqx.Module):
     code_plus: Real
     code_minus: Real
     _outcomes = Status
+    _picture = "draw_steady_slide"
 
     @property
     def ratio(self) -> Real:
