@@ -16,7 +16,7 @@ from ..sweeps import sweep
 from ..wiggly import is_ours, prepare_cells, require_accuracy, solver_of
 from .job import Job
 
-_TIMES = 401  # pictures follow the slips of the larger eps
+_TIMES = 601  # close-ups of pictures want 8 in a slip: 8.8 at the default's largest eps
 _TIMES_A_ROW = 101  # of a map: nobody draws each, and files of all would be large
 
 
