@@ -11,7 +11,7 @@ _DECADES = 2.0  # beside what is drawn: bars are logarithmic, and begin somewher
 
 @styled
 def draw_explanation(explained: Any, ax: Any = None) -> Any:
-    """Draw what `explain` found: what each effect changes in the state, at most.
+    """Draw what `explain` has `explained`: what each effect changes in the state at most.
 
     A Figure, or `ax` where it is drawn into that.
 

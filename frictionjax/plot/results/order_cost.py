@@ -10,7 +10,7 @@ from ..style import GUIDE, LIMIT, axes_of, colour, styled
 
 @styled
 def draw_order_cost(found: Any, ax: Any = None) -> Any:
-    """Draw what `order_cost` found: half widths of intervals over seconds, grid by grid.
+    """Draw what `order_cost` has `found`: half widths of intervals over seconds, by grid.
 
     A Figure, or `ax` where it is drawn into that.
 

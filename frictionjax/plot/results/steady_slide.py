@@ -10,7 +10,7 @@ from ..style import GUIDE, axes_of, colour, styled
 
 @styled
 def draw_steady_slide(slide: Any, ax: Any = None) -> Any:
-    """Draw what `steady_slide` found: mean and peak forces over eps, both ways.
+    """Draw a `slide` of `steady_slide`: mean and peak forces over eps, both ways.
 
     A Figure, or `ax` where it is drawn into that.
 
