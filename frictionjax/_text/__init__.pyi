@@ -1,4 +1,5 @@
 from .drawn_results import SelfDrawn as SelfDrawn
+from .drawn_results import require_no_axes as require_no_axes
 from .encoding import decoded as decoded
 from .result_table import ResultTable as ResultTable
 from .result_table import in_columns as in_columns

@@ -6,6 +6,12 @@ from typing import Any, ClassVar
 from .._checks import is_known, require
 
 
+def require_no_axes(ax: Any) -> None:
+    """Raise `ValueError` for axes where a picture has several of its own."""
+    needs = "None, as the picture has several axes: figure takes a Figure or SubFigure"
+    require(ax is None, "ax", ax, needs)
+
+
 class SelfDrawn:
     """Base of results with a picture of one axis.
 

@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
-from .._checks import as_real, is_concrete, require, require_real, with_nan
+from .._checks import as_real, is_concrete, require, require_flags, require_real, with_nan
+from .._compile import waiting
 from .._text import ResultTable, SelfDrawn
 from ..bristles import AbstractBristle, AngularSpring, Stance
 from ..coefficients import Coefficients
@@ -103,6 +104,8 @@ def nap(
     profile: AbstractProfile,
     bristle: AbstractBristle,
     bending_stiffness: Any = None,
+    *,
+    progress: bool = False,
 ) -> Nap:
     """Friction and axial force of a bristle moved with and against its nap, eps -> 0.
 
@@ -121,6 +124,8 @@ def nap(
     `bending_stiffness` B in N m^2: the critical load of the rod between hinges, as it
     turns, is `pi^2 B/L^2`.
 
+    `progress`: a line on standard error where it takes more than two seconds.
+
     Returns a `Nap`: `.rho_with`, `.rho_against`, `.rho_flipped` in N, > 0; `.axial_with`
     and its like in N, traction positive; `.window`, `.turns_over`, `.message`.
 
@@ -134,13 +139,17 @@ def nap(
     against/with = 0.730492
     only a rod on an angular spring, AngularSpring, can turn over
     """
-    law = friction(profile, bristle)
-    known = is_concrete(law, bristle)
-    require(known, "bristle", "traced numbers", "known ones: friction has derivatives")
-    stance = bristle.geometry(jnp.zeros(()))
-    critical = _critical_load(bristle, bending_stiffness)
-    slides = _slides(law, stance)
-    flipped, why = turned_over(profile, bristle, law)
+    require_flags(progress=progress)
+    with waiting("nap", progress) as tell:
+        tell("as it stands")
+        law = friction(profile, bristle)
+        known = is_concrete(law, bristle)
+        require(known, "bristle", "traced numbers", "known ones: friction has derivatives")
+        stance = bristle.geometry(jnp.zeros(()))
+        critical = _critical_load(bristle, bending_stiffness)
+        slides = _slides(law, stance)
+        tell("turned over")
+        flipped, why = turned_over(profile, bristle, law)
     loads = None if flipped is None else turning_window(slides, flipped)
     notes = [_stands(stance)]
     if flipped is None or loads is None:

@@ -2,14 +2,14 @@
 
 import itertools
 import time
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from tqdm import tqdm
 
 from .._checks import grid_of, require, require_flags, require_real, require_whole, with_nan
+from .._compile import progress_bar, waiting
 from ..effects import Engine
 from ..model import (
     Scene,
@@ -64,6 +64,7 @@ class _Effort(NamedTuple):
     seconds: float
     until: float  # on the clock of `perf_counter`: nothing begins later
     anyway: Any  # the method that is measured in any case
+    loosest: tuple  # SciPy's that are so at the loosest accuracy
 
     def goes_first(self, method: Any) -> bool:
         """Whether it comes before all others: ours, one of them where time is short."""
@@ -74,7 +75,7 @@ class _Effort(NamedTuple):
 
         The first of ours always may: what others take is to be held against something.
         """
-        if method is self.anyway:
+        if method is self.anyway or (first and method in self.loosest):
             return True
         compiled = method in SCIPY or not first
         needs = 0.0 if compiled else SETTINGS.compiles
@@ -138,11 +139,12 @@ def _first_calls(
 
 
 def _measured(
-    column: _Column, effort: _Effort, first: float | None, bar: tqdm
+    column: _Column, effort: _Effort, first: float | None, done: Callable[[], None]
 ) -> list[dict[str, float]]:
     """From the loosest accuracy to the tightest, until runs take too long.
 
-    `first`: seconds of a call at the loosest, where there was one.
+    `first`: seconds of a call at the loosest, where there was one. `done`: called after
+    each.
     """
     scene, eps, gamma, when, _, method = column
     cells: list[dict[str, float]] = []
@@ -153,6 +155,8 @@ def _measured(
             cells.append(_NOTHING)
         else:
             run = runner(scene, eps, gamma, when.ts, accuracy, method, effort.seconds)
+            if cells and method in SCIPY:
+                first = 0.0  # rates and Jacobian are compiled: the next run is a warm one
             found, times = timed(run, effort.repeats, effort.seconds, first)
             first = None
             if method in SCIPY:
@@ -160,7 +164,7 @@ def _measured(
             cells.append(_values(found, times, column, accuracy))
             slow = times["seconds"] > effort.seconds
             given_up = found.status == Status.TOO_SLOW or slow
-        bar.update()
+        done()
     return cells
 
 
@@ -180,6 +184,17 @@ def _required(methods: Any, accuracies: Any, repeats: Any, seconds: Any):
     require_whole("repeats", repeats)
     require_real("seconds", seconds, "seconds > 0", lambda s: s > 0)
     return names, labels, asked
+
+
+def _required_anyway(anyway: Any, names: list) -> tuple[str, ...]:
+    given = [anyway] if isinstance(anyway, str) else anyway
+    known = [name for name in names if isinstance(name, str) and name in SCIPY]
+    allowed = f"some of SciPy's among methods: {', '.join(known) or 'none'}"
+    listed = isinstance(given, Iterable) and not isinstance(given, Mapping)
+    require(listed, "anyway", anyway, allowed)
+    asked = list(given)
+    require(all(name in known for name in asked), "anyway", anyway, allowed)
+    return tuple(str(name) for name in asked)
 
 
 def _is_one(methods: Any) -> bool:
@@ -203,6 +218,7 @@ def work_precision(
     seconds: float = 10.0,
     total: float | None = None,
     progress: bool = False,
+    anyway: Any = (),
 ) -> xr.Dataset:
     """Measure what accuracy costs: time and error of methods on a `scene`, cell by cell.
 
@@ -216,8 +232,9 @@ def work_precision(
     after a million steps for each second, ours, which cannot be, go on. `total`: seconds
     of all together after which no run is begun, but those of the first of ours, which come
     before all others, in all cells; what is left out is NOT_TRIED. None: no bound, and all
-    of ours come first.
-    `progress`: a bar on standard error.
+    of ours come first. `anyway`: of `methods`, those of SciPy's that are run at the loosest
+    accuracy after `total` too, so that ours are held against one.
+    `progress`: a line on standard error until there are references, then a bar.
 
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
     `seconds_low`, `seconds_high`, `runs`, `compile_seconds` (what the first call took
@@ -256,7 +273,8 @@ def work_precision(
     ts = np.asarray(require_times(scene, ts, SETTINGS.times))
     until = float("inf") if total is None else time.perf_counter() + float(total)
     ours = next((name for name in names if is_ours(name)), None)
-    effort = _Effort(asked, int(repeats), float(seconds), until, ours)
+    loosest = _required_anyway(anyway, names)
+    effort = _Effort(asked, int(repeats), float(seconds), until, ours, loosest)
     cells, truths = _all_cells(scene, eps, gamma, ts, names, effort, progress)
     shape = gamma.size, eps.size, len(names), asked.size
     data = _dataset(cells, truths, shape)
@@ -281,18 +299,24 @@ def _all_cells(
     grid = list(itertools.product(gamma.tolist(), eps.tolist()))
     columns: dict[tuple[int, int], _Column] = {}
     first: dict[tuple[int, int], float | None] = {}
-    for row, (g, e) in enumerate(grid):
-        when = instants(scene, e, ts)
-        longer = _first_calls(scene, e, g, when.ts, names, effort)
-        truth = reference(scene, e, g, when, float(effort.accuracies[-1]))
-        for index, name in enumerate(names):
-            columns[row, index] = _Column(scene, e, g, when, truth, name)
-            first[row, index] = longer[index]
-    count = len(columns) * effort.accuracies.size
+    with waiting("work_precision", progress) as tell:
+        for row, (g, e) in enumerate(grid):
+            tell(f"first calls and a reference, gamma = {g:.4g}, eps = {e:.4g} m")
+            when = instants(scene, e, ts)
+            longer = _first_calls(scene, e, g, when.ts, names, effort)
+            truth = reference(scene, e, g, when, float(effort.accuracies[-1]))
+            for index, name in enumerate(names):
+                columns[row, index] = _Column(scene, e, g, when, truth, name)
+                first[row, index] = longer[index]
     found: dict[tuple[int, int], list[dict]] = {}
-    with tqdm(total=count, disable=not progress, desc="runs") as bar:
+    with progress_bar("runs", progress) as bar:
+        share = 1.0 / (len(columns) * effort.accuracies.size)
+
+        def told() -> None:
+            bar.update(share)
+
         for place in sorted(columns, key=lambda at: not effort.goes_first(names[at[1]])):
-            found[place] = _measured(columns[place], effort, first[place], bar)
+            found[place] = _measured(columns[place], effort, first[place], told)
     cells = [run for place in columns for run in found[place]]
     return cells, [columns[row, 0].truth for row in range(len(grid))]
 

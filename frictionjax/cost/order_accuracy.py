@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .._checks import grid_of, require, require_flags, require_real, with_nan
+from .._text import SelfDrawn
 from ..convergence import STATE, Fit, fit_with_law
 from ..effects import Engine
 from ..model import Scene, scene_for
@@ -42,7 +43,14 @@ class EpsGrid(NamedTuple):
         return np.geomspace(self.eps_max, self.eps_min, self.points)
 
 
-class OrderCost(NamedTuple):
+class _Grids(NamedTuple):
+    grids: list[EpsGrid]
+    choice: EpsGrid | None
+    success: bool
+    message: str
+
+
+class OrderCost(SelfDrawn, _Grids):
     """Result of `order_cost`.
 
     `grids`: all that were looked at, by time; `front`: the confirmed ones that no cheaper
@@ -51,10 +59,8 @@ class OrderCost(NamedTuple):
     tell apart; None where `success` is false.
     """
 
-    grids: list[EpsGrid]
-    choice: EpsGrid | None
-    success: bool
-    message: str
+    __slots__ = ()
+    _picture = "draw_order_cost"
 
     @property
     def front(self) -> list[EpsGrid]:

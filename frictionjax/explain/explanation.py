@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from .._checks import as_real, require_numbers, with_nan
-from .._text import ResultTable
+from .._checks import as_real, require_flags, require_numbers, with_nan
+from .._compile import waiting
+from .._text import ResultTable, SelfDrawn
 from ..called_for import (
     Estimate,
     Setting,
@@ -32,11 +33,16 @@ _COLUMNS = {
 }
 
 
-class Explanation(NamedTuple):
-    """`equation`: text. `effects`: data set over `effect`, see `explain`."""
-
+class _Parts(NamedTuple):
     equation: str
     effects: xr.Dataset
+
+
+class Explanation(SelfDrawn, _Parts):
+    """`equation`: text. `effects`: data set over `effect`, see `explain`."""
+
+    __slots__ = ()
+    _picture = "draw_explanation"
 
     def table(self) -> ResultTable:
         """A line for each effect: what it changes, whether it is called for, its cost.
@@ -69,7 +75,14 @@ def _number(value: Any) -> str:
 
 
 @with_nan
-def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explanation:
+def explain(
+    scene: Scene,
+    eps: Any,
+    gamma: Any,
+    accuracy: Any = 1e-3,
+    *,
+    progress: bool = False,
+) -> Explanation:
     """What a scene simulates, and which effects matter at an accuracy (in eps).
 
     `scene` at one `eps` (m) and one `gamma`; `accuracy` as in `solve`.
@@ -81,6 +94,8 @@ def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explana
     it), `cost` (steps with it over steps without, by rules and laws of the schemes) and
     `source`. Rows: "higher order", what `LeadingOrder` leaves out; "finite speed", what
     viscosity adds to dry friction; the scene's effects.
+
+    `progress`: a line on standard error where it takes more than two seconds.
 
     Raises `ValueError` for arguments out of range, and as `solve` does.
 
@@ -95,23 +110,15 @@ def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explana
     needs = "one number gamma > 0"
     require_numbers("gamma", gamma, needs, lambda g: (g > 0) & (g.ndim == 0))
     require_accuracy(accuracy)
+    require_flags(progress=progress)
     size, power = float(as_real(eps)), float(as_real(gamma))
-    at = setting_of(scene, size, power)
-    if at is None:
-        raise ValueError("scene.load turns too often: needs slides, to be told of them")
-    rows = {"higher order": _rest_of(scene, at), "finite speed": finite_speed(at)}
-    called = {name: _matters(row, at, accuracy) for name, row in rows.items()}
-    asked = {"higher order": not _leading(scene), "finite speed": True}
-    for effect in scene.effects:
-        if not isinstance(effect, LeadingOrder):
-            name = type(effect).__name__
-            rows[name], asked[name] = estimate_of(effect, at), True
-            if np.isnan(rows[name].cost):
-                cost = steps_ratio(effect, scene, at, float(as_real(accuracy)))
-                rows[name] = rows[name]._replace(cost=cost)
-            known = not np.isnan(rows[name].in_z)
-            reads = effect.stage == Stage.READING
-            called[name] = _matters(rows[name], at, accuracy) if known else not reads
+    with waiting("explain", progress) as tell:
+        tell("folds, slides and speeds")
+        at = setting_of(scene, size, power)
+        if at is None:
+            raise ValueError("scene.load turns too often: needs slides, to be told of them")
+        tell("what effects change")
+        rows, called, asked = _estimates(scene, at, float(as_real(accuracy)))
     columns = {name: [getattr(row, name) for row in rows.values()] for name in _NUMBERS}
     columns |= {"called_for": list(called.values()), "asked": list(asked.values())}
     effects = xr.Dataset(
@@ -121,10 +128,31 @@ def explain(scene: Scene, eps: Any, gamma: Any, accuracy: Any = 1e-3) -> Explana
     for name, (units, meaning) in _COLUMNS.items():
         effects[name].attrs = {"long_name": meaning} | ({"units": units} if units else {})
     text = composed_equation(scene, size, power).text()
-    return Explanation(text, effects.assign_attrs(accuracy=float(as_real(accuracy))))
+    asked_for = {"eps": size, "gamma": power, "accuracy": float(as_real(accuracy))}
+    return Explanation(text, effects.assign_attrs(asked_for))
 
 
 _NUMBERS = Estimate._fields
+
+
+def _estimates(
+    scene: Scene, at: Setting, accuracy: float
+) -> tuple[dict[str, Estimate], dict[str, bool], dict[str, bool]]:
+    """By name: the estimate, whether it is called for, whether the scene has it."""
+    rows = {"higher order": _rest_of(scene, at), "finite speed": finite_speed(at)}
+    called = {name: _matters(row, at, accuracy) for name, row in rows.items()}
+    asked = {"higher order": not _leading(scene), "finite speed": True}
+    for effect in scene.effects:
+        if not isinstance(effect, LeadingOrder):
+            name = type(effect).__name__
+            rows[name], asked[name] = estimate_of(effect, at), True
+            if np.isnan(rows[name].cost):
+                cost = steps_ratio(effect, scene, at, accuracy)
+                rows[name] = rows[name]._replace(cost=cost)
+            known = not np.isnan(rows[name].in_z)
+            reads = effect.stage == Stage.READING
+            called[name] = _matters(rows[name], at, accuracy) if known else not reads
+    return rows, called, asked
 
 
 def _leading(scene: Scene) -> bool:
@@ -140,5 +168,5 @@ def _rest_of(scene: Scene, at: Setting) -> Estimate:
     return higher_order(at._replace(scene=whole))
 
 
-def _matters(row: Estimate, at: Setting, accuracy: Any) -> bool:
-    return bool(row.in_z > float(as_real(accuracy)) * at.eps)
+def _matters(row: Estimate, at: Setting, accuracy: float) -> bool:
+    return bool(row.in_z > accuracy * at.eps)

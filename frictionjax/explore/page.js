@@ -151,7 +151,9 @@ function drawCoefficients(ctx, box, colours, shown) {
     ctx.fillStyle = colours.ink;
     ctx.font = FONT;
     ctx.textAlign = "left";
-    ctx.fillText(name, left, top + 12);
+    const room = width - ctx.measureText(text).width - 20; // bold, and a gap
+    const fits = ctx.measureText(name).width < room;
+    ctx.fillText(fits ? name : name.split(",")[0], left, top + 12);
     ctx.font = `bold ${FONT}`;
     ctx.textAlign = "right";
     ctx.fillText(text, left + width, top + 12);

@@ -57,8 +57,11 @@ _KEY = (
 
 @styled
 def draw_convergence(
-    dataset: xr.Dataset, orders: xr.Dataset, curves: xr.Dataset | None = None
-) -> Figure:
+    dataset: xr.Dataset,
+    orders: xr.Dataset,
+    curves: xr.Dataset | None = None,
+    figure: Any = None,
+) -> Any:
     r"""Draw the errors of a sweep against eps, log-log, one line for each gamma.
 
     `orders`, `curves`: those of `study(dataset)`; without the latter what was fitted is
@@ -66,6 +69,7 @@ def draw_convergence(
     line rests on, hollow ones are outside; a cross on the axis is a failed cell. Dotted
     guides have the slope `eps^beta` of the lemmas. A second panel shows the dissipation,
     where the data set has it; of a rod that turns over others show distances of graphs.
+    `figure`: a matplotlib Figure or SubFigure to draw into, which is returned.
 
     >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0)
     >>> figure = fx.plot.draw_convergence(data, fx.study(data).orders)
@@ -76,7 +80,7 @@ def draw_convergence(
     dataset = whole_grid(dataset)
     chosen = _GRAPHS if "graph_error" in dataset else _PANELS
     panels = [panel for panel in chosen if panel[1] in dataset]
-    figure, grid = new_figure(1, len(panels), 5.4 * len(panels), 5.2)
+    drawn, grid = new_figure(1, len(panels), 5.4 * len(panels), 5.2, figure)
     for axes, (prefix, name, label, title) in zip(grid[0], panels, strict=True):
         for index, gamma in enumerate(dataset.gamma.values):
             cells, fit = dataset.sel(gamma=gamma), _fit(orders.sel(gamma=gamma), prefix)
@@ -92,9 +96,10 @@ def draw_convergence(
             _guides(axes, dataset)
         _fewer_ticks(axes)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
-    _make_room(figure)
-    figure.supxlabel(_KEY, fontsize=9, color="#666666")
-    return figure
+    if figure is None:
+        _make_room(drawn)
+    drawn.supxlabel(_KEY, fontsize=9, color="#666666")
+    return drawn
 
 
 def _make_room(figure: Figure) -> None:

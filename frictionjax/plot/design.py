@@ -3,7 +3,6 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from ..profiles import Fourier
 from .style import GUIDE, LIMIT, colour, marker, new_figure, styled
@@ -14,25 +13,26 @@ _FAMILY_LOOK = {"color": GUIDE, "linewidth": 0.8, "alpha": 0.7}
 
 
 @styled
-def draw_profile_fit(fit: Any, family: int = _FAMILY) -> Figure:
+def draw_profile_fit(fit: Any, family: int = _FAMILY, figure: Any = None) -> Any:
     """Draw the result of `fit_profile`, `fit`.
 
     Above: heights and slopes of the surface, with `family` others that have the same
     coefficients in grey and the extreme slopes that the coefficients fix. Below: bending
     energy of every start, best first, and coefficients achieved against targets.
+    `figure`: a matplotlib Figure or SubFigure to draw into, which is returned.
 
     >>> fit = fx.fit_profile(fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05))
     >>> [axes.get_xlabel() for axes in fx.plot.draw_profile_fit(fit, family=3).axes]
     ['y (periods)', 'y (periods)', 'start, best first (1)', 'target (N)']
     """
-    figure, grid = new_figure(2, 2, 10.0, 7.2)
+    drawn, grid = new_figure(2, 2, 10.0, 7.2, figure)
     others = fit.family(family)
     _heights(grid[0, 0], fit, others)
     _slopes(grid[0, 1], fit, others)
     _waterfall(grid[1, 0], fit)
     _targets(grid[1, 1], fit)
-    figure.suptitle(_sentence(fit), x=0.01, ha="left", fontsize=11)
-    return figure
+    drawn.suptitle(_sentence(fit), x=0.01, ha="left", fontsize=11)
+    return drawn
 
 
 def _sentence(fit: Any) -> str:

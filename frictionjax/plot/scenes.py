@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from .style import LIMIT, colour, new_figure, styled
 
@@ -14,12 +13,13 @@ _WIDTH = 0.25  # of the cloud of scenes at each gamma
 
 
 @styled
-def draw_scenes(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
+def draw_scenes(dataset: xr.Dataset, orders: xr.Dataset, figure: Any = None) -> Any:
     """Draw the errors of several scenes against eps, and their orders against gamma.
 
     `orders`: those of `study(dataset)`. On the left each scene's errors as thin lines, the
     median and the band that holds 90% of the scenes; on the right a point for each scene,
     a line at the median, crosses at the orders that the laws predict.
+    `figure`: a matplotlib Figure or SubFigure to draw into, which is returned.
 
     >>> smooth = scene.replace(profile=fx.profiles.Sine(slope=0.05))
     >>> data = fx.sweep([scene, smooth], eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0)
@@ -27,7 +27,7 @@ def draw_scenes(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
     >>> print(figure.axes[1].get_ylabel())
     order of convergence
     """
-    figure, ((errors, spread),) = new_figure(1, 2, 10.8, 4.8)
+    drawn, ((errors, spread),) = new_figure(1, 2, 10.8, 4.8, figure)
     for index, gamma in enumerate(dataset.gamma.values):
         _errors(errors, dataset.sel(gamma=gamma), index)
         _orders(spread, orders.sel(gamma=gamma), index)
@@ -50,7 +50,7 @@ def draw_scenes(dataset: xr.Dataset, orders: xr.Dataset) -> Figure:
     )
     spread.plot([], [], "x", color=LIMIT, label="predicted by the law, scene by scene")
     spread.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
-    return figure
+    return drawn
 
 
 def _errors(axes: Any, cells: xr.Dataset, index: int) -> None:

@@ -3,26 +3,26 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from .design import against, drawn_series
 from .style import LIMIT, colour, marker, new_figure, styled
 
 
 @styled
-def draw_slide_profile_fit(fit: Any) -> Figure:
+def draw_slide_profile_fit(fit: Any, figure: Any = None) -> Any:
     """Draw the result of `fit_slide_profile`, `fit`.
 
     Heights and slopes of the surface, and dashed those of the limit design for the same
     targets, whose slides miss them; how far each design's slides were from the forces
     that it was made for; forces of the slides against the targets.
+    `figure`: a matplotlib Figure or SubFigure to draw into, which is returned.
 
     >>> wanted = fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05)
     >>> figure = fx.plot.draw_slide_profile_fit(fx.fit_slide_profile(wanted, eps=0.01))
     >>> [axes.get_xlabel() for axes in figure.axes]
     ['y (periods)', 'y (periods)', 'design', '|force| wanted (N)']
     """
-    figure, grid = new_figure(2, 2, 10.0, 7.2)
+    drawn, grid = new_figure(2, 2, 10.0, 7.2, figure)
     _surfaces(grid[0, 0], fit, 0, "height w (periods)", "Surface")
     _surfaces(grid[0, 1], fit, 1, "slope w' (1)", "Slopes")
     _history(grid[1, 0], fit)
@@ -30,8 +30,8 @@ def draw_slide_profile_fit(fit: Any) -> Figure:
     eps = float(fit.slides[0].eps)
     sentence = fit.status.name.replace("_", " ").lower()
     sentence += f"; {fit.force} forces of steady slides at eps = {eps:.4g} m"
-    figure.suptitle(sentence, x=0.01, ha="left", fontsize=11)
-    return figure
+    drawn.suptitle(sentence, x=0.01, ha="left", fontsize=11)
+    return drawn
 
 
 def _surfaces(axes: Any, fit: Any, order: int, label: str, title: str) -> None:

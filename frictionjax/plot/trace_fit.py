@@ -4,7 +4,6 @@ from typing import Any
 
 import jax
 import numpy as np
-from matplotlib.figure import Figure
 
 from .style import GUIDE, LIMIT, STRIP, colour, new_figure, styled
 
@@ -14,13 +13,14 @@ _NAMES = {"force": "force $\\ell - \\Phi'(z)$ (N)", "z": "state z (m)"}
 
 
 @styled
-def draw_trace_fit(fit: Any, truth: Any = None) -> Figure:
+def draw_trace_fit(fit: Any, truth: Any = None, figure: Any = None) -> Any:
     """Draw the result of `fit_trace`, `fit`.
 
     Left: the trace and what the surface found gives, and below residuals in standard
     deviations. Right: the slope w' with twice its standard error, phases that the trace
     does not determine in grey, and below where the tip was at the samples. `truth`: a
-    profile to draw beside it.
+    profile to draw beside it. `figure`: a matplotlib Figure or SubFigure to draw into,
+    which is returned.
 
     >>> trace = fx.simulate_trace(scene, eps=0.1, noise=0.001)
     >>> fit = fx.fit_trace(trace, scene, eps=0.1, harmonics=2, progress=False)
@@ -28,7 +28,7 @@ def draw_trace_fit(fit: Any, truth: Any = None) -> Figure:
     >>> [axes.get_xlabel() for axes in figure.axes]
     ['t (s)', 'phase y (periods)', 't (s)', 'phase y (periods)']
     """
-    figure, grid = new_figure(2, 2, 10.5, 6.2)
+    drawn, grid = new_figure(2, 2, 10.5, 6.2, figure)
     _data(grid[0, 0], fit)
     _residuals(grid[1, 0], fit)
     _slopes(grid[0, 1], fit, truth)
@@ -36,8 +36,8 @@ def draw_trace_fit(fit: Any, truth: Any = None) -> Figure:
     name = fit.status.name.replace("_", " ").lower()
     share = f"{fit.identifiability.share:.0%} of the period determined"
     title = f"{name}; {share}; reduced $\\chi^2$ = {fit.reduced_chi2:.3g}"
-    figure.suptitle(title, x=0.01, ha="left", fontsize=11)
-    return figure
+    drawn.suptitle(title, x=0.01, ha="left", fontsize=11)
+    return drawn
 
 
 def _data(axes: Any, fit: Any) -> None:

@@ -16,7 +16,7 @@ from ..sweeps import sweep
 from ..wiggly import is_ours, prepare_cells, require_accuracy
 from .job import Job
 
-_TIMES = 401  # pictures follow the slips of the larger eps
+_TIMES = 601  # close-ups of pictures want 8 in a slip: 8.8 at the default's largest eps
 _TIMES_A_ROW = 101  # of a map: nobody draws each, and files of all would be large
 
 
@@ -126,7 +126,7 @@ def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
     seconds = time.perf_counter() - started
     from .study_results import write_results
 
-    return write_results(job, data, folder, seconds)
+    return write_results(job, data, folder, seconds, progress)
 
 
 def _import_results() -> None:

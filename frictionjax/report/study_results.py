@@ -33,14 +33,16 @@ _COVERS = (
 )
 
 
-def write_results(job: Job, data: xr.Dataset, folder: Path, seconds: float) -> str:
+def write_results(
+    job: Job, data: xr.Dataset, folder: Path, seconds: float, progress: bool = False
+) -> str:
     """Write the results of a job's sweep into `folder`, return its tables.
 
-    `seconds`: that the sweep took.
+    `seconds`: that the sweep took. `progress`: as of `study`.
     """
     scene = job.scene
     law = friction(scene)
-    found = study(data)
+    found = study(data, progress=progress)
     sections = [("", line) for line in job.notes]
     if "left_out" in data.attrs:
         sections.append(("", f"Effects left out: {data.attrs['left_out']}"))

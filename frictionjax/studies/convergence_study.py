@@ -1,11 +1,13 @@
 """A convergence study: orders, constants and failures of a sweep."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from .._checks import require
+from .._checks import require, require_flags
+from .._compile import waiting
 from ..convergence import (
     ENERGY,
     STATE,
@@ -25,7 +27,7 @@ from .study_result import Study
 _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
 
 
-def study(dataset: xr.Dataset) -> Study:
+def study(dataset: xr.Dataset, *, progress: bool = False) -> Study:
     """Convergence orders of a `dataset` made by `sweep`.
 
     Returns a `Study`: `.orders` holds, for each gamma: `order, order_low, order_high` of
@@ -69,6 +71,8 @@ def study(dataset: xr.Dataset) -> Study:
     Cells that failed are left out, and a warning (`FailedCells`) names them. Each of
     several scenes is studied alone; `.spread` tells how they differ.
 
+    `progress`: a line on standard error where it takes more than two seconds: laws compile.
+
     Raises `ValueError` where the data set lacks what `sweep` puts there.
 
     >>> found = fx.study(fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0))
@@ -85,15 +89,23 @@ def study(dataset: xr.Dataset) -> Study:
     require(not missing, "dataset", f"one without {missing}", allowed)
     dataset = whole_grid(dataset)
     codes = dataset.status.transpose(..., "gamma", "eps").values
+    require_flags(progress=progress)
     several = "scene" in dataset.dims
     labels = dataset.scene.values if several else ()
     warn_of_failed(codes, dataset.gamma.values, dataset.eps.values, labels)
-    return _study_of_scenes(dataset) if several else _study_of_one(dataset)
+    with waiting("study", progress) as tell:
+        if several:
+            return _study_of_scenes(dataset, tell)
+        tell("laws and orders")
+        return _study_of_one(dataset)
 
 
-def _study_of_scenes(dataset: xr.Dataset) -> Study:
+def _study_of_scenes(dataset: xr.Dataset, tell: Callable[[str], None]) -> Study:
     labels = dataset.scene
-    found = [_study_of_one(one_scene(dataset.isel(scene=i))) for i in range(labels.size)]
+    found = []
+    for i in range(labels.size):
+        tell(f"laws and orders, scene {i + 1} of {labels.size}")
+        found.append(_study_of_one(one_scene(dataset.isel(scene=i))))
 
     def joined(parts: list[xr.Dataset]) -> xr.Dataset:
         return xr.concat(parts, labels, join="exact", combine_attrs="drop_conflicts")

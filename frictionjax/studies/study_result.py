@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from .._text import ResultTable
+from .._text import ResultTable, require_no_axes
 from .study_tables import failed_table, order_table, spread_table
 
 
@@ -49,10 +49,13 @@ class Study(NamedTuple):
         failed = html.escape(failed_table(self.failed))
         return f"{self.table()._repr_html_()}<pre>{failed}</pre>"
 
-    def plot(self) -> Any:
+    def plot(self, ax: Any = None, figure: Any = None) -> Any:
         r"""Errors against eps with the fitted orders, as a matplotlib Figure.
 
         Of several scenes: the errors of all, and how their orders spread.
+
+        `figure`: a matplotlib Figure or SubFigure to draw into; `ax` is refused, as the
+        picture has several axes.
 
         >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0)
         >>> figure = fx.study(data).plot()
@@ -61,8 +64,9 @@ class Study(NamedTuple):
         $\gamma$ = 1: order 1.09 at these $\epsilon$;
         for $\epsilon \to 0$: 1.01, 95% [0.87, 1.15], law: slips
         """
+        require_no_axes(ax)
         from ..plot import draw_convergence, draw_scenes
 
         if self.spread is not None:
-            return draw_scenes(self.dataset, self.orders)
-        return draw_convergence(self.dataset, self.orders, self.curves)
+            return draw_scenes(self.dataset, self.orders, figure)
+        return draw_convergence(self.dataset, self.orders, self.curves, figure)

@@ -257,9 +257,12 @@ def _prepare(
     tableau: Tableau = SETTINGS.tableau,
 ) -> None:
     """Have the loop compiled beside the planning."""
-    if cells * times > SETTINGS.few_values:
-        segments = cells * times // WORKERS
+    values = cells * times
+    if values > SETTINGS.few_values:
+        segments = values // WORKERS
         prepare(lanes, tableau, Room(cells, segments // 2, segments), summed)
+    elif values <= SETTINGS.fewest_values:
+        prepare(lanes, tableau, Room(cells, values, values), summed, narrow=True)
 
 
 def _affordable(path: Path, cells: Cellwise) -> np.ndarray:

@@ -52,6 +52,9 @@ class Settings(NamedTuple):
     most_nodes: int = 65  # of a slide: where more are needed, every slip is measured
     surveys: int = 3  # made again, at most
     few_values: int = 500  # more are worth a guess at rooms
+    # So few go through the narrow loop. (One cell of 2, 31 and 93 times at six eps from 0.1
+    # to 1e-5 does; of 201 times one at 1e-3 and below goes through the wide one.)
+    fewest_values: int = 100
 
     # Work foretold (`predicted_work.py`).
     # Steps a well: exp of a polynomial in the orders of magnitude of tolerance, drag and

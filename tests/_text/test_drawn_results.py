@@ -14,10 +14,14 @@ from matplotlib.figure import Figure
 from rods_that_turn import ROD, SURFACE, turning_scene
 
 import frictionjax as fx
+from frictionjax.cost.order_accuracy import EpsGrid, OrderCost
+from frictionjax.design.slide.slide_friction import SteadySlide
 
 BRISTLE = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
 SCENE = fx.Scene(SURFACE, BRISTLE, fx.supports.Spring(1.0), fx.loads.Sine(1.0488, 3.0), 3.0)
 STILL = np.linspace(0.0, 3.0, 31)
+SLIDE = SteadySlide(0.01, 0.1, -0.08, 0.12, -0.09, code_plus=0, code_minus=0)
+GRID = EpsGrid(0.01, 1e-3, 6, 0.02, order=1.0, seconds=0.1, low=0.98, high=1.02, laid=7)
 RESULTS = {
     "scene": lambda: SCENE,
     "friction": lambda: fx.friction(SCENE),
@@ -28,6 +32,9 @@ RESULTS = {
     "nap": lambda: fx.nap(SURFACE, ROD),
     "predict_cost": lambda: fx.predict_cost(SCENE, [1e-2, 1e-3], measure=False),
     "fit_angle": lambda: fx.fit_angle(SURFACE, BRISTLE, ratio=1.3),
+    "steady_slide": lambda: SLIDE,
+    "explain": lambda: fx.explain(SCENE, 0.01, 1.0),
+    "order_cost": lambda: OrderCost([GRID], GRID, success=True, message="one"),
 }
 
 

@@ -125,6 +125,17 @@ def test_no_other_begins_after_the_total_and_ours_come_first(
     assert len(begun) == 2 + sum(others)
 
 
+def test_a_solver_is_held_against_ours_where_no_time_is_left(scene):
+    methods = ["auto", "BDF", "LSODA"]
+    asked = {"repeats": 1, "total": 1e-3, "anyway": "LSODA"}
+    cost = fx.work_precision(scene, EPS, 1.0, methods, [0.5, 1e-2], TIMES, **asked)
+    tried = cost.status[0, 0] != fx.Status.NOT_TRIED
+    assert tried.sel(solver="auto").values.tolist() == [True, True]
+    assert tried.sel(solver="LSODA").values.tolist() == [True, False]
+    assert not tried.sel(solver="BDF").any()
+    assert cost.attrs["advice"].endswith("not run, for want of time: BDF.")
+
+
 def test_within_a_total_others_of_ours_wait_their_turn(scene, monkeypatch):
     """Only the first is measured in any case, and compiles before the reference."""
     first, begun = [], []
@@ -191,6 +202,8 @@ def test_bad_arguments_are_named(scene):
         ({"gamma": 0.0}, "gamma = 0"),
         ({"seconds": 0.0}, "seconds = 0"),
         ({"total": 0.0}, "total = 0"),
+        ({"anyway": "auto"}, "anyway = 'auto': needs some of SciPy's among methods"),
+        ({"anyway": 3}, "anyway = 3: needs some of SciPy's among methods"),
         ({"total": "long"}, "total = 'long': needs a number, seconds > 0, or None"),
         ({"repeats": 0}, "repeats = 0"),
         ({"repeats": 2.5}, "repeats = 2.5"),

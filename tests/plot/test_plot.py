@@ -5,6 +5,7 @@ import io
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from sweep_like import EPS, sweep_like
 
 import frictionjax as fx
@@ -233,3 +234,19 @@ def test_global_settings_and_pyplot_stay_untouched():
     assert {text.get_fontsize() for text in axes.get_xticklabels()} == {10.0}
     assert axes.xaxis.get_gridlines()[0].get_visible()
     assert figure._repr_png_().startswith(b"\x89PNG")
+
+
+@pytest.mark.filterwarnings("ignore::frictionjax.wiggly.equation.status.FailedCells")
+def test_a_picture_of_several_axes_goes_into_a_part_of_a_figure():
+    study = fx.study(sweep_like())
+    mine = Figure(figsize=(24, 6), layout="constrained")
+    left, right = mine.subfigures(1, 2, width_ratios=[1, 3])
+    assert study.plot(figure=right) is right
+    assert len(right.axes) == 3
+    assert not left.axes
+    assert mine.get_size_inches().tolist() == [24, 6]
+    mine.savefig(io.BytesIO(), format="png", dpi=40)
+    with pytest.raises(ValueError, match=r"figure = .*needs a matplotlib Figure or SubFig"):
+        study.plot(figure=right.axes[0])
+    with pytest.raises(ValueError, match=r"ax = .*needs None, as .*several axes: figure "):
+        study.plot(ax=right.axes[0])

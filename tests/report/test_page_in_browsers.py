@@ -1,11 +1,14 @@
 """Reports in Chromium: pictures seen, nothing asked for, WCAG 2 A and AA kept."""
 
 import base64
+import io
 import time
 
+import numpy as np
 import pytest
 from browser import look_at, opened_browser, skip_without_browser
 from command_line import run
+from PIL import Image
 from sweep_like import sweep_like
 
 from frictionjax.report.job import ReportRequest, read_job
@@ -101,3 +104,24 @@ def test_reports_of_all_commands_are_read_in_every_light(browser, tmp_path, comm
     for options in LOOKS.values():
         dark = options.get("colours") == "dark" and options.get("medium") != "print"
         require_readable(look_at(browser, tmp_path / "report.html", **options), dark)
+
+
+def test_a_table_that_goes_on_has_a_shadow_at_that_side(browser, report):
+    """Dark where more is hidden, the page's own white where the table ends."""
+    page = browser.new_page(viewport={"width": 360, "height": 800})
+    page.goto(report.absolute().as_uri())
+    hidden = "e => e.scrollWidth - e.clientWidth"
+    tables = page.locator(".wide:not(.picture)").all()
+    wide = [one for one in tables if one.evaluate(hidden) > 40]
+    assert wide
+    seen = {}
+    for place in ("0", "e.scrollWidth"):
+        wide[-1].evaluate(f"e => {{ e.scrollLeft = {place}; }}")
+        picture = Image.open(io.BytesIO(wide[-1].screenshot())).convert("L")
+        rows = np.asarray(picture)[-40:]  # below the headings, which have a colour
+        seen[place] = [np.median(rows[:, side]) for side in (0, -1)]
+    page.close()
+    left, right = seen["0"]
+    assert right < 200 < left
+    left, right = seen["e.scrollWidth"]
+    assert left < 200 < right

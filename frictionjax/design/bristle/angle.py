@@ -19,7 +19,7 @@ from ..._checks import (
     require_x64,
     with_nan,
 )
-from ..._compile import Program, padded_size
+from ..._compile import Program, padded_size, waiting
 from ...bristles import AbstractBristle, swapped_text
 from ...effects import AbstractEffect, Engine
 from ...model import coefficients_jit, potential
@@ -112,6 +112,8 @@ def fit_angle(
     bounds: Any = None,
     pulling: bool = False,
     effects: Sequence[AbstractEffect] = (),
+    *,
+    progress: bool = False,
 ) -> AngleFit:
     """The `bristle` on a surface, `profile`, that has a wanted friction, one number free.
 
@@ -134,6 +136,8 @@ def fit_angle(
     array, a ratio is that of one; with `NapFlip`, `.nap` and `.message` say for which
     critical loads the rod turns over.
 
+    `progress`: a line on standard error where it takes more than two seconds.
+
     Only the two extreme slopes of the surface enter. The intervals where the bristle is
     admissible are found first, then all extrema of the quantity in each, then every root
     between them by bracketed Newton, to rounding. Features of the quantity narrower than a
@@ -151,28 +155,33 @@ def fit_angle(
     >>> fx.fit_angle(scene.profile, scene.bristle, ratio=1.5)
     AngleFit(angle=1.10715: ratio = 1.5: found, angle = 1.10715)
     """
-    require_flags(pulling=pulling)
+    require_flags(pulling=pulling, progress=progress)
     require_x64(potential(profile, bristle))  # which checks the kinds of the parts
     name, wanted = _asked((rho_plus, rho_minus, ratio, difference))
     bristle = with_arrays(bristle)
     chosen = free_parameter(bristle, free)
     require_bounds(chosen, bristle, bounds)
     scene = effects_of_scene(effects, Engine.DESIGN, [bristle])
-    law = coefficients_jit(potential(scene.surface(profile), bristle))
-    slopes = Slopes(law.omega_plus, law.omega_minus)
-    _require_slopes(slopes)
-    which, target = np.asarray(QUANTITIES.index(name)), scene.of_one(wanted, name)
-    limits = _NO_BOUNDS if bounds is None else jnp.asarray(bounds, dtype=float)
-    # Stopped here, not in the program: differentiated programs are compiled once more.
-    still = jax.lax.stop_gradient((bristle, slopes))
-    fixed = chosen, *still, which
-    flag = np.asarray(pulling)
-    allowed, others = _survey(*fixed, limits, flag)
-    found = _in_sizes(
-        target, lambda some: _solve(chosen, bristle, slopes, which, some, allowed.seen)
-    )
-    aims = jax.lax.stop_gradient(target)
-    code, pulled = _with_pulled(found.code, fixed, aims, others.seen)
+    with waiting("fit_angle", progress) as tell:
+        tell("slopes of the surface")
+        law = coefficients_jit(potential(scene.surface(profile), bristle))
+        slopes = Slopes(law.omega_plus, law.omega_minus)
+        _require_slopes(slopes)
+        which, target = np.asarray(QUANTITIES.index(name)), scene.of_one(wanted, name)
+        limits = _NO_BOUNDS if bounds is None else jnp.asarray(bounds, dtype=float)
+        # Stopped here, not in the program: differentiated programs are compiled once more.
+        still = jax.lax.stop_gradient((bristle, slopes))
+        fixed = chosen, *still, which
+        flag = np.asarray(pulling)
+        tell("values that are allowed")
+        allowed, others = _survey(*fixed, limits, flag)
+        tell("values that are asked for")
+        found = _in_sizes(
+            target,
+            lambda some: _solve(chosen, bristle, slopes, which, some, allowed.seen),
+        )
+        aims = jax.lax.stop_gradient(target)
+        code, pulled = _with_pulled(found.code, fixed, aims, others.seen)
     fit = AngleFit(
         found.bristle,
         found.value,

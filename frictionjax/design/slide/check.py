@@ -108,12 +108,16 @@ def check_design(
     gamma: float = 1.0,
     rate: float = 1.0,
     support: Spring | None = None,
+    *,
+    progress: bool = False,
 ) -> DesignCheck:
     """Steady slides at a few eps (m) beside the limit; prints as a table.
 
     `profile`, `bristle`: the design. `gamma`, `rate` (N/s), `support`: as in
     `steady_slide`. The mean force nears the limit from above where viscosity rules, and
     from below by half the drop of a slip, `k_h eps/2`, where the tip rests between slips.
+
+    `progress`: a line on standard error where it takes more than two seconds.
 
     Returns a `DesignCheck`: `.law`, the coefficients of the limit, `.slide`, the forces in
     N, and the relative gaps between them, `.gap_plus .gap_minus .gap_ratio`, shape (n,).
@@ -128,6 +132,14 @@ def check_design(
     0.0001  0.120351  -0.04%  -0.0879079  -0.04%  1.36906  +0.009%    0.1204 ...
      limit  0.120394           -0.087947          1.36894           0.120394   -0.087947
     """
-    slide = steady_slide(profile, bristle, np.atleast_1d(eps), gamma, rate, support)
+    slide = steady_slide(
+        profile,
+        bristle,
+        eps=np.atleast_1d(eps),
+        gamma=gamma,
+        rate=rate,
+        support=support,
+        progress=progress,
+    )
     law = friction(profile, bristle)
     return DesignCheck(law, slide, as_real(gamma), as_real(rate))

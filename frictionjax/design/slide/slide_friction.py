@@ -18,13 +18,14 @@ from ..._checks import (
     checked,
     is_concrete,
     require,
+    require_flags,
     require_numbers,
     require_real,
     require_x64,
     with_nan,
 )
-from ..._compile import Program, padded_size
-from ..._text import Named, ShownNumbers
+from ..._compile import Program, padded_size, waiting
+from ..._text import Named, SelfDrawn, ShownNumbers
 from ...bristles import AbstractBristle
 from ...effects import (
     AbstractEffect,
@@ -54,7 +55,7 @@ from .slide_sides import Sides, one_side
 SLIDE_FORCES = ("mean", "peak")  # of a slide, that designs may ask for
 
 
-class SteadySlide(ShownNumbers, CodedResult, eqx.Module):
+class SteadySlide(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
     """Forces in the spring while a tip slides steadily, of the shape of `eps`.
 
     `mean_plus`, `peak_plus` (N, > 0): mean over time, and largest, of `l - Phi'(z)` in a
@@ -71,6 +72,7 @@ class SteadySlide(ShownNumbers, CodedResult, eqx.Module):
     code_plus: Real
     code_minus: Real
     _outcomes = Status
+    _picture = "draw_steady_slide"
 
     @property
     def ratio(self) -> Real:
@@ -196,6 +198,8 @@ def steady_slide(
     rate: Any = 1.0,
     support: Spring | None = None,
     effects: Sequence[AbstractEffect] = (),
+    *,
+    progress: bool = False,
 ) -> SteadySlide:
     """Mean and peak force of a steady slide of a `bristle` on a `profile`, both ways.
 
@@ -215,6 +219,8 @@ def steady_slide(
     `STEP_TOO_SMALL`. Where the spring is so soft that errors are hardly forgotten in a
     period, and may add up to 3e-4 of the force, it is `OPEN_BRACKET`.
 
+    `progress`: a line on standard error where it takes more than two seconds.
+
     Returns a `SteadySlide`: `.mean_plus .mean_minus .peak_plus .peak_minus` in N, of the
     shape of `eps`, `.ok`, `.status`.
 
@@ -226,6 +232,7 @@ def steady_slide(
     >>> print(f"{slide.mean_plus:.4f} N, {slide.mean_minus:.4f} N: {slide.status.name}")
     0.1189 N, -0.0878 N: OK
     """
+    require_flags(progress=progress)
     support = spring_of(support)
     wiggle = wiggle_of(profile, bristle, effects)
     require_x64(wiggle, support)
@@ -241,7 +248,9 @@ def steady_slide(
     several = jnp.atleast_1d(sizes)
     array = next((e for e in effects if isinstance(e, CompliantArray)), None)
     if is_concrete(wiggle, several, numbers, array):
-        found = _known_forces(wiggle, np.asarray(several), numbers, array)
+        with waiting("steady_slide", progress) as tell:
+            tell(f"{several.size} eps, both ways")
+            found = _known_forces(wiggle, np.asarray(several), numbers, array)
     else:
         one = "known numbers; traced, a slide of one bristle, whose mean force it has"
         require(array is None, "effects.CompliantArray", "traced numbers", one)

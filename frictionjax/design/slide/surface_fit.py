@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._checks import as_text, require_flags, require_real, with_nan
 from ..._compile import waiting
-from ..._text import Named, ShownNumbers
+from ..._text import Named, ShownNumbers, require_no_axes
 from ...bristles import AbstractBristle
 from ...io import ARRAY, AS_IS, TOLD, Document, by_name, nested, several
 from ...profiles import Fourier
@@ -97,17 +97,21 @@ class SlideProfileFit(ShownNumbers, DesignResult):
             return f"{asked}: {self.status.message} in {self.steps} designs; {shown}"
         return f"{asked}: not reached; {shown}, in the limit: {self.fit.message}"
 
-    def plot(self) -> Any:
+    def plot(self, ax: Any = None, figure: Any = None) -> Any:
         """The surface, beside the limit's, and how it was found.
+
+        `figure`: a matplotlib Figure or SubFigure to draw into; `ax` is refused, as the
+        picture has several axes.
 
         >>> wanted = fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05)
         >>> figure = fx.fit_slide_profile(wanted, eps=0.01).plot()
         >>> [axes.get_xlabel() for axes in figure.axes]
         ['y (periods)', 'y (periods)', 'design', '|force| wanted (N)']
         """
+        require_no_axes(ax)
         from ...plot import draw_slide_profile_fit
 
-        return draw_slide_profile_fit(self)
+        return draw_slide_profile_fit(self, figure)
 
     def _numbers(self) -> list[Named]:
         told = named_forces(self.force, self.achieved, self.targets)

@@ -9,7 +9,7 @@ import jax
 import numpy as np
 
 from ..._checks import as_text, require_real, require_whole
-from ..._text import Named, ShownNumbers
+from ..._text import Named, ShownNumbers, require_no_axes
 from ...bristles import AbstractBristle, pulling_text
 from ...coefficients import Coefficients
 from ...contact import Nap, nap
@@ -193,16 +193,20 @@ class ProfileFit(ShownNumbers, DesignResult):
         cos, sin = (np.asarray(rows) for rows in heights_of_waves(waves))
         return [Fourier(cos[i], sin[i]) for i in np.flatnonzero(np.asarray(good))]
 
-    def plot(self) -> Any:
+    def plot(self, ax: Any = None, figure: Any = None) -> Any:
         """The surface, what is left open, the starts and the targets, as a Figure.
+
+        `figure`: a matplotlib Figure or SubFigure to draw into; `ax` is refused, as the
+        picture has several axes.
 
         >>> fit = fx.fit_profile(fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05))
         >>> [axes.get_xlabel() for axes in fit.plot().axes]
         ['y (periods)', 'y (periods)', 'start, best first (1)', 'target (N)']
         """
+        require_no_axes(ax)
         from ...plot import draw_profile_fit
 
-        return draw_profile_fit(self)
+        return draw_profile_fit(self, figure=figure)
 
     def _numbers(self) -> list[Named]:
         forces = [(found.rho_plus, found.rho_minus) for found in self.coefficients]

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..._text import Named, ShownNumbers
+from ..._text import Named, ShownNumbers, require_no_axes
 from ...io import ARRAY, AS_IS, BOOLS, INTEGERS, NUMBER, Document, Form, by_name, record
 from ...profiles import Fourier
 from ..common import DesignResult
@@ -121,19 +121,21 @@ class TraceFit(ShownNumbers, DesignResult):
         """Of the derivatives of the samples used; see `identifiability`."""
         return self.identifiability.singular_values
 
-    def plot(self, truth: Any = None) -> Any:
+    def plot(self, truth: Any = None, ax: Any = None, figure: Any = None) -> Any:
         """Data, fit, residuals and slopes with their errors, as a Figure.
 
-        `truth`: a profile to draw beside the one found.
+        `truth`: a profile to draw beside the one found. `figure`: a matplotlib Figure or
+        SubFigure to draw into; `ax` is refused, as the picture has several axes.
 
         >>> trace = fx.simulate_trace(scene, eps=0.1, noise=0.001)
         >>> fit = fx.fit_trace(trace, scene, eps=0.1, harmonics=2, progress=False)
         >>> [axes.get_xlabel() for axes in fit.plot(truth=scene.profile).axes]
         ['t (s)', 'phase y (periods)', 't (s)', 'phase y (periods)']
         """
+        require_no_axes(ax)
         from ...plot import draw_trace_fit
 
-        return draw_trace_fit(self, truth)
+        return draw_trace_fit(self, truth, figure)
 
     def _numbers(self) -> list[Named]:
         return [

@@ -1,4 +1,4 @@
-"""Pictures of results that are a few numbers, as bars."""
+"""Pictures of results that are a few numbers: bars and points."""
 
 import lazy_loader
 

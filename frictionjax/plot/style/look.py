@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 
 from ..._checks import as_text, require
 
@@ -68,8 +68,19 @@ def styled(draw: Callable[..., _Drawn]) -> Callable[..., _Drawn]:
     return inside
 
 
-def new_figure(rows: int, columns: int, width: float, height: float) -> tuple[Figure, Any]:
-    """A figure (inches) and its axes, an array of shape (rows, columns)."""
+def new_figure(
+    rows: int, columns: int, width: float, height: float, into: Any = None
+) -> tuple[Any, Any]:
+    """A figure (inches) and its axes, an array of shape (rows, columns).
+
+    `into`: the user's own figure, or a part of it, whose size stays.
+
+    Raises `ValueError` for an `into` that is none, under the name `figure`.
+    """
+    if into is not None:
+        allowed = "a matplotlib Figure or SubFigure, or None"
+        require(isinstance(into, FigureBase), "figure", into, allowed)
+        return into, into.subplots(rows, columns, squeeze=False)
     figure = Picture(figsize=(width, height), layout="constrained")
     return figure, figure.subplots(rows, columns, squeeze=False)
 

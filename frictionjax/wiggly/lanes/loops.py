@@ -121,9 +121,12 @@ def _kind(program: tuple) -> tuple:
 _LOOPS = _Loops()
 
 
-def prepare(scene: LaneScene, tableau: Tableau, needed: Room, summed: bool) -> None:
+def prepare(
+    scene: LaneScene, tableau: Tableau, needed: Room, summed: bool, narrow: bool = False
+) -> None:
     """Compile the loop that `march` will want, in the background; a guess may be wrong."""
-    _LOOPS.load((scene, tableau, summed, SETTINGS.width), needed)
+    width = SETTINGS.narrow if narrow else SETTINGS.width
+    _LOOPS.load((scene, tableau, summed, width), needed)
 
 
 def march(

@@ -1,0 +1,19 @@
+"""What a study keeps: times between which slips of the largest eps can be seen."""
+
+import numpy as np
+
+import frictionjax as fx
+from frictionjax.plot.trajectories import window_of_slips
+from frictionjax.report.job import read_job
+from frictionjax.report.study import study_times
+
+
+def test_the_default_study_shows_a_few_slips_close_up():
+    job = read_job(None)
+    ts, eps = study_times(job), float(np.max(job.study["eps"]))
+    limit = np.asarray(fx.solve_limit(job.scene, ts).z)
+    window = window_of_slips(ts, limit, eps)
+    assert window is not None
+    inside = (ts >= window[0]) & (ts <= window[1])
+    slips = np.ptp(limit[inside]) / eps
+    assert inside.sum() / slips >= 8
