@@ -5,7 +5,8 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from .._checks import as_real, known_numbers, require, require_real, with_nan
+from .._checks import as_real, known_numbers, require, require_flags, require_real, with_nan
+from .._compile import waiting
 from ..effects import (
     AbstractEffect,
     CompliantArray,
@@ -32,6 +33,7 @@ def certify(
     velocity: Any = None,
     root: Any = None,
     mode: Any = None,
+    progress: bool = False,
 ) -> Certificate:
     """Certify any sampled curve, whatever made it, against the `scene` alone (eq. 2.7).
 
@@ -79,6 +81,8 @@ def certify(
     before a turning to its first one the load may change by 0.3% of the critical load: else
     it is `UNRESOLVED`.
 
+    `progress`: a line on standard error where it takes more than two seconds.
+
     Returns a `Certificate`: `.ok .status .message`, `.distance` in eps, `.residual` and
     `.scale` in J, wells crossed, `.slips` and `.skipped`, and more, see its `.table()`.
 
@@ -92,6 +96,24 @@ def certify(
     >>> fx.certify(scene, 0.1, 1.0, ts, z + 0.01).message
     'a well was crossed without the force that this takes'
     """
+    require_flags(progress=progress)
+    with waiting("certify", progress):
+        return _certificate(
+            *(scene, eps, gamma, ts, z), velocity=velocity, root=root, mode=mode
+        )
+
+
+def _certificate(
+    scene: Scene,
+    eps: Any,
+    gamma: Any,
+    ts: Any,
+    z: Any,
+    *,
+    velocity: Any,
+    root: Any,
+    mode: Any,
+) -> Certificate:
     scene = scene_for(Engine.CERTIFICATE, scene)
     require_real("eps", eps, "eps > 0", lambda e: e > 0)
     require_real("gamma", gamma, "gamma > 0", lambda g: g > 0)

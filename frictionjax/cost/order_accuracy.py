@@ -81,6 +81,7 @@ def order_cost(
     accuracy: float = 1e-3,
     *,
     measure: bool = True,
+    progress: bool = False,
 ) -> OrderCost:
     """Which grid of eps gives the order to +- `within`, and how long that takes.
 
@@ -90,7 +91,7 @@ def order_cost(
     seven phases (fewer where they fall on the same eps); the interval is the one that
     `study` would give, drift and scatter included. (A formula, scatter over the spread of
     log eps: three times too narrow where the order still drifts.) Seconds are those of
-    `predict_cost`; `measure` as there.
+    `predict_cost`; `measure` as there. `progress`: a bar on standard error for the pilot.
 
     A grid counts only where its order is confirmed: its intervals are compared with those
     of all grids of the pilot whose range lies at smaller eps (neither end larger, one
@@ -112,11 +113,12 @@ def order_cost(
     known = grid_of("eps", eps)
     require(known.size >= 2, "eps", known, "a largest and a smallest")
     require_real("within", within, "within > 0", lambda w: w > 0)
-    require_flags(measure=measure)
+    require_flags(measure=measure, progress=progress)
     require_real("gamma", gamma, "gamma > 0, one number", lambda g: g > 0)
     pilot = np.geomspace(known[0], known[-1], SETTINGS.pilot)
     ts = float(scene.duration) * np.linspace(0, 1, SETTINGS.pilot_times)
-    data = sweep(scene, pilot, gamma, ts, accuracy, dissipation=False).isel(gamma=0)
+    asked = pilot, gamma, ts, accuracy
+    data = sweep(scene, *asked, dissipation=False, progress=progress).isel(gamma=0)
     errors = data.sup_error.where(data.status == int(Status.OK)).values
     predicted, law = _predicted(data, pilot, gamma)
     measured = _Pilot(pilot, errors, accuracy * pilot, predicted, law)

@@ -14,6 +14,7 @@ from .._checks import (
     require_real,
     with_nan,
 )
+from .._compile import waiting
 from .._text import Named, SelfDrawn, ShownNumbers
 from ..effects import Engine
 from ..limit import require_start_in_strip
@@ -123,13 +124,15 @@ def predict_cost(
     method: str = "auto",
     *,
     measure: bool = True,
+    progress: bool = False,
 ) -> CostPrediction:
     """Time and memory of `sweep` with these arguments, before anything runs.
 
     `eps` in m and `gamma`: numbers or lists; `scene`, `accuracy` and `ts` as in `sweep`,
     and `method` one of the library's own. The first call on a machine measures it, 5 to 20
     s, and keeps that in the user's cache folder; `measure=False` measures
-    nothing: of a machine that was never measured it takes another's numbers.
+    nothing: of a machine that was never measured it takes another's numbers. `progress`:
+    a line on standard error where it takes more than two seconds.
 
     The work of lanes follows from the plan of the sweep: wells, windows, tolerances. Where
     surveys have to be made again, which nobody knows before, a cell takes longer.
@@ -145,15 +148,18 @@ def predict_cost(
     scene = scene_for(Engine.COST, scene)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
-    require_flags(measure=measure)
+    require_flags(measure=measure, progress=progress)
     require(is_ours(method), "method", method, f"one of {', '.join(OURS)}")
     ts = require_times(scene, ts)
     require_start_in_strip(scene)
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)
-    machine = machine_cost() if measure else known_machine() or ELSEWHERE
     wanted = float(as_real(accuracy))
-    return _predicted(scene, eps, gamma, len(ts), wanted, method, machine)
+    with waiting("predict_cost", progress) as tell:
+        tell("this machine")
+        machine = machine_cost() if measure else known_machine() or ELSEWHERE
+        tell("the plan of the sweep")
+        return _predicted(scene, eps, gamma, len(ts), wanted, method, machine)
 
 
 class Affordable(NamedTuple):

@@ -15,6 +15,7 @@ from .._checks import (
     require_whole,
     with_nan,
 )
+from .._compile import waiting
 from ..called_for import Simulated, simulated
 from ..effects import (
     engine_of,
@@ -75,7 +76,7 @@ def _called_for(found: Simulated, *numbers: Any, key: Any, **options: Any) -> So
     used = None if "Noise" in found.left_out else key  # of noise alone
     if noise_among(found.scene.effects) is not None:
         options |= {"accuracy": _ACCURACY}  # what a path with noise does not read
-    solution = solve(found.scene, *numbers, key=used, **options)
+    solution = _solve(found.scene, *numbers, key=used, **options)
     counts = solution.counts | {"left_out": found.left_out}
     how = solution.how + (f"; without {found.in_words}" if found.left_out else "")
     return dataclasses.replace(solution, counts=counts, how=how)
@@ -96,6 +97,7 @@ def solve(
     adjoint: "diffrax.AbstractAdjoint | None" = None,
     key: Any = None,
     effects: str = "all",
+    progress: bool = False,
 ) -> Solution:
     """Solve `eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.7) of a `scene` from z0.
 
@@ -124,6 +126,9 @@ def solve(
     call for, as `explain` tells; `left_out` in `stats` says which, and the most that each
     changes z by in eps.
 
+    `progress`: a line on standard error where it takes more than two seconds, which
+    a first call of its kind does: it compiles.
+
     Returns a `Solution`: `.ts` (s), `.z` (m), `.dissipation` and `.residual` (J), shapes
     (n,), `.ok`, `.status`, `.stats`. Failure is a `status`, not an exception.
 
@@ -136,6 +141,34 @@ def solve(
     >>> print(f"at 3 s: {solution.z[-1]:.3f} m, {solution.dissipation[-1]:.3f} J lost")
     at 3 s: -0.120 m, 0.384 J lost
     """
+    require_flags(progress=progress)
+    with waiting("solve", progress):
+        return _solve(
+            *(scene, eps, gamma, ts),
+            accuracy=accuracy,
+            method=method,
+            dissipation=dissipation,
+            max_steps=max_steps,
+            adjoint=adjoint,
+            key=key,
+            effects=effects,
+        )
+
+
+def _solve(
+    scene: Scene,
+    eps: Any,
+    gamma: Any,
+    ts: Any,
+    *,
+    accuracy: Any,
+    method: Any,
+    dissipation: bool,
+    max_steps: int,
+    adjoint: Any,
+    key: Any,
+    effects: str = "all",
+) -> Solution:
     require_numbers("eps", eps, "one number eps > 0", lambda e: (e > 0) & (e.ndim == 0))
     allowed = "one number gamma > 0"
     require_numbers("gamma", gamma, allowed, lambda g: (g > 0) & (g.ndim == 0))

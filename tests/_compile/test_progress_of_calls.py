@@ -25,6 +25,9 @@ SWEPT = xr.Dataset(  # nothing is made of it: calls end where their line begins
 CALLS = {
     "fit_angle": ("design.bristle.angle", (SURFACE, BRISTLE), {"ratio": 1.3}),
     "nap": ("contact.nap_effect", (SURFACE, BRISTLE), {}),
+    "solve": ("wiggly.trajectory", (SCENE, 0.1), {}),
+    "certify": ("certificate.certification", (SCENE, 0.1, 1.0, [0, 3], [0, 0]), {}),
+    "predict_cost": ("cost.prediction", (SCENE, 0.1), {"measure": False}),
     "explain": ("explain.explanation", (SCENE, 0.1, 1.0), {}),
     "study": ("studies.convergence_study", (SWEPT,), {}),
     "fit_profile": ("design.surface.fit", (TARGET,), {}),
@@ -74,5 +77,16 @@ def test_no_line_is_the_default_everywhere_but_of_fits_to_traces():
         if callable(value) and "progress" in inspect.signature(value).parameters
     }
     assert found.pop("fit_trace") is True
-    asked = {name.partition(" ")[0] for name in CALLS} | {"sweep"}
+    asked = {name.partition(" ")[0] for name in CALLS} | {"sweep", "order_cost"}
     assert found == dict.fromkeys(asked, False)
+
+
+def test_a_pilot_has_the_bar_of_its_sweep(monkeypatch):
+    def begun(*args, progress, **options):
+        raise BegunError(progress)
+
+    monkeypatch.setattr("frictionjax.cost.order_accuracy.sweep", begun)
+    for shown in (False, True):
+        with pytest.raises(BegunError) as told:
+            fx.order_cost(SCENE, [0.1, 0.01], measure=False, progress=shown)
+        assert told.value.args == (shown,)
