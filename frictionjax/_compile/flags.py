@@ -87,8 +87,9 @@ def keep_compiled(folder: str | os.PathLike | None = None) -> Path:
     place = user_cache_path("frictionjax") / "xla" if folder is None else Path(folder)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", _WORTH_KEEPING)
     # JAX's own cache beside: what it has given cannot be kept in the other, and where one
-    # was emptied both have to be.
-    found = keep_in(place)
+    # was emptied both have to be. Both in a folder of their own, as the oldest files in it
+    # go, and the user's folder may hold others.
+    found = keep_in(place / "programs")
     if found is not None:
         jax.config.update("jax_compilation_cache_dir", str(found))
     return place

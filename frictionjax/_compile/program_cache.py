@@ -2,12 +2,13 @@
 
 JAX's own cache keeps what XLA makes of a program, found by the program's text: tracing and
 lowering come first, and were 2 s of the 6.5 s of a warm study. (Programs kept as they were
-traced are lowered once more: 18 of a study took 0.8 s to fetch, kept so 0.08 s, in turn on
-one machine.) A program is found by the library's source, by the processor and by what it is
-called with: constants of modules that a running process has changed are not seen.
+traced are lowered once more, which takes most of the time of fetching them.) A program is
+found by the library's source, by the processor and by what it is called with: constants of
+modules that a running process has changed are not seen.
 """
 
 import contextlib
+import functools
 import hashlib
 import io
 import os
@@ -53,7 +54,11 @@ class _Fetched(threading.local):
 
 
 _FETCHED = _Fetched()
-jax.monitoring.register_event_listener(_FETCHED.note)
+
+
+@functools.cache
+def _listen() -> None:
+    jax.monitoring.register_event_listener(_FETCHED.note)
 
 
 def keep_in(folder: Path | None) -> Path | None:
@@ -66,6 +71,7 @@ def keep_in(folder: Path | None) -> Path | None:
     _place, _writes = None if folder is None else folder / _stamp(), True
     if _place is None:
         return None
+    _listen()
     _try_to_write(_place / f"probe-{os.getpid()}", bytes(_PROBE))
     with contextlib.suppress(OSError):
         (_place / f"probe-{os.getpid()}").unlink()

@@ -25,9 +25,7 @@ from .setting import AWAY, Setting
 # 1.1, 1.0 and 0.54 it is (`pytest -m slow tests/called_for/test_turns_on_folds.py`).
 _DECIDED = 0.5, 2.5
 _WELLS = 40  # that a tip may lag behind
-# Of friction, drag that is not small: at 0.4 of it a tip with 1.6 instead of 1.0 of the
-# force is on the brink, at 2 some that are far from it.
-_DRAGGED = 0.4
+_DRAGGED = 0.4  # of friction: drag that is not small
 _MOVED = 2.0  # times a change of the force at a fold: as near to it
 _BESIDE = (np.linspace(0.0, 1.0, 801)[1:]) ** 2  # of the way to the next turn
 

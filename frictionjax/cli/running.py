@@ -18,8 +18,8 @@ def start() -> None:
     """Ask for what suits a CPU and a shell; before anything is computed."""
     from .._compile import keep_compiled, use_fast_cpu
 
-    # Imports make many objects and little garbage: a study spent an eighth of its time in
-    # looking for it, friction a tenth in looking once more before it ends.
+    # Imports make many objects and little garbage, and Python looks for it all the while,
+    # and once more before it ends.
     gc.set_threshold(100_000, 50, 100)
     atexit.register(gc.freeze)
     use_fast_cpu()

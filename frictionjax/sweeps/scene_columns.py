@@ -153,7 +153,7 @@ def _with_mass(
     report: Callable[[float], None],
 ) -> dict[str, np.ndarray]:
     """Values of all cells with inertia, by name; NaN for what tells of brackets."""
-    from ..wiggly import MAX_STEPS, integrate_with_mass  # and diffrax, 0.5 s
+    from ..wiggly import MAX_STEPS, integrate_with_mass  # nothing else needs it
 
     found = integrate_with_mass(
         scene,

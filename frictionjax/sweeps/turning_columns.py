@@ -83,7 +83,7 @@ def turning_values(
     report: Callable[[float], None],
 ) -> dict[str, np.ndarray]:
     """Values of all cells, by name; each is what it is alone."""
-    from ..wiggly import MAX_STEPS, integrate_turning  # and diffrax, 0.5 s
+    from ..wiggly import MAX_STEPS, integrate_turning  # nothing else needs it
 
     course = limit_course(scene, effect)
     pace, ts = pace_of(scene, course), np.asarray(request.ts)

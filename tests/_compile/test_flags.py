@@ -78,7 +78,27 @@ def test_a_folder_for_programs_may_be_a_text(tmp_path):
     command = [sys.executable, "-c", KEEP, str(tmp_path / "kept")]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     told, by_jax = map(Path, done.stdout.split())
-    assert told == tmp_path / "kept" == by_jax.parent
+    # A folder of their own, as the oldest files in it go.
+    assert told == tmp_path / "kept"
+    assert by_jax.parent == told / "programs"
+
+
+CROWD = """
+import sys
+import frictionjax as fx
+from frictionjax._compile import program_cache
+program_cache._MOST = 1
+fx.keep_compiled(sys.argv[1])
+"""
+
+
+def test_files_of_others_in_the_folder_stay(tmp_path):
+    own = [tmp_path / name for name in ("a/1.txt", "a/2.txt", "b/3.txt")]
+    for path in own:
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("mine")
+    subprocess.run([sys.executable, "-c", CROWD, str(tmp_path)], check=True)
+    assert all(path.exists() for path in own)
 
 
 @pytest.mark.parametrize("folder", ["", 3, True, b"kept"])

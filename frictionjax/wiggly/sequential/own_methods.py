@@ -1,4 +1,4 @@
-"""The library's own methods by name: known before diffrax is imported, 0.5 s."""
+"""What is known of methods before diffrax is imported, 0.5 s: names, steps allowed."""
 
 from .settings import SETTINGS
 
