@@ -114,6 +114,10 @@ def pytest_sessionfinish(session):
     output = getattr(session.config, "workeroutput", None)
     if output is not None:
         output["loops"] = _loops_compiled()
+    coverage = sys.modules.get("coverage")
+    measured = coverage.Coverage.current() if coverage else None
+    if measured is not None:  # workers of some GB take longer to end than they are given
+        measured.save()
 
 
 def pytest_testnodedown(node, error):
