@@ -142,7 +142,7 @@ def picture(data: xr.Dataset) -> Figure:
             wells.loglog(data.beta, data.wells[i, :, j], label=label, **how)
     friction.set(xlabel="beta", ylabel="mean friction over rho", title="steady slides")
     wells.set(xlabel="beta", ylabel="wells a slip", title="steady slides")
-    friction.legend(loc="upper right")
+    friction.legend(loc="lower left")
     for axes in (orders, friction, wells):
         axes.axvline(0.7026, color=GUIDE, lw=0.8)
     return figure

@@ -139,6 +139,26 @@ def test_nap(tmp_path):
     assert refused.exit_code == 2
 
 
+def test_nap_says_what_of_a_scene_it_leaves_out(tmp_path):
+    run("scenes", "rigid-array", "--out", tmp_path / "mine.toml")
+    note = "of one bristle, in the limit: without the scene's RigidArray"
+    assert note in run("nap", tmp_path / "mine.toml").stdout
+    assert (
+        note in json.loads(run("nap", tmp_path / "mine.toml", "--json").stdout)["notes"][0]
+    )
+    assert "without the scene" not in run("nap").stdout
+
+
+def test_what_a_command_does_not_do_is_named_with_its_file(tmp_path):
+    file = tmp_path / "mine.toml"
+    run("scenes", "noise", "--out", file)
+    told = run("cost", file, "--out", tmp_path / "cost")
+    assert told.exit_code == 2
+    named = f"Error: {file}: [[effects]] work_precision, predict_cost and fit_budget does"
+    assert told.stderr.startswith(f"{named} not do Noise: needs explain")
+    assert told.stderr.count("\n") == 1
+
+
 def test_nap_of_a_rod_that_turns_over(tmp_path):
     run("scenes", "nap-flip", "--out", tmp_path / "mine.toml")
     told = run("nap", tmp_path / "mine.toml", "--out", tmp_path).stdout

@@ -5,7 +5,7 @@ import dataclasses
 import inspect
 import weakref
 from collections.abc import Iterator
-from typing import Any, ClassVar, Self, TypeVar
+from typing import Any, ClassVar, NamedTuple, Self, TypeVar
 
 import equinox as eqx
 import jax
@@ -47,6 +47,17 @@ class ByIdentity:
 _CHECKED = ByIdentity()
 
 
+class Asked(NamedTuple):
+    """Of an argument of a part: its `unit`, what is `allowed`, whether it is a `row`."""
+
+    unit: str
+    allowed: str
+    row: bool = False
+
+    def __str__(self) -> str:
+        return f"{self.unit}, {self.allowed}"
+
+
 class Part(eqx.Module):
     """Base of profiles, bristles, supports, loads and potentials.
 
@@ -55,6 +66,8 @@ class Part(eqx.Module):
     no constructor, and `checked` does these two where it is used.
     """
 
+    asked: ClassVar[dict[str, Asked]] = {}
+    """Of arguments that scene files give: unit and range, as `frictionjax scenes` says."""
     _stored: ClassVar[dict[str, str]] = {}
     """Fields of constructor arguments that have another name."""
 

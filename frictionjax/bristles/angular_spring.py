@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from .._checks import Real, as_real, is_known, require, require_real
+from .._checks import Asked, Real, as_real, is_known, require, require_real
 from .bristle import AbstractBristle, Rod, SlopeBounds, Stance
 
 
@@ -26,6 +26,13 @@ class AngularSpring(AbstractBristle):
     >>> print(f"rho = {law.rho_plus:.4f} N, {law.rho_minus:.4f} N")
     rho = 0.0440 N, -0.0540 N
     """
+
+    asked: ClassVar = {
+        "stiffness": Asked("N m/rad", "> 0"),
+        "length": Asked("m", "> height, with -tan(theta_lim) < w' < cot(theta_lim)"),
+        "height": Asked("m", "> 0"),
+        "rest_angle": Asked("rad", "in (-pi/2, arccos(height/length))"),
+    }
 
     positive: ClassVar = ("stiffness", "length", "height")
     angles: ClassVar = ("rest_angle",)

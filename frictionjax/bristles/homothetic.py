@@ -1,9 +1,11 @@
 """Bristle that leaves the surface's shape as it is."""
 
+from typing import ClassVar
+
 import equinox as eqx
 import jax.numpy as jnp
 
-from .._checks import Real, as_real, require_real
+from .._checks import Asked, Real, as_real, require_real
 from .bristle import AbstractBristle
 
 
@@ -18,6 +20,8 @@ class Homothetic(AbstractBristle):
     >>> print(f"rho = {law.rho_plus:.4f} N, {law.rho_minus:.4f} N")
     rho = 0.2000 N, -0.2000 N
     """
+
+    asked: ClassVar = {"alpha": Asked("N", "not 0")}
 
     alpha: Real = eqx.field(converter=as_real)
 

@@ -1,8 +1,10 @@
 """Bristle of which only the leading order is left."""
 
+from typing import ClassVar
+
 import equinox as eqx
 
-from .._checks import Real, as_real, require_real
+from .._checks import Asked, Real, as_real, require_real
 from .bristle import AbstractBristle
 
 
@@ -19,6 +21,11 @@ class Linear(AbstractBristle):
     >>> print(f"rho = {same.rho_plus:.4f} N, {same.rho_minus:.4f} N")
     rho = 0.1204 N, -0.0879 N
     """
+
+    asked: ClassVar = {
+        "a": Asked("no unit", "any, with 1 + a w' positive on the surface"),
+        "alpha": Asked("N", "not 0"),
+    }
 
     a: Real = eqx.field(converter=as_real)
     alpha: Real = eqx.field(converter=as_real)

@@ -5,7 +5,7 @@ from typing import ClassVar
 import equinox as eqx
 import jax.numpy as jnp
 
-from .._checks import Real, as_real, require_real
+from .._checks import Asked, Real, as_real, require_real
 from .bristle import AbstractBristle, SlopeBounds, Stance
 
 
@@ -25,6 +25,13 @@ class SlantedSpring(AbstractBristle):
     >>> print(f"rho = {law.rho_plus:.4f} N, {law.rho_minus:.4f} N")
     rho = 0.0879 N, -0.1204 N
     """
+
+    asked: ClassVar = {
+        "stiffness": Asked("N/m", "> 0"),
+        "rest_length": Asked("m", "> 0"),
+        "height": Asked("m", "> 0"),
+        "angle": Asked("rad", "in (-pi/2, pi/2), with w' tan(angle) < 1 on the surface"),
+    }
 
     positive: ClassVar = ("stiffness", "rest_length", "height")
     angles: ClassVar = ("angle",)

@@ -5,7 +5,7 @@ from typing import ClassVar
 import equinox as eqx
 import jax.numpy as jnp
 
-from .._checks import Real, as_real
+from .._checks import Asked, Real, as_real
 from .bristle import AbstractBristle, Stance
 
 
@@ -23,6 +23,12 @@ class VerticalSpring(AbstractBristle):
     >>> print(f"rho = {law.rho_plus:.4f} N, {law.rho_minus:.4f} N")
     rho = 0.1000 N, -0.1000 N
     """
+
+    asked: ClassVar = {
+        "stiffness": Asked("N/m", "> 0"),
+        "rest_length": Asked("m", "> 0"),
+        "height": Asked("m", "> 0"),
+    }
 
     positive: ClassVar = ("stiffness", "rest_length", "height")
 

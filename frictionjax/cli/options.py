@@ -1,5 +1,6 @@
 """Options and arguments that commands share."""
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -34,7 +35,28 @@ POSITIVE = click.FloatRange(min=0, min_open=True)
 progress_option = click.option(
     "--progress/--no-progress", default=True, help="A bar on standard error."
 )
-scene_argument = click.argument("scene", required=False, metavar="[SCENE.toml]")
+
+
+def scene_argument(command: Callable) -> Callable:
+    """The file of a scene, which errors about its scene name."""
+
+    @functools.wraps(command)
+    def named(*args: Any, scene: str | None, **kwargs: Any) -> Any:
+        try:
+            return command(*args, scene=scene, **kwargs)
+        except ValueError as error:
+            raise ValueError(_of_scene(scene, str(error))) from error
+
+    return click.argument("scene", required=False, metavar="[SCENE.toml]")(named)
+
+
+def _of_scene(file: str | None, message: str) -> str:
+    """A message about a scene with the file that it is in, in the file's words."""
+    if file is None or not message.startswith("scene."):
+        return message
+    return f"{file}: {message.replace('scene.effects: ', '[[effects]] ', 1)}"
+
+
 surface_options = _options(
     bristle_option(
         ": slanted (k 1, rest length 2.4, height 1, angle 1) or angular (k 1, length "

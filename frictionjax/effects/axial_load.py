@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import equinox as eqx
 
-from .._checks import Real, as_real, require_real
+from .._checks import Asked, Real, as_real, require_real
 from .abstract import AbstractEffect, Stage
 
 
@@ -28,11 +28,14 @@ class AxialLoad(AbstractEffect):
     'below the critical load everywhere: not shown to buckle'
     """
 
+    asked: ClassVar = {"bending_stiffness": Asked("N m^2", "> 0")}
+
     stage: ClassVar[Stage] = Stage.READING
     of_bristle: ClassVar[str] = "AngularSpring"
 
     bending_stiffness: Real = eqx.field(converter=as_real)
 
     def __check_init__(self):
-        name, allowed = "effects.AxialLoad.bending_stiffness", "bending_stiffness > 0"
+        name = "effects.AxialLoad.bending_stiffness"
+        allowed = "bending_stiffness > 0 in N m^2"
         require_real(name, self.bending_stiffness, allowed, lambda B: B > 0)

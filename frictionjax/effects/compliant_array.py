@@ -5,7 +5,7 @@ from typing import ClassVar
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from .._checks import as_real
+from .._checks import Asked, as_real
 from .abstract import AbstractEffect, Stage
 from .phases import require_row
 
@@ -26,6 +26,8 @@ class CompliantArray(AbstractEffect):
     >>> print(f"z(3 s) = {solution.z[-1]:.4f} +- {solution.stats['spread'][-1]:.4f} m")
     z(3 s) = -0.1223 +- 0.0021 m
     """
+
+    asked: ClassVar = {"offsets": Asked("periods", "a list", row=True)}
 
     stage: ClassVar[Stage] = Stage.STATE
 

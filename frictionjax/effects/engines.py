@@ -55,8 +55,11 @@ _DOES: dict[str, frozenset[Engine]] = {
     "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE}),
 }
 """Of effects that change what moves: the engines that do them."""
-_READS_NOT: dict[str, frozenset[Engine]] = {"AxialLoad": frozenset({_E.ENSEMBLE, _E.SLIDE})}
-"""Of effects that only read: the engines of scenes that do not hold them."""
+_DOES_NOT: dict[str, frozenset[Engine]] = {
+    "AxialLoad": frozenset({_E.ENSEMBLE, _E.SLIDE}),
+    "RigidArray": frozenset({_E.TRACE}),
+}
+"""Of effects that change the potential or only read: the engines that do not hold them."""
 _ALIKE = frozenset({"LeadingOrder", "RigidArray", "CompliantArray"})
 _FORMULAS: dict[Engine, frozenset[str]] = {
     _E.DESIGN: _ALIKE | {"NapFlip"},
@@ -70,6 +73,14 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
     ("CompliantArray", _E.PATH): "methods of its own, for scenes of known numbers",
     ("CompliantArray", _E.MECHANICS): _ALONE,
     ("CompliantArray", _E.ENSEMBLE): _ALONE,
+    ("CompliantArray", _E.COST): _ALONE,
+    ("CompliantArray", _E.TRACE): _ALONE,
+    ("RigidArray", _E.TRACE): _ALONE,
+    ("Noise", _E.LIMIT): "a scene without it; with it friction_curve, at the speeds asked",
+    ("Noise", _E.CERTIFICATE): "a scene without it; of noisy paths histogram, of many",
+    ("Noise", _E.COST): "explain, which tells what it costs",
+    ("Noise", _E.TRACE): "a scene without it",
+    ("NapFlip", _E.SLIDE): "nap, of its bristle",
     ("AxialLoad", _E.SLIDE): "mechanics or sweep, of a scene",
     ("Noise", _E.SLIDE): "friction_curve, of a scene",
     ("Inertia", _E.SLIDE): "sweep of a long ramp: its dissipation over its way",
@@ -137,7 +148,7 @@ def does(engine: Engine, effect: AbstractEffect) -> bool:
     if engine in _FORMULAS:
         return _name(effect) in _FORMULAS[engine]
     if effect.stage in (Stage.POTENTIAL, Stage.READING):
-        return engine not in _READS_NOT.get(_name(effect), ())
+        return engine not in _DOES_NOT.get(_name(effect), ())
     return engine in _DOES.get(_name(effect), ())
 
 

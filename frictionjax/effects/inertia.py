@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import equinox as eqx
 
-from .._checks import Real, as_real, require_real
+from .._checks import Asked, Real, as_real, require_real
 from .abstract import AbstractEffect, Stage
 
 
@@ -28,6 +28,11 @@ class Inertia(AbstractEffect):
     >>> fx.explain(heavy, eps=0.01, gamma=1.0).effects.source.sel(effect="Inertia").item()
     'beta = 7.1: overdamped far below 1'
     """
+
+    asked: ClassVar = {
+        "mass": Asked("kg per m^exponent", "> 0"),
+        "exponent": Asked("no unit", "any"),
+    }
 
     stage: ClassVar[Stage] = Stage.STATE
 

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import equinox as eqx
 
-from .._checks import Real, as_real, require_real
+from .._checks import Asked, Real, as_real, require_real
 from .abstract import AbstractEffect, Stage
 
 
@@ -33,13 +33,16 @@ class NapFlip(AbstractEffect):
     [ 1  1 -1 -1  1]
     """
 
+    asked: ClassVar = {"bending_stiffness": Asked("N m^2", "> 0, in the window of nap")}
+
     stage: ClassVar[Stage] = Stage.STATE
     of_bristle: ClassVar[str] = "AngularSpring"
 
     bending_stiffness: Real = eqx.field(converter=as_real)
 
     def __check_init__(self):
-        name, allowed = "effects.NapFlip.bending_stiffness", "bending_stiffness > 0"
+        name = "effects.NapFlip.bending_stiffness"
+        allowed = "bending_stiffness > 0 in N m^2"
         require_real(name, self.bending_stiffness, allowed, lambda B: B > 0)
 
 

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import equinox as eqx
 
-from .._checks import Real, as_real, require_real
+from .._checks import Asked, Real, as_real, require_real
 from .abstract import AbstractEffect, Stage
 
 
@@ -27,6 +27,11 @@ class Noise(AbstractEffect):
     >>> print(f"{warm.temperature_at(0.01):.0e} J")
     1e-05 J
     """
+
+    asked: ClassVar = {
+        "temperature": Asked("J per m^exponent", "> 0"),
+        "exponent": Asked("no unit", "any"),
+    }
 
     stage: ClassVar[Stage] = Stage.STATE
 

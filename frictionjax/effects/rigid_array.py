@@ -1,10 +1,12 @@
 """Many tips on one rigid root."""
 
+from typing import ClassVar
+
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._checks import as_real, is_known, known_numbers, require
+from .._checks import Asked, as_real, is_known, known_numbers, require
 from .abstract import AbstractEffect
 from .phases import require_row
 
@@ -25,6 +27,11 @@ class RigidArray(AbstractEffect):
     >>> print(f"{fx.friction(pair).rho_plus:.4f} N")
     0.0324 N
     """
+
+    asked: ClassVar = {
+        "offsets": Asked("periods", "a list", row=True),
+        "weights": Asked("no unit", "a list as long as offsets, >= 0, not all 0", row=True),
+    }
 
     offsets: Float[Array, " n"] = eqx.field(converter=as_real)
     weights: Float[Array, " n"] | None = eqx.field(

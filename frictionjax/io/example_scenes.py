@@ -15,8 +15,15 @@ z0 = (m) the state at the start, 0 where it is left out
 [study]: eps (m) and gamma, lists of numbers > 0, and accuracy (in eps), a number > 0;
          effects, "all" of the scene's or "auto": those that the accuracy calls for"""
 _HEIGHTS = """\
-  or heights = the file of a measured surface, instead of cos and sin, with period,
-  harmonics, row, smoothing, pixel, height_scale and units as commands take them"""
+  or, instead of cos and sin, a measured surface:
+  heights       the name of its file, beside this one
+  period        m, > 0, at most 2/3 of the trace (may be left out: found)
+  harmonics     no unit, a whole number >= 1 (may be left out: 8)
+  row           no unit, a whole number >= 0 (may be left out: all rows)
+  smoothing     m, > 0 (may be left out: none)
+  pixel         m, > 0: distance of samples (may be left out: the file says it)
+  height_scale  m per unit of the heights, > 0 (may be left out: the file says it)
+  length_unit, height_unit, decimal, outliers: texts, as the options of commands"""
 
 
 def example_lines() -> dict[str, str]:
@@ -42,8 +49,8 @@ def example_text(name: str) -> str:
 def schema_text() -> str:
     """Every table of a scene file, its kinds and their fields, as the parts say it.
 
-    Each field with the default it has, and of each kind what its class says: symbols,
-    units, and what is refused.
+    Each field with its unit, what is allowed, and the default it has; of each kind what
+    its class says of symbols and equations.
     """
     tables = {f"[{name}]": kinds for name, kinds in PARTS.items()}
     tables["[[effects]]"] = EFFECTS
@@ -54,13 +61,24 @@ def schema_text() -> str:
 
 
 def _kind_text(table: str, name: str, kind: type[Part]) -> str:
-    lines = [f'{table} kind = "{name}"']
-    signature = inspect.signature(kind.__init__).parameters
-    for field in asked_names(kind, {}):
-        default = signature[field].default
-        needed = default is inspect.Parameter.empty
-        lines.append(f"  {field}{'' if needed else f' (may be left out: {default})'}")
+    lines = [f'{table} kind = "{name}"', *_field_lines(kind)]
     if kind is Fourier:
         lines.append(_HEIGHTS)
     said = inspect.cleandoc(kind.__doc__ or "").partition(">>> ")[0].rstrip()
+    said = said.partition("\n\nRaises ")[0]  # as fields say it
     return "\n".join([*lines, *(f"    {line}".rstrip() for line in said.splitlines())])
+
+
+def _field_lines(kind: type[Part]) -> list[str]:
+    """Of each field of a kind: its name, unit and range, and what it is where left out."""
+    signature = inspect.signature(kind.__init__).parameters
+    names = asked_names(kind, {})
+    width = max(map(len, names), default=0)
+    lines = []
+    for name in names:
+        default = signature[name].default
+        needed = default is inspect.Parameter.empty
+        absent = "none" if default is None else default
+        told = "" if needed else f" (may be left out: {absent})"
+        lines.append(f"  {name.ljust(width)}  {kind.asked[name]}{told}")
+    return lines

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import tomli_w
 
-from .._checks import Part, asked_names, require, write_whole
+from .._checks import Asked, Part, asked_names, require, write_whole
 from ..effects import AbstractEffect
 from ..loads import Pulled
 from ..measured import fit_profile, read_heights
@@ -121,7 +121,9 @@ def _scene_of(document: dict[str, Any], folder: Path) -> Scene:
 def _effects_of(tables: Any) -> tuple[AbstractEffect, ...]:
     good = isinstance(tables, list) and all(isinstance(table, dict) for table in tables)
     _need(good, f"effects = {tables!r}", "tables [[effects]]")
-    return tuple(_built("[[effects]]", table, EFFECTS) for table in tables)
+    names = [f"[[effects]] no. {i}" for i in range(1, len(tables) + 1)]
+    names = ["[[effects]]"] if len(tables) == 1 else names
+    return tuple(_built(n, t, EFFECTS) for n, t in zip(names, tables, strict=True))
 
 
 def _part_of(table: str, entries: Any, folder: Path) -> Any:
@@ -145,15 +147,20 @@ def _built(where: str, entries: dict[str, Any], kinds: dict[str, type[Part]]) ->
     signature = inspect.signature(build.__init__).parameters
     needed = [n for n in names if signature[n].default is inspect.Parameter.empty]
     _require_keys(f"{where} ", given, names, needed)
-    return build(**{key: _argument(where, key, v) for key, v in given.items()})
+    return build(**{k: _argument(where, k, v, build.asked[k]) for k, v in given.items()})
 
 
-def _argument(where: str, key: str, value: Any) -> Any:
+def _argument(where: str, key: str, value: Any, asked: Asked) -> Any:
     if key != "position":
-        return _numbers(f"{where} {key}", value)
+        return _numbers(f"{where} {key}", value, _needed(asked))
     # Of the end that a load is pulled by: a part too, but not pulled again.
     _need(isinstance(value, dict), f"{where} {key} = {value!r}", "a table [load.position]")
     return _built("[load.position]", value, _without(PARTS["load"], Pulled))
+
+
+def _needed(asked: Asked) -> str:
+    """What is allowed, as a file's number or numbers."""
+    return f"{'a list of numbers' if asked.row else 'a number'} ({asked})"
 
 
 def _without(kinds: dict[str, type[Part]], kind: type[Part]) -> dict[str, type[Part]]:
@@ -205,11 +212,11 @@ def _need(condition: Any, said: str, allowed: str) -> None:
         raise ValueError(f"{said}: needs {allowed}")
 
 
-def _numbers(name: str, value: Any) -> Any:
-    """A number or a list of them, as floats."""
+def _numbers(name: str, value: Any, needed: str = "a number or a list of numbers") -> Any:
+    """A number or a list of them, as floats; the constructor looks at how many."""
     rows = value if isinstance(value, list) else [value]
     plain = all(isinstance(v, int | float) and not isinstance(v, bool) for v in rows)
-    _need(plain, f"{name} = {value!r}", "a number or a list of numbers")
+    _need(plain, f"{name} = {value!r}", needed)
     try:
         numbers = [float(v) for v in rows]
     except OverflowError:

@@ -1,13 +1,14 @@
 """What a load is."""
 
 import abc
+from typing import ClassVar
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from .._checks import Part, Real, as_real, require_real
+from .._checks import Asked, Part, Real, as_real, require_real
 
 
 class AbstractPull(Part):
@@ -61,6 +62,8 @@ class PeriodicLoad(AbstractLoad):
 
     `amplitude` in N, `period` in s.
     """
+
+    asked: ClassVar = {"amplitude": Asked("N", "any"), "period": Asked("s", "> 0")}
 
     amplitude: Real = eqx.field(converter=as_real)
     period: Real = eqx.field(converter=as_real)

@@ -1,11 +1,13 @@
 """Load given by points."""
 
+from typing import ClassVar
+
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._checks import Real, as_real, is_known, known_numbers, require
+from .._checks import Asked, Real, as_real, is_known, known_numbers, require
 from .load import AbstractLoad, listed_turning_points
 
 
@@ -21,6 +23,11 @@ class PiecewiseLinear(AbstractLoad):
     >>> print(f"{load(2.0):.2f} N, {load(5.0):.2f} N")
     0.25 N, -0.50 N
     """
+
+    asked: ClassVar = {
+        "times": Asked("s", "a list, increasing", row=True),
+        "values": Asked("N", "a list as long as times", row=True),
+    }
 
     times: Float[Array, " n"] = eqx.field(converter=as_real)
     values: Float[Array, " n"] = eqx.field(converter=as_real)

@@ -1,11 +1,11 @@
 """Load given by the end of the horizontal spring, as a place."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from .._checks import Real, as_real, exchanged, require, require_real
+from .._checks import Asked, Real, as_real, exchanged, require, require_real
 from .load import AbstractLoad
 
 
@@ -28,6 +28,11 @@ class Pulled(AbstractLoad):
     >>> print(f"{dragged.load(0.0):.4f} N, {dragged.load(3.0):.4f} N")
     0.0026 N, 1.0026 N
     """
+
+    asked: ClassVar = {
+        "position": Asked("m", "a table [load.position]: a load read as m"),
+        "rest_length": Asked("m", "any"),
+    }
 
     position: AbstractLoad
     rest_length: Real = eqx.field(converter=as_real)

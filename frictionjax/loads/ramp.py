@@ -1,10 +1,12 @@
 """Load that grows at a constant rate."""
 
+from typing import ClassVar
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from .._checks import Real, as_real, require_real
+from .._checks import Asked, Real, as_real, require_real
 from .load import AbstractLoad
 
 
@@ -16,6 +18,8 @@ class Ramp(AbstractLoad):
     >>> print(f"{fx.loads.Ramp(rate=0.5, start=0.1)(2.0):.2f} N")
     1.10 N
     """
+
+    asked: ClassVar = {"rate": Asked("N/s", "any"), "start": Asked("N", "any")}
 
     rate: Real = eqx.field(converter=as_real)
     start: Real = eqx.field(converter=as_real, default=0.0)

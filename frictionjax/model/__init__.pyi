@@ -24,6 +24,7 @@ from .strip import strip_of as strip_of
 from .strip import strips_at as strips_at
 from .summed_potential import SummedPotential as SummedPotential
 from .tabulated import TabulatedScene as TabulatedScene
+from .tabulated import require_friction as require_friction
 from .tabulated import tabulated_scene as tabulated_scene
 from .tabulated_potential import potential_at_rest as potential_at_rest
 from .tabulated_potential import potential_in_reach as potential_in_reach

@@ -66,16 +66,21 @@ _KNOWN = (
 _TABLES = ByIdentity()  # of scenes: the last eps, and the tables for it
 
 
+def require_friction(scene: Scene) -> None:
+    """Raise `ValueError` for a known scene whose tips cancel each other's forces."""
+    rho = float(coefficients_jit(scene.potential).rho_plus)
+    needs = "phases that leave friction: without, only friction and solve_limit are left"
+    require(rho != 0, "effects.RigidArray: rho_plus", rho, needs)
+
+
 def tabulated_scene(scene: Scene, eps: Any) -> TabulatedScene:
     """The tables of a known scene for cells of these eps (m)."""
     highest = float(np.max(np.asarray(eps)))
     known = _TABLES.get(scene)
     if known is not None and known[0] == highest:
         return known[1]
+    require_friction(scene)
     law = coefficients_jit(scene.potential)
-    needs = "phases that leave friction: without, only friction and solve_limit are left"
-    slides = float(law.rho_plus) != 0
-    require(slides, "effects.RigidArray: rho_plus", float(law.rho_plus), needs)
     planning, lanes = tabulated_potentials(scene.potential, highest)
     tables = TabulatedScene(
         potential=planning,

@@ -1,13 +1,13 @@
 """Finite Fourier series."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import as_real, is_concrete, is_known, known_numbers, require
+from .._checks import Asked, as_real, is_concrete, is_known, known_numbers, require
 from ..numerics import fourier_sum
 from .heights import HeightsFit, fit_heights
 from .rows import fit_map
@@ -37,6 +37,13 @@ class Fourier(AbstractSampled):
     >>> print(f"slopes from {law.omega_minus:.3f} to {law.omega_plus:.3f}")
     slopes from -0.117 to 0.150
     """
+
+    asked: ClassVar = {
+        "cos": Asked("periods", "a list, not all 0 in both", row=True),
+        "sin": Asked("periods", "a list, as long as cos", row=True),
+        "slope_error": Asked("no unit", "two numbers >= 0", row=True),
+        "slope_taken": Asked("no unit", "two numbers >= 0", row=True),
+    }
 
     cos: Float[Array, " harmonics"] = eqx.field(converter=as_real)
     sin: Float[Array, " harmonics"] = eqx.field(converter=as_real)

@@ -1,6 +1,6 @@
 """Straight flanks with rounded corners."""
 
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import (
+    Asked,
     Real,
     as_real,
     is_known,
@@ -59,6 +60,12 @@ class Polyline(AbstractProfile):
     >>> print(f"slopes from {law.omega_minus:.4f} to {law.omega_plus:.4f}")
     slopes from -0.2500 to 0.0625
     """
+
+    asked: ClassVar = {
+        "x": Asked("periods", "a list of 2 or more, increasing, in [0, 1)", row=True),
+        "heights": Asked("periods", "a list as long as x, not all equal", row=True),
+        "radius": Asked("periods", "> 0, so that corners do not overlap"),
+    }
 
     x: Float[Array, " n"]
     heights: Float[Array, " n"]

@@ -1,10 +1,12 @@
 """Sinusoidal profile."""
 
+from typing import ClassVar
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import Real, as_real, require_real
+from .._checks import Asked, Real, as_real, require_real
 from ..numerics import sin_cos
 from .profile import AbstractProfile
 
@@ -20,6 +22,8 @@ class Sine(AbstractProfile):
     >>> print(f"slopes from {law.omega_minus:.2f} to {law.omega_plus:.2f}")
     slopes from -0.10 to 0.10
     """
+
+    asked: ClassVar = {"slope": Asked("no unit", "not 0")}
 
     slope: Real = eqx.field(converter=as_real)
 

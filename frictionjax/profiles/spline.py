@@ -1,12 +1,12 @@
 """Periodic cubic spline."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import as_real, is_concrete, is_known, known_numbers, require
+from .._checks import Asked, as_real, is_concrete, is_known, known_numbers, require
 from .slope_errors import (
     AbstractSampled,
     SlopeErrors,
@@ -45,6 +45,12 @@ class Spline(AbstractSampled):
     >>> print(f"{law.omega_plus:.4f}, of the sine {0.04 * np.pi:.4f}")
     0.1256, of the sine 0.1257
     """
+
+    asked: ClassVar = {
+        "heights": Asked("periods", "a list of 4 or more, not all equal", row=True),
+        "slope_error": Asked("no unit", "two numbers >= 0", row=True),
+        "slope_taken": Asked("no unit", "two numbers >= 0", row=True),
+    }
 
     coefficients: Float[Array, " n"]
     slope_error: Float[Array, "2"] | None = None

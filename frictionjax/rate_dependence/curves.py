@@ -18,7 +18,7 @@ from .._checks import (
 from .._compile import waiting
 from ..design import slides_at_speeds
 from ..effects import CompliantArray, Engine, noise_among
-from ..model import Scene, require_reach, require_told_apart, scene_for
+from ..model import Scene, require_friction, require_reach, require_told_apart, scene_for
 from ..stochastic import SmoluchowskiStatus, smoluchowski_friction
 from ..supports import Spring
 from ..wiggly import Status
@@ -109,6 +109,7 @@ def friction_curve(
     if noise is None:
         needs = "None, or a scene with effects.Noise"
         require(temperatures is None, "temperatures", temperatures, needs)
+        require_friction(scene)
         with waiting("friction_curve", progress) as tell:
             tell(f"{asked.size} slides")
             phases = _phases_of(scene)

@@ -10,6 +10,7 @@ from .._checks import write_whole
 from .._text import ResultTable
 from ..coefficients import coefficient_table
 from ..cost import slips_of, work_precision
+from ..effects import Engine, require_done
 from ..io import scene_document
 from ..model import Scene, friction
 from ..plot import draw_work_precision
@@ -52,8 +53,10 @@ _HEADER = (
 def chosen_eps(scene: Scene, eps: Any) -> list[float]:
     """The eps of a study's list with about forty, a hundred and fifty, ten thousand slips.
 
-    Where nothing slips: the largest, the smallest and one between.
+    Where nothing slips: the largest, the smallest and one between. Raises `ValueError` for
+    effects of which nothing is measured.
     """
+    require_done(scene.effects, Engine.COST)
     known = np.sort(np.atleast_1d(np.asarray(eps, dtype=float)))[::-1]
     slips = slips_of(scene, 1.0) / known
     if not slips.any():

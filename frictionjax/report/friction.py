@@ -55,7 +55,7 @@ def friction_document(job: Job) -> dict[str, Any]:
 
 def nap_text(job: Job, bending_stiffness: float | None) -> str:
     """Notes of a job, and friction with and against the nap of its bristle."""
-    sections = [("", line) for line in job.notes]
+    sections = [("", line) for line in [*job.notes, *_left_out(job)]]
     sections.append(("With and against the nap", repr(_nap_of(job, bending_stiffness))))
     return joined(sections)
 
@@ -77,7 +77,17 @@ def nap_document(job: Job, bending_stiffness: float | None) -> dict[str, Any]:
         )
     }
     window = None if found.window is None else found.window._asdict()
-    return {**forces, "window": window, "message": found.message}
+    told = {**forces, "window": window, "message": found.message}
+    return told | ({"notes": _left_out(job)} if _left_out(job) else {})
+
+
+def _left_out(job: Job) -> list[str]:
+    """A note on effects of the scene that a nap, of one bristle in the limit, has not."""
+    kinds = [type(effect).__name__ for effect in job.scene.effects]
+    names = [name for name in kinds if name not in ("NapFlip", "AxialLoad")]
+    if not names:
+        return []
+    return [f"Note: of one bristle, in the limit: without the scene's {', '.join(names)}"]
 
 
 def nap_figures(job: Job, bending_stiffness: float | None, folder: Path) -> str:

@@ -1,8 +1,10 @@
 """Linear horizontal spring."""
 
+from typing import ClassVar
+
 import equinox as eqx
 
-from .._checks import Real, as_real, require_real
+from .._checks import Asked, Real, as_real, require_real
 from .support import AbstractSupport
 
 
@@ -15,6 +17,8 @@ class Spring(AbstractSupport):
     >>> print(fx.solve_limit(soft, ts=[0.75]).z.round(4))
     [1.8592]
     """
+
+    asked: ClassVar = {"stiffness": Asked("N/m", "> 0")}
 
     stiffness: Real = eqx.field(converter=as_real)
 

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Array, Float, UInt32
 
 from .._checks import cells_of, viscosity_of
-from ..contact import largest_compression
 from ..effects import (
+    AxialLoad,
     Inertia,
     NapFlip,
     Noise,
@@ -94,7 +94,7 @@ def scene_columns(
     known = _limit_values(scene, turning, limit)
     columns |= {name: (DIMS[2:][: v.ndim], v) for name, v in known.items()}
     modes = None if turning is None else columns["mode"][1]
-    reading = largest_compression(scene, request.eps, columns["z"][1], modes)
+    reading = _compression_of(scene, request.eps, columns["z"][1], modes)
     if reading is not None:
         columns["compression"] = DIMS[:2], reading.compression
         share = "buckling_share" if turning is None else "sprung_share"
@@ -235,6 +235,15 @@ def _by_diffrax(
         report=report,
     )
     return values, type(solver).__name__
+
+
+def _compression_of(scene: Scene, eps: np.ndarray, z: Any, modes: Any) -> Any:
+    """What rods of the cells come to, of a scene that asks for it; else None."""
+    if not any(isinstance(effect, AxialLoad) for effect in scene.effects):
+        return None
+    from ..contact import largest_compression  # nothing else needs it
+
+    return largest_compression(scene, eps, z, modes)
 
 
 def _limit_values(

@@ -125,6 +125,18 @@ def test_planning_a_sweep_imports_no_general_solvers():
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
+def test_without_effects_nothing_of_theirs_is_imported():
+    code = (
+        "import frictionjax.sweeps.sweep_cells, frictionjax.wiggly.trajectory, sys\n"
+        "import frictionjax.limit.play, frictionjax.studies.convergence_study\n"
+        "theirs = 'stochastic', 'turning', 'rods', 'contact', 'wiggly.inertial'\n"
+        "theirs = tuple(f'frictionjax.{name}.' for name in theirs)\n"
+        "loaded = [m for m in sys.modules if m.startswith(theirs)]\n"
+        "assert not loaded, loaded\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
 def test_a_study_foretells_its_cost_without_general_solvers():
     code = "import frictionjax.report.study, sys\nassert 'diffrax' not in sys.modules\n"
     subprocess.run([sys.executable, "-c", code], check=True)

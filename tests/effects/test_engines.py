@@ -88,6 +88,9 @@ CALLS = {
         s.bristle, HEIGHTS, STIFFNESSES, profile=s.profile, effects=s.effects
     ),
     Engine.FRICTION_CURVE: lambda s: fx.friction_curve(s, [0.1], 0.05),
+    Engine.TRACE: lambda s: fx.fit_trace(
+        fx.Trace(TS[::40], z=np.clip(TS[::40] - 0.1, 0, 1)), s, 0.05, 1.0, 1, progress=False
+    ),
 }
 
 
@@ -97,9 +100,13 @@ def test_every_effect_of_the_library_is_walked():
     assert kinds - abstract == EFFECTS.keys()
 
 
+def test_every_engine_is_walked():
+    assert CALLS.keys() == set(Engine)
+
+
 # A program each for what is done here, whose values tests of the effects hold.
 COMPILED = {Engine.PATH, Engine.RESOLVED, Engine.CERTIFICATE, Engine.FRICTION_CURVE}
-COMPILED |= {Engine.SLIDE, Engine.SWEEP}
+COMPILED |= {Engine.SLIDE, Engine.SWEEP, Engine.TRACE}
 
 
 def cell_of(engine, name):
@@ -117,8 +124,10 @@ def test_an_engine_does_an_effect_or_refuses_it_by_name(engine, name):
     if does(engine, EFFECTS[name]):
         CALLS[engine](scene)
     else:
-        with pytest.raises(ValueError, match=rf"does not do {name}: needs \S"):
+        with pytest.raises(ValueError, match=rf"does not do {name}: needs \S") as caught:
             CALLS[engine](scene)
+        # A list of all other calls says nothing of what was asked.
+        assert "needs one of" not in str(caught.value)
 
 
 @pytest.mark.parametrize("seed", range(12))

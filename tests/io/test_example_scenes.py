@@ -53,3 +53,87 @@ def test_the_schema_has_every_field_of_every_part():
             first = inspect.cleandoc(kind.__doc__).splitlines()[0]
             assert first in section
     assert ">>>" not in text  # a scene file holds no Python
+
+
+def made(table, name):
+    """A kind of part, and arguments that it takes."""
+    if table == "effects":
+        given = {"offsets": [0.0, 0.5], "weights": [1.0, 2.0], "bending_stiffness": 0.1}
+        given |= {"temperature": 1e-3, "mass": 1.0, "exponent": 2.0}
+    else:
+        given = {
+            "profile": {"slope": 0.1, "cos": [0.01, 0.0], "sin": [0.0, 0.01]}
+            | {"slope_error": [0.0, 0.1], "slope_taken": [0.1, 0.0], "radius": 0.01}
+            | {"x": [0.0, 0.3, 0.4, 0.7], "heights": [0.0, 0.1, 0.0, 0.05]},
+            "bristle": {"a": 0.5, "alpha": 1.0, "stiffness": 1.0, "rest_length": 2.0}
+            | {"length": 1.4, "height": 1.0, "angle": 0.5, "rest_angle": 0.3},
+            "support": {"stiffness": 1.0},
+            "load": {"rate": 1.0, "start": 0.1, "amplitude": 1.0, "period": 3.0}
+            | {"times": [0.0, 1.0], "values": [0.0, 1.0]}
+            | {"position": fx.loads.Ramp(1.0), "rest_length": 0.1},
+        }[table]
+    kind = (PARTS | {"effects": EFFECTS})[table][name]
+    return kind, {field: given[field] for field in asked_names(kind, {})}
+
+
+FIELDS = [
+    (table, name, field)
+    for table, kinds in (*PARTS.items(), ("effects", EFFECTS))
+    for name, kind in kinds.items()
+    for field in asked_names(kind, {})
+]
+REFUSED = {
+    "> 0": [0.0, -1.0],
+    "not 0": [0.0],
+    "> height": [1.0],
+    "in (-pi/2, pi/2)": [-1.6, 1.6],
+    "in (-pi/2, arccos(height/length))": [-1.6, 0.8],
+    "increasing": [[0.3, 0.2, 0.5, 0.6]],
+    "in [0, 1)": [[0.0, 0.3, 0.4, 1.2], [-0.1, 0.3, 0.4, 0.7]],
+    "not all equal": [[0.1] * 4],
+    "4 or more": [[0.0, 0.1, 0.0]],
+    "2 or more": [[0.0]],
+    "as long as": [[0.0, 0.1, 0.3]],
+    "corners do not overlap": [10.0],
+    "two numbers >= 0": [[0.1], [-0.1, 0.1]],
+    "not all 0": [[0.0, 0.0]],
+    ">= 0, not all 0": [[1.0, -1.0]],
+    "a table": [1.0],
+}
+TAKEN = {"> 0": [1e-3], "not 0": [-0.1], "any": [0.0, -3.0], "in (-pi/2": [-1.5]}
+
+
+@pytest.mark.parametrize(("table", "name", "field"), FIELDS)
+def test_a_field_is_told_with_its_unit_and_what_its_part_allows(table, name, field):
+    kind, given = made(table, name)
+    unit, allowed, row = kind.asked[field]
+    end = "]]" if table == "effects" else "]"
+    line = next(
+        text
+        for text in schema_text().split(f'{table}{end} kind = "{name}"\n')[1].splitlines()
+        if text.split()[:1] == [field]
+    )
+    assert f"  {unit}, {allowed}" in line
+    if "not all 0 in both" in allowed:
+        given["sin"] = [0.0, 0.0]
+    kind(**given)
+    for words, values in TAKEN.items():
+        for value in values if words in allowed and not row else ():
+            kind(**(given | {field: value}))
+    wrong = [v for words, values in REFUSED.items() if words in allowed for v in values]
+    if field != "position":
+        wrong += [float("nan"), [[1.0], [2.0]]] + ([1.0] if row else [[1.0, 2.0]])
+    for value in wrong:
+        with pytest.raises(ValueError, match=field if field != "sin" else "sin|cos"):
+            kind(**(given | {field: value}))
+
+
+def test_units_are_those_of_the_classes():
+    for kinds in (*PARTS.values(), EFFECTS):
+        for kind in kinds.values():
+            assert list(kind.asked) == asked_names(kind, {})
+            said = " ".join((kind.__doc__ or "").split())
+            for field, asked in kind.asked.items():
+                unit = "" if asked.unit == "no unit" else asked.unit
+                assert f"`{field}`" in said, (kind, field)
+                assert unit in said, (kind, field, unit)

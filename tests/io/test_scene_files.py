@@ -133,7 +133,7 @@ MISTAKES = [
     ("angle = 1.0", "angel = 1.0", r"\[bristle\] angel is unknown: .*height, angle"),
     ("angle = 1.0", "", r"\[bristle\] angle is missing"),
     ("angle = 1.0", 'angle = "steep"', r"\[bristle\] angle = 'steep': needs a number"),
-    ("angle = 1.0", "angle = true", r"\[bristle\] angle = True: needs a number"),
+    ("angle = 1.0", "angle = true", r"\[bristle\] angle = True: needs a number \(rad, in"),
     ("angle = 1.0", "angle = [1.0, 2.0]", r"bristle\.angle = .*one number"),
     ("angle = 1.0", "angle = nan", r"bristle\.angle = nan: needs a finite number"),
     ("angle = 1.0", "angle = 1.55", r"bristle\.angle = 1\.55: .*cot\(angle\)"),
@@ -260,7 +260,7 @@ EFFECT_MISTAKES = {
         r"\[\[effects\]\] mass is unknown: needs no key$"
     ),
     '[[effects]]\nkind = "CompliantArray"\noffsets = "all"': (
-        r"\[\[effects\]\] offsets = 'all': needs a number or a list of numbers$"
+        r"\[\[effects\]\] offsets = 'all': needs a list of numbers \(periods, a list\)$"
     ),
     '[[effects]]\nkind = "CompliantArray"\noffsets = [nan]': (
         r"effects\.CompliantArray\.offsets = .*needs finite places"
@@ -289,6 +289,10 @@ EFFECT_MISTAKES = {
     '[[effects]]\nkind = "Noise"\ntemperature = 1.0\n'
     '[[effects]]\nkind = "Inertia"\nmass = 1.0': (
         r"scene\.effects = Noise and Inertia: needs one of them"
+    ),
+    '[[effects]]\nkind = "RigidArray"\noffsets = [0.0]\n'
+    '[[effects]]\nkind = "CompliantArray"\noffsets = true': (
+        r"\[\[effects\]\] no\. 2 offsets = True: needs a list of numbers"
     ),
     '[[effects]]\nkind = "LeadingOrder"\n[[effects]]\nkind = "LeadingOrder"': (
         r"scene\.effects = LeadingOrder and LeadingOrder: needs one of each kind"

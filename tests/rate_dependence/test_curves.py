@@ -243,6 +243,11 @@ NOISE = fx.effects.Noise(1e-3)
             {},
             r"offsets: number of bristles = 1e\+06: needs at most",
         ),
+        (
+            scene_with(fx.effects.RigidArray([0.0, 0.5])),
+            {},
+            r"effects\.RigidArray: rho_plus = 0: needs phases that leave friction",
+        ),
     ],
 )
 def test_what_cannot_be_done_is_refused_by_name(scene, change, message):

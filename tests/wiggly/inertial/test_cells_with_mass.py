@@ -1,5 +1,6 @@
 """Tips with mass: against SciPy, and against what is known of them."""
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -91,6 +92,23 @@ def test_frequency_of_small_oscillations_at_rest():
     seen = np.polyfit(ts, turned, 1)[0]
     assert np.sqrt(seen**2 + rate**2) == pytest.approx(omega, rel=1e-6)
     np.testing.assert_allclose(np.abs(circle), start * np.exp(-rate * ts), rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("eta", "wells"), [(4.603338848752, 1), (7.789705767493, 2), (10.949879869826, 3)]
+)
+def test_where_one_more_well_can_hold_a_slipped_tip(eta, wells):
+    """Its lower fold is there as high as the fold that the tip has left."""
+    eps, turn = 2 * np.pi * RHO / eta, np.arccos(1 / eta) / (2 * np.pi)
+    scene = leading_scene(1.0, 1.0, fx.loads.Ramp(1.0, 0.0), 1.0)
+
+    def pull(z):
+        return z + scene.potential.force(z, eps)
+
+    left, into = eps * (0.5 - turn), eps * (wells + 0.5 + turn)
+    for fold in (left, into):
+        assert float(jax.grad(pull)(fold)) == pytest.approx(0, abs=1e-9)
+    assert float(pull(into)) == pytest.approx(float(pull(left)), rel=1e-11)
 
 
 def wells_of_slips(eta, beta, gamma=1.0):
