@@ -20,7 +20,7 @@ MEANINGS: dict[str, dict[str, tuple[str, str]]] = {
     "Sine": {
         "slope": ("1", "steepest slope of the surface"),
         "amplitude": ("N", "largest load"),
-        "period": ("s", "time after which the load comes again"),
+        "period": ("s", "time after which the load repeats itself"),
     },
     "Fourier": {
         "cos": (_PERIODS, "heights of the cosine waves"),
@@ -48,7 +48,7 @@ MEANINGS: dict[str, dict[str, tuple[str, str]]] = {
         "stiffness": ("N/m", "of the spring"),
         "rest_length": _REST,
         "height": _HEIGHT,
-        "angle": ("rad", "from the vertical, positive where the tip is behind the root"),
+        "angle": ("rad", "from the vertical, positive where the tip is left of the root"),
     },
     "AngularSpring": {
         "stiffness": ("N m/rad", "of the angular spring at the root"),
@@ -67,7 +67,7 @@ MEANINGS: dict[str, dict[str, tuple[str, str]]] = {
     },
     "Triangle": {
         "amplitude": ("N", "largest load"),
-        "period": ("s", "time after which the load comes again"),
+        "period": ("s", "time after which the load repeats itself"),
     },
     "PiecewiseLinear": {
         "times": ("s", "of the corners of the load"),
