@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from ..._checks import Part
-from ..._text import ResultTable
-from ...io import numbers_of_part
-from ...model import Scene
+from .._checks import Part
+from .._text import ResultTable
+from ..model import Scene
+from .registry import numbers_of_part
 
 _PERIODS = "periods"
 _STIFFNESS = "N m^2", "bending stiffness of the rod"
@@ -109,12 +109,13 @@ def part_rows(scene: Scene) -> ResultTable:
         ("scene", "", "duration", _value(scene.duration), "s", "how long the load acts"),
         ("scene", "", "z0", _value(scene.z0), "m", "state at the start"),
     ]
-    for table in ("profile", "bristle", "support", "load"):
+    parts = ("potential",) if scene.profile is None else ("profile", "bristle")
+    for table in (*parts, "support", "load"):
         rows += _rows_of(table, getattr(scene, table))
     for effect in scene.effects:
         rows += _rows_of("effect", effect)
     header = ("part", "kind", "number", "value", "unit", "meaning")
-    return ResultTable(header, tuple(rows), left=3, meanings=1)
+    return ResultTable(header, tuple(rows), left=3, meanings=2)
 
 
 def _rows_of(table: str, part: Any, metres: bool = False) -> list[tuple[str, ...]]:

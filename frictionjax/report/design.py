@@ -23,14 +23,13 @@ from ..design import (
     write_heights,
 )
 from ..effects import CompliantArray, NapFlip
-from ..io import load_scene, scene_document
+from ..io import load_scene, scene_document, unit_of
 from ..model import Scene, friction
 from ..profiles import AbstractProfile
 from ..supports import Spring
 from .design_page import DesignFacts, design_page
 from .folder import write_figures
 from .job import Job, joined, with_surface
-from .sections import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

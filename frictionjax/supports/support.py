@@ -27,7 +27,7 @@ class AbstractSupport(Part):
         """`Phi(z)` in J."""
 
     @abc.abstractmethod
-    def state_of(self, force: Real) -> Real:
+    def state_of(self, force: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         """`(Phi')^-1(force)` in m, differentiable in `force` (N) and parameters."""
 
     def state_near(self, force: Real, guess: Real) -> Real:

@@ -14,7 +14,7 @@ _TITLES = {
 }
 _LEVELS = {
     "geometric": (("rho_with", 1, "with"), ("rho_against", -1, "against")),
-    "energetic": (("rho_with", 1, "with"), ("rho_flipped", -1, "turned")),
+    "energetic": (("rho_with", 1, "with"), ("rho_flipped", -1, "flipped")),
 }
 
 
