@@ -149,11 +149,12 @@ class Scene(SelfDrawn, eqx.Module):
 
         Raises `ValueError` under a trace, where nothing is known yet.
 
-        >>> print("\n".join(str(scene.table()).splitlines()[:4]))
-        part     kind           number       value  unit   meaning
-        scene                   duration         3  s      how long the load acts
-        scene                   z0               0  m      state at the start
-        profile  Sine           slope          0.1  1      steepest slope of the surface
+        >>> scene.table()
+        part     kind           number       value  unit  meaning
+        scene                   duration         3  s     how long the load acts
+        scene                   z0               0  m     state at the start
+        profile  Sine           slope          0.1  1     steepest slope of the surface
+        ...
         """
         require(is_known(self), "Scene", "a trace", "known numbers")
         return floor_above("io").part_rows(self)
