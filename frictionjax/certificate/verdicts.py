@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from .._checks import Outcome, Result
+from .._checks import Outcome, Result, as_text
 from .._text import Named, SelfDrawn, ShownNumbers
 from .settings import SETTINGS
 
@@ -68,6 +68,11 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
             "viscosity": abs(self.viscosity - 1) / SETTINGS.viscosity,
             "distance": self.distance / SETTINGS.farthest,
         }
+
+    def __repr__(self) -> str:
+        numbers = zip(self._fields[:-1], self[:-1], strict=True)
+        told = ", ".join(f"{name}={as_text(value)}" for name, value in numbers)
+        return f"Certificate({told}, status={self.status.name}: {self.message})"
 
     def _numbers(self) -> list[Named]:
         return [

@@ -28,7 +28,7 @@ _LEAST = 1e-3  # seconds: what is left of the total where loading took all of it
 @scene_argument
 @surface_options
 @click.option("--eps", help="In m: a list or START:STOP:N. [two of the scene's list]")
-@click.option("--gamma", help="A list or START:STOP:N. [1]")
+@click.option("--gamma", help="Viscosity is eps^gamma: a list or START:STOP:N. [1]")
 @click.option("--accuracies", help="In eps: a list or START:STOP:N. [1e-1, 1e-3, 1e-5]")
 @click.option(
     "--methods",

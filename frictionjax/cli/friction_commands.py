@@ -100,7 +100,9 @@ def nap(
 @click.command()
 @scene_argument
 @click.option("--eps", type=float, default=1e-3, show_default=True, help="Period in m.")
-@click.option("--gamma", type=float, default=1.0, show_default=True)
+@click.option(
+    "--gamma", type=float, default=1.0, show_default=True, help="Viscosity is eps^gamma."
+)
 @click.option("--accuracy", type=float, default=1e-3, show_default=True, help="In eps.")
 def explain(scene: str | None, eps: float, gamma: float, accuracy: float) -> None:
     """The composed equation of a scene, and which effects its accuracy calls for."""

@@ -22,9 +22,18 @@ from .running import report_asked, start, write_folder
 @scene_argument
 @surface_options
 @click.option("--eps", help="In m: a list 0.1,0.05 or START:STOP:N (equal ratios).")
-@click.option("--gamma", help="A list or START:STOP:N.")
-@click.option("--accuracy", type=float, help="Wanted error of z in units of eps.")
-@click.option("--method", default="auto", show_default=True, help="Solver.")
+@click.option("--gamma", help="Viscosity is eps^gamma: a list or START:STOP:N.")
+@click.option(
+    "--accuracy",
+    type=float,
+    help="Wanted error of z in units of eps. [the scene's, or 1e-3]",
+)
+@click.option(
+    "--method",
+    default="auto",
+    show_default=True,
+    help="auto, resolved (every slip), windowed, or a solver of diffrax.",
+)
 @click.option(
     "--budget",
     type=POSITIVE,

@@ -2,6 +2,9 @@ from .documents import written as written
 from .example_scenes import example_lines as example_lines
 from .example_scenes import example_text as example_text
 from .example_scenes import schema_text as schema_text
+from .part_numbers import MEANINGS as MEANINGS
+from .part_numbers import part_rows as part_rows
+from .part_numbers import unit_of as unit_of
 from .registry import EFFECTS as EFFECTS
 from .registry import PARTS as PARTS
 from .registry import numbers_of_part as numbers_of_part

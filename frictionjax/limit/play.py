@@ -1,6 +1,6 @@
 """The rate-independent limit system (eq. 2.3) as one clip after the other."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
 import jax
@@ -20,7 +20,7 @@ from .._checks import (
     with_nan,
 )
 from .._compile import Program, padded_size
-from .._text import Named, SelfDrawn, ShownNumbers
+from .._text import Named, SelfDrawn, ShownNumbers, dataset_over_time
 from ..coefficients import Coefficients
 from ..effects import Engine, NapFlip, nap_flip_among
 from ..loads import AbstractPull
@@ -38,6 +38,17 @@ from ..model import (
 )
 from ..supports import AbstractSupport
 from ..tables import load_table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_COLUMNS = {
+    "z": ("m", "state of the limit system"),
+    "dissipation": ("J", "energy dissipated since t = 0, int R(z')"),
+    "root": ("m", "root u of the rod"),
+    "tip": ("m", "tip p of the rod"),
+    "mode": ("1", "1: the rod as it stands at first; -1: turned over; 0: in between"),
+}
 
 
 class LimitStatus(Outcome):
@@ -69,6 +80,19 @@ class LimitSolution(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
     def _codes(self) -> Array:
         good = jnp.all(jnp.isfinite(self.z) & jnp.isfinite(self.dissipation), axis=-1)
         return jnp.where(good, int(LimitStatus.OK), int(LimitStatus.NOT_FINITE))
+
+    def to_dataset(self) -> "xr.Dataset":
+        """What there is over the dimension `time` (s), with units and how it ended.
+
+        Raises `ValueError` of a batch.
+
+        >>> data = fx.solve_limit(scene, ts=[0.0, 0.75, 3.0]).to_dataset()
+        >>> print(f"{data.z.sel(time=0.75):.3f} {data.z.units}: {data.message}")
+        0.930 m: every number can be trusted
+        """
+        require(np.ndim(self.z) == 1, "solution", "a batch", "one trajectory")
+        ended = {"status": self.status.name, "message": self.message}
+        return dataset_over_time(self, _COLUMNS, ended)
 
     def _in_words(self) -> str:
         codes, count = self._codes, np.shape(self.z)[-1]

@@ -1,6 +1,7 @@
 """What is simulated, as data."""
 
 import dataclasses
+import html
 from typing import Any
 
 import equinox as eqx
@@ -31,7 +32,7 @@ from .._checks import (
     require_x64,
 )
 from .._compile import Program
-from .._text import SelfDrawn
+from .._text import ResultTable, SelfDrawn, floor_above
 from ..bristles import AbstractBristle, pulling_text
 from ..effects import AbstractEffect, require_bristle, require_together
 from ..loads import AbstractLoad, AbstractPull, Pulled
@@ -142,6 +143,26 @@ class Scene(SelfDrawn, eqx.Module):
         else:
             names.remove("potential")
         return f"{part_text(self, names)}{f': {pulls}' if pulls else ''}"
+
+    def table(self) -> ResultTable:
+        """A line for each number of a part, with its unit and what it is.
+
+        Raises `ValueError` under a trace, where nothing is known yet.
+
+        >>> scene.table()
+        part     kind           number       value  unit  meaning
+        scene                   duration         3  s     how long the load acts
+        scene                   z0               0  m     state at the start
+        profile  Sine           slope          0.1  1     steepest slope of the surface
+        ...
+        """
+        require(is_known(self), "Scene", "a trace", "known numbers")
+        return floor_above("io").part_rows(self)
+
+    def _repr_html_(self) -> str:
+        if is_known(self):
+            return self.table()._repr_html_()
+        return f"<pre>{html.escape(repr(self))}</pre>"
 
     @property
     def profile(self) -> AbstractProfile | None:

@@ -32,6 +32,7 @@ _TITLES = {
 }
 _SIGNED = ("ratio", "contrast", "difference", "alpha")
 _RATIOS = (1 / 10, 1 / 5, 1 / 3, 1 / 2, 2 / 3, 1, 1.5, 2, 3, 5, 10)
+_PLATE: Any = {"facecolor": "#ffffff", "edgecolor": "none", "alpha": 0.7, "pad": 0.8}
 # What is left out of a map, and how it is hatched.
 _LEFT = ("////", "not admissible"), ("....", "$\\alpha$ < 0: the bristle pulls")
 
@@ -136,7 +137,8 @@ def _contours(axes: Any, x, y, shown, levels, texts) -> None:
     def text(value: float) -> str:
         return texts[min(texts, key=lambda known: abs(known - value))]
 
-    axes.clabel(lines, fmt=text, fontsize=8)
+    for label in axes.clabel(lines, fmt=text, fontsize=8):
+        label.set_bbox(_PLATE)  # or it is lost on the dark ends of the colours
 
 
 def _key(axes: Any, x, y, admissible: np.ndarray, alpha: np.ndarray) -> None:

@@ -30,9 +30,9 @@ def draw_trajectories(
 ) -> Figure:
     r"""Draw `z_eps` for a few eps of one gamma over the limit `z`, the strip shaded.
 
-    `dataset`: of `sweep`. `gamma`: the nearest to 1 where None; `eps`: largest, middle and
-    smallest where None. A panel beside it follows a few slips of the largest eps whose
-    slips the times resolve.
+    `dataset`: of `sweep`. `gamma`: the nearest to 1 where None; `eps`: largest, smallest
+    and one between where None. A panel beside it follows a few slips of the largest eps
+    whose slips the times resolve.
 
     Raises `ValueError` for a gamma or an eps that the data set does not hold.
 

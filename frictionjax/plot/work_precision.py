@@ -8,6 +8,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from .cost_cells import columns_below, draw_cells
 from .cost_runs import (
@@ -100,6 +101,16 @@ def _times(axes: Any, cell: xr.Dataset) -> None:
         axes.axhline(MOST, **_CAP)
     _floor(axes, float(floor_of(cell)))
     mark_failed([axes], [failed], levels=True)
+    _few_seconds(axes)
+
+
+def _few_seconds(axes: Any) -> None:
+    """Within two decades 1, 2 and 5 of each: powers of ten and factors run together."""
+    low, high = axes.get_xlim()
+    if high < 100 * low:
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _draw_spread(axes: Any, runs: DrawnRuns, shade: str) -> None:

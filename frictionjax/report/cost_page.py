@@ -259,8 +259,11 @@ def _failed_rows(data: xr.Dataset) -> list[tuple[str, ...]]:
         gamma, eps, solver, accuracy = run.run.item()
         status = "wrong" if wrong else names[code]
         why = _WRONG if wrong else status_of(code).message
-        numbers = f"{gamma:.4g}", f"{eps:.4g}", str(solver), f"{accuracy:.0e}"
-        rows.append((*numbers, status, why))
+        method = f"{gamma:.4g}", f"{eps:.4g}", str(solver)
+        asked = f"{accuracy:.0e}"
+        if rows and (*rows[-1][:3], *rows[-1][4:]) == (*method, status, why):
+            asked = f"{rows.pop()[3]}, {asked}"  # a line for all that ended alike
+        rows.append((*method, asked, status, why))
     return rows
 
 

@@ -23,14 +23,13 @@ from ..design import (
     write_heights,
 )
 from ..effects import CompliantArray, NapFlip
-from ..io import load_scene, scene_document
+from ..io import load_scene, scene_document, unit_of
 from ..model import Scene, friction
 from ..profiles import AbstractProfile
 from ..supports import Spring
 from .design_page import DesignFacts, design_page
 from .folder import write_figures
 from .job import Job, joined, with_surface
-from .sections import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -188,17 +187,19 @@ _SEED = "0, of the random surfaces that the search starts from, and of those in 
 def angle_rows(fit: AngleFit) -> ResultTable:
     """What one `fit_angle` found: value, reach, other solutions, sensitivities."""
     moved = fit.sensitivities
+    unit, of = _unit(fit.bristle, fit.free), "" if fit.quantity == "ratio" else " N"
+    per = f"{unit or '1'}/N" if of else unit
     others = [as_text(v) for v in np.asarray(fit.solutions) if v != float(fit.value)]
     rows = [
-        ("wanted", f"{fit.quantity} = {as_text(fit.target)}"),
-        ("achieved", f"{float(fit.achieved):.10g}"),
+        ("wanted", f"{fit.quantity} = {as_text(fit.target)}{of}"),
+        ("achieved", f"{float(fit.achieved):.10g}{of}"),
         ("alpha", f"{float(fit.alpha):.10g} N"),
-        (fit.free, f"{float(fit.value):.10g} {_unit(fit.bristle, fit.free)}".rstrip()),
+        (fit.free, f"{float(fit.value):.10g} {unit}".rstrip()),
         ("other solutions", ", ".join(others) or "none"),
-        ("reachable", intervals_text(fit.reachable)),
-        (f"d {fit.free}/d {fit.quantity}", as_text(moved.target)),
-        (f"d {fit.free}/d omega_plus", as_text(moved.omega_plus)),
-        (f"d {fit.free}/d omega_minus", as_text(moved.omega_minus)),
+        ("reachable", f"{fit.quantity} in {intervals_text(fit.reachable)}{of}"),
+        (f"d {fit.free}/d {fit.quantity}", f"{as_text(moved.target)} {per}".rstrip()),
+        (f"d {fit.free}/d omega_plus", f"{as_text(moved.omega_plus)} {unit}".rstrip()),
+        (f"d {fit.free}/d omega_minus", f"{as_text(moved.omega_minus)} {unit}".rstrip()),
         ("status", fit.status.message),
     ]
     return ResultTable(("number", "value"), tuple(rows), left=2)

@@ -1,6 +1,7 @@
 """What a study has found: orders, tables, pictures, files."""
 
 from pathlib import Path
+from textwrap import fill
 
 import xarray as xr
 
@@ -19,6 +20,7 @@ from ..studies import (
 from .folder import study_figures, write_study
 from .job import Job, joined
 from .study_page import StudyFacts, study_page
+from .study_words import verdict_sentence
 from .tables import row_table
 
 _COVERS = (
@@ -31,6 +33,13 @@ _COVERS = (
     "of the errors in the window, all that they show alone. not yet seen: errors follow\n"
     "the law, not yet its power; order and constant are theory's, confirmed through it."
 )
+
+_CELLS = (
+    "sup error: how far the state is from that of dry friction at most, in m and in eps;\n"
+    "dissipation error: of the energy that has become heat. residual: of the balance of\n"
+    "energies, which closes for solutions alone. steps: of the integrator."
+)
+_WIDE = 86  # letters of a line of text
 
 
 def write_results(
@@ -46,6 +55,7 @@ def write_results(
     sections = [("", line) for line in job.notes]
     if "left_out" in data.attrs:
         sections.append(("", f"Effects left out: {data.attrs['left_out']}"))
+    sections.append(("What came out", fill(verdict_sentence(found, law), _WIDE)))
     coefficients = coefficient_table(law, job.error)
     sections.append(("Friction coefficients", str(coefficients)))
     if job.rows is not None:
@@ -56,7 +66,7 @@ def write_results(
         )
     else:
         sections += [
-            ("Cells", str(sweep_table(data))),
+            ("Cells", f"{sweep_table(data)}\n{_CELLS}"),
             ("Orders of convergence", f"{order_table(found.orders)}\n{_COVERS}"),
             ("Lemmas 7 to 9", str(lemma_table(found.orders))),
         ]

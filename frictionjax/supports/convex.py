@@ -4,10 +4,11 @@ from collections.abc import Callable
 from typing import ClassVar
 
 import jax.numpy as jnp
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Real, require_function
 from ..numerics import increasing_root
-from .support import AbstractSupport
+from .support import AbstractSupport, of_each
 
 
 class Convex(AbstractSupport):
@@ -34,5 +35,8 @@ class Convex(AbstractSupport):
     def energy(self, z: Real) -> Real:
         return jnp.asarray(self.energy_fn(z))
 
-    def state_of(self, force: Real) -> Real:
+    def state_of(self, force: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
+        return of_each(self._state_of, force)
+
+    def _state_of(self, force: Real) -> Real:
         return increasing_root(lambda z: self.force(z) - force, jnp.zeros_like(force))

@@ -1,8 +1,9 @@
 """Linear horizontal spring."""
 
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import equinox as eqx
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Asked, Real, as_real, require_real
 from .support import AbstractSupport
@@ -28,8 +29,8 @@ class Spring(AbstractSupport):
     def energy(self, z: Real) -> Real:
         return 0.5 * self.stiffness * z**2
 
-    def state_of(self, force: Real) -> Real:
-        return force / self.stiffness
+    def state_of(self, force: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
+        return cast(Array, force / self.stiffness)
 
     def state_near(self, force: Real, guess: Real) -> Real:
         return self.state_of(force)

@@ -1,8 +1,11 @@
 """What a support is."""
 
 import abc
+from collections.abc import Callable
 
 import jax
+import jax.numpy as jnp
+from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Part, Real
 
@@ -15,6 +18,8 @@ class AbstractSupport(Part):
     >>> spring = scene.support
     >>> print(f"{spring.force(0.5):.2f} N at 0.5 m, {spring.state_of(0.3):.2f} m at 0.3 N")
     0.50 N at 0.5 m, 0.30 m at 0.3 N
+    >>> print(spring.force(np.array([0.0, 0.5, 1.0])))
+    [0.  0.5 1. ]
     """
 
     @abc.abstractmethod
@@ -22,7 +27,7 @@ class AbstractSupport(Part):
         """`Phi(z)` in J."""
 
     @abc.abstractmethod
-    def state_of(self, force: Real) -> Real:
+    def state_of(self, force: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         """`(Phi')^-1(force)` in m, differentiable in `force` (N) and parameters."""
 
     def state_near(self, force: Real, guess: Real) -> Real:
@@ -34,10 +39,15 @@ class AbstractSupport(Part):
             guess = guess + (force - self.force(guess)) / self.stiffness_at(guess)
         return guess
 
-    def force(self, z: Real) -> Real:
-        """`Phi'(z)` in N."""
-        return jax.grad(self.energy)(z)
+    def force(self, z: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
+        """`Phi'(z)` in N, of `z` in m or an array of them."""
+        return of_each(jax.grad(self.energy), z)
 
-    def stiffness_at(self, z: Real) -> Real:
-        """`Phi''(z)` in N/m."""
-        return jax.grad(jax.grad(self.energy))(z)
+    def stiffness_at(self, z: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
+        """`Phi''(z)` in N/m, of `z` in m or an array of them."""
+        return of_each(jax.grad(jax.grad(self.energy)), z)
+
+
+def of_each(fn: Callable, values: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
+    """`fn`, of scalars, of each of the values; of a scalar the very program that it was."""
+    return jnp.vectorize(fn)(values) if jnp.ndim(values) else fn(values)

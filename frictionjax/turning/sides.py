@@ -37,20 +37,20 @@ class SidedSupport(AbstractSupport):
     side: Real
     shift: Real
 
-    def place(self, z: Real) -> Real:
+    def place(self, z: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         """The state in m that one of this side means."""
         return self.side * z - self.shift
 
     def energy(self, z: Real) -> Real:
         return self.support.energy(self.place(z))
 
-    def state_of(self, force: Real) -> Real:
+    def state_of(self, force: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         return self.side * (self.support.state_of(self.side * force) + self.shift)
 
-    def force(self, z: Real) -> Real:
+    def force(self, z: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         return self.side * self.support.force(self.place(z))
 
-    def stiffness_at(self, z: Real) -> Real:
+    def stiffness_at(self, z: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         return self.support.stiffness_at(self.place(z))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from .._checks import CodedResult, require
-from .._text import Named, SelfDrawn, ShownNumbers
+from .._text import Named, SelfDrawn, ShownNumbers, dataset_over_time
 from .equation import Status
 from .solved_scene import loads_and_forces, require_one_force
 
@@ -96,16 +96,9 @@ class Solution(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
         >>> print(f"{data.z.sel(time=0.75):.3f} {data.z.units}: {data.message}")
         0.930 m: every number can be trusted
         """
-        import xarray as xr  # nothing else needs it
-
         require(np.ndim(self.z) == 1, "solution", "a batch", "one trajectory")
-        data = xr.Dataset(coords={"time": ("time", np.asarray(self.ts), {"units": "s"})})
-        for name, (units, meaning) in _COLUMNS.items():
-            if (values := getattr(self, name)) is not None:
-                told = {"units": units, "long_name": meaning}
-                data[name] = "time", np.asarray(values), told
-        ended = self.status.name, self.message, self.how
-        return data.assign_attrs(zip(("status", "message", "values"), ended, strict=True))
+        ended = {"status": self.status.name, "message": self.message, "values": self.how}
+        return dataset_over_time(self, _COLUMNS, ended)
 
     def _in_words(self) -> str:
         ended, steps = self._ended, np.asarray(self.stats["steps"])

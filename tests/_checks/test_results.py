@@ -76,4 +76,6 @@ def test_a_certificate_is_still_a_tuple():
     assert numbers == list(range(9))
     assert status == CertificateStatus.OK
     assert repr(found).startswith("Certificate(residual=0, residual_error=1, ")
+    assert repr(found).endswith(f", status=OFF: {CertificateStatus.OFF.message})")
+    assert "residual=0.333333, " in repr(found._replace(residual=1 / 3))
     assert not hasattr(found, "__dict__")

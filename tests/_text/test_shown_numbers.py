@@ -41,7 +41,7 @@ def test_a_batch_has_a_line_for_each():
     targets = np.array([1.3, 1.4, 9.0])
     found = fx.fit_angle(SURFACE, BRISTLE, ratio=targets)
     table = found.table()
-    assert table.header[:3] == ("", "status", "angle")
+    assert table.header[:3] == ("", "status", "angle/rad")
     assert [row[3] for row in table.rows] == ["1.3", "1.4", "9"]
     assert [row[1] for row in table.rows] == [status.name for status in found.status]
     assert len({row[1] for row in table.rows}) == 2

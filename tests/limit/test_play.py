@@ -215,3 +215,17 @@ def test_a_batch_equals_its_lanes_and_lacks_room_honestly():
         np.testing.assert_allclose(batch.dissipation[i], alone.dissipation, atol=1e-14)
     assert np.all(np.isnan(batch.z[3]))  # 30 turning points do not fit
     assert np.all(np.isnan(batch.dissipation[3]))
+
+
+def test_a_limit_as_a_data_set_has_units_and_says_how_it_ended():
+    pulled = scene(LOOPS)
+    ts = np.linspace(0.0, 3.0, 7)
+    found = fx.solve_limit(pulled, ts)
+    data = found.to_dataset()
+    np.testing.assert_array_equal(data.z, found.z)
+    np.testing.assert_array_equal(data.time, ts)
+    assert {name: data[name].units for name in data} == {"z": "m", "dissipation": "J"}
+    assert data.attrs == {"status": "OK", "message": found.message}
+    several = jax.vmap(lambda z0: fx.solve_limit(scene(LOOPS, z0=z0), ts))
+    with pytest.raises(ValueError, match="solution = 'a batch': needs one trajectory"):
+        several(jnp.array([0.0, 0.05])).to_dataset()

@@ -137,6 +137,15 @@ def test_failed_cells_are_not_chosen():
     assert "$\\epsilon$ = 0.01 m" not in labels(axes)
 
 
+def test_the_eps_in_between_can_be_told_from_the_limit():
+    found = sweep_like(failed=False)
+    fine = found.assign_coords(eps=np.geomspace(0.1, 1e-6, 6))
+    shown = labels(drawn(fx.plot.draw_trajectories(fine, gamma=1.0))[0])
+    assert [one for one in shown if "epsilon" in one] == [
+        f"$\\epsilon$ = {eps} m" for eps in ("0.1", "0.01", "1e-06")
+    ]
+
+
 def test_slips_are_shown_where_the_times_resolve_them():
     coarse = fx.plot.draw_trajectories(sweep_like(), gamma=0.5)
     assert len(drawn(coarse)) == 1

@@ -1,5 +1,7 @@
 """The picture of what accuracy costs: every cell, every failure, nothing hidden."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -95,6 +97,23 @@ def test_a_picture_shows_every_cell(eps, gamma, panels, along):
             assert f"$\\gamma$ = {name:.3g})" in axes.get_title(loc="left")
         ((_, seconds),) = lines_in(below[0], colour(0))
         assert seconds == pytest.approx(0.01 / np.array(eps) - np.log(1e-2))
+
+
+def test_seconds_within_two_decades_are_written_plainly():
+    figure = fx.plot.draw_work_precision(cells_like([0.1], [1.0]))
+    figure.draw_without_rendering()
+    axes = figure.axes[0]
+    low, high = axes.get_xlim()
+    assert high < 100 * low
+    boxes = [
+        text.get_window_extent()
+        for minor in (False, True)
+        for text in axes.get_xticklabels(minor=minor)
+        if text.get_text() and low <= text.get_position()[0] <= high
+    ]
+    assert len(boxes) >= 2
+    ends = sorted((box.x0, box.x1) for box in boxes)
+    assert all(left[1] < right[0] for left, right in pairwise(ends))
 
 
 def test_each_method_has_a_colour_of_its_own():

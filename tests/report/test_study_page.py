@@ -8,8 +8,8 @@ from html_pages import cells_of_table, checked_page
 from sweep_like import sweep_like
 
 import frictionjax as fx
+from frictionjax.io import part_rows
 from frictionjax.report.job import ReportRequest, read_job
-from frictionjax.report.sections import part_rows
 from frictionjax.report.study_results import write_results
 from frictionjax.report.study_words import verdict_sentence
 from frictionjax.studies import failures, lemma_table, order_table, sweep_table

@@ -13,7 +13,7 @@ from ..._text import Named, SelfDrawn, ShownNumbers
 from ...bristles import AbstractBristle, pulling_text
 from ...contact import Nap, nap
 from ...effects import AbstractEffect, Engine
-from ...io import AS_IS, CODES, LEAF, PART, TOLD, Document, record
+from ...io import AS_IS, CODES, LEAF, PART, TOLD, Document, record, unit_of
 from ...profiles import AbstractProfile
 from ..common import (
     EFFECT_FORM,
@@ -45,6 +45,7 @@ _EFFECTS = EFFECT_FORM._replace(
     read=_in_scene, absent=lambda entries: SceneEffects(), argument="scene"
 )
 _PULLED = record(PulledParts, PulledParts._fields, LEAF)
+_FOUND = "of the bristle found"
 
 
 class AngleFit(ShownNumbers, SelfDrawn, DesignResult, CodedResult, eqx.Module):
@@ -179,10 +180,11 @@ class AngleFit(ShownNumbers, SelfDrawn, DesignResult, CodedResult, eqx.Module):
 
     def _numbers(self) -> list[Named]:
         count = jnp.sum(~jnp.isnan(self.roots), axis=-1)
+        unit = "" if self.quantity == "ratio" else "N"
         return [
-            Named(self.free, self.value, "", "of the bristle found"),
-            Named(f"{self.quantity} wanted", self.target),
-            Named(f"{self.quantity} achieved", self.achieved, "", "on the same surface"),
+            Named(self.free, self.value, unit_of(self.bristle, self.free), _FOUND),
+            Named(f"{self.quantity} wanted", self.target, unit),
+            Named(f"{self.quantity} achieved", self.achieved, unit, "on the same surface"),
             Named("alpha", self.alpha, "N", "normal force without friction"),
             Named("solutions", count, "", "in the admissible range"),
         ]

@@ -41,4 +41,4 @@ def friction_levels(scene: Scene) -> list[tuple[float, str]]:
         return [(float(law.rho_plus), "\\rho_+"), (float(law.rho_minus), "\\rho_-")]
     rod = flipping_rod(scene, effect)
     with_nap, turned = float(rod.standing.rho_with), float(rod.turned.rho_with)
-    return [(with_nap, "\\rho_{with}"), (-turned, "-\\rho_{turned}")]
+    return [(with_nap, "\\rho_{with}"), (-turned, "-\\rho_{flipped}")]

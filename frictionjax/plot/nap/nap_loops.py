@@ -14,7 +14,7 @@ _TITLES = {
 }
 _LEVELS = {
     "geometric": (("rho_with", 1, "with"), ("rho_against", -1, "against")),
-    "energetic": (("rho_with", 1, "with"), ("rho_flipped", -1, "turned")),
+    "energetic": (("rho_with", 1, "with"), ("rho_flipped", -1, "flipped")),
 }
 
 
@@ -33,7 +33,7 @@ def draw_nap_loops(scene: Scene, ts: Any = None) -> Figure:
     >>> flips = (fx.effects.NapFlip(bending_stiffness=0.1),)
     >>> turning = scene.replace(profile=rough, bristle=rod, load=load, effects=flips)
     >>> [text.get_text() for text in fx.plot.draw_nap_loops(turning).axes[1].texts]
-    ['$\\rho_{with}$ = 0.161 N', '$-\\rho_{turned}$ = -0.363 N']
+    ['$\\rho_{with}$ = 0.161 N', '$-\\rho_{flipped}$ = -0.363 N']
     """
     data = nap_loops(scene, ts)
     figure, grid = new_figure(1, 2, 10.4, 4.4)

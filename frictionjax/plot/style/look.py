@@ -27,6 +27,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "*")  # another period than the colours
 LIMIT = "#222222"
 GUIDE = "#999999"
 STRIP = "#dfe6ee"
+_TOLD_APART = 5.0  # of the largest eps: a curve that is still seen beside the limit's
 
 _SETTINGS: Any = {
     "font.size": 10,
@@ -132,16 +133,22 @@ def choose_gamma(dataset: "xr.Dataset", gamma: float | None) -> float:
     return nearest
 
 
-def choose_eps(dataset: "xr.Dataset", gamma: float, eps: Any = None, most: int = 3):
-    """The eps to show, largest first: those asked for, else spread over the good cells.
+def choose_eps(dataset: "xr.Dataset", gamma: float, eps: Any = None):
+    """The eps to show, largest first: those asked for, else three of the good cells.
+
+    The one between largest and smallest can still be told from the limit: a grid down to
+    1e-6 m would otherwise be shown by one curve and two that lie on each other.
 
     Raises `ValueError` for an eps that the data set does not hold.
     """
     cells = dataset.sel(gamma=gamma)
     if eps is None:
         good = np.sort(cells.eps.values[np.asarray(cells.status) == 0])[::-1]
-        places = np.linspace(0, good.size - 1, min(most, good.size)).round().astype(int)
-        return good[places]
+        if good.size <= 3:
+            return good
+        between = max(np.sqrt(good[0] * good[-1]), good[0] / _TOLD_APART)
+        nearest = 1 + int(np.argmin(np.abs(np.log(good[1:-1] / between))))
+        return good[[0, nearest, -1]]
     known = np.asarray(cells.eps.values, dtype=float)
     wanted = np.sort(np.atleast_1d(np.asarray(eps, dtype=float)))[::-1]
     for value in wanted:

@@ -2,8 +2,6 @@ from .certificates import certificate_rows as certificate_rows
 from .origin import Origin as Origin
 from .origin import origin_section as origin_section
 from .origin import reproduction_section as reproduction_section
-from .part_numbers import part_rows as part_rows
-from .part_numbers import unit_of as unit_of
 from .shared_sections import coefficient_section as coefficient_section
 from .shared_sections import scene_section as scene_section
 from .shared_sections import scene_sentence as scene_sentence

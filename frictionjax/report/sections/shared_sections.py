@@ -8,9 +8,9 @@ from ... import plot
 from ..._text import ResultTable
 from ...coefficients import Coefficients
 from ...explain import composed_equation
+from ...io import part_rows
 from ...model import Scene
 from ..page import Captioned, Html, Section, equation, paragraph, shown, table_region
-from .part_numbers import part_rows
 
 _TIMES = 1201
 _EQUATION = (

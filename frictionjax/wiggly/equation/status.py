@@ -30,7 +30,7 @@ class Status(Outcome):
     OPEN_BRACKET = 7, "starts are not forgotten, and every slip is too many to integrate"
     ROUGH_SURVEY = 8, "a slide changes too fast to be known from some of its slips"
     TOO_SLOW = 9, "the run was ended at the seconds allowed"
-    NOT_TRIED = 10, "not run: the method was too slow at a looser accuracy"
+    NOT_TRIED = 10, "not run: too slow at a looser accuracy, or no time was left"
     SENSITIVE = 11, "which well a slip ends in hangs on errors that no step size removes"
 
 

@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from ..._checks import Part
-from ..._text import ResultTable
-from ...io import numbers_of_part
-from ...model import Scene
+from .._checks import Part
+from .._text import ResultTable
+from ..model import Scene
+from .registry import numbers_of_part
 
 _PERIODS = "periods"
 _STIFFNESS = "N m^2", "bending stiffness of the rod"
@@ -20,7 +20,7 @@ MEANINGS: dict[str, dict[str, tuple[str, str]]] = {
     "Sine": {
         "slope": ("1", "steepest slope of the surface"),
         "amplitude": ("N", "largest load"),
-        "period": ("s", "time after which the load comes again"),
+        "period": ("s", "time after which the load repeats itself"),
     },
     "Fourier": {
         "cos": (_PERIODS, "heights of the cosine waves"),
@@ -48,7 +48,7 @@ MEANINGS: dict[str, dict[str, tuple[str, str]]] = {
         "stiffness": ("N/m", "of the spring"),
         "rest_length": _REST,
         "height": _HEIGHT,
-        "angle": ("rad", "from the vertical, positive where the tip is behind the root"),
+        "angle": ("rad", "from the vertical, positive where the tip is left of the root"),
     },
     "AngularSpring": {
         "stiffness": ("N m/rad", "of the angular spring at the root"),
@@ -67,7 +67,7 @@ MEANINGS: dict[str, dict[str, tuple[str, str]]] = {
     },
     "Triangle": {
         "amplitude": ("N", "largest load"),
-        "period": ("s", "time after which the load comes again"),
+        "period": ("s", "time after which the load repeats itself"),
     },
     "PiecewiseLinear": {
         "times": ("s", "of the corners of the load"),
@@ -109,12 +109,13 @@ def part_rows(scene: Scene) -> ResultTable:
         ("scene", "", "duration", _value(scene.duration), "s", "how long the load acts"),
         ("scene", "", "z0", _value(scene.z0), "m", "state at the start"),
     ]
-    for table in ("profile", "bristle", "support", "load"):
+    parts = ("potential",) if scene.profile is None else ("profile", "bristle")
+    for table in (*parts, "support", "load"):
         rows += _rows_of(table, getattr(scene, table))
     for effect in scene.effects:
         rows += _rows_of("effect", effect)
     header = ("part", "kind", "number", "value", "unit", "meaning")
-    return ResultTable(header, tuple(rows), left=3, meanings=1)
+    return ResultTable(header, tuple(rows), left=3, meanings=2)
 
 
 def _rows_of(table: str, part: Any, metres: bool = False) -> list[tuple[str, ...]]:

@@ -1,13 +1,15 @@
 """The numbers of a scene with their units."""
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import frictionjax as fx
 from frictionjax._checks import asked_names
 from frictionjax.io import EFFECTS, PARTS, example_lines, example_text
-from frictionjax.io.scene_files import load_study
-from frictionjax.report.sections.part_numbers import MEANINGS, part_rows, unit_of
+from frictionjax.io.part_numbers import MEANINGS, part_rows, unit_of
+from frictionjax.io.scene_files import default_study, load_study
 
 KINDS = {kind for kinds in (*PARTS.values(), EFFECTS) for kind in kinds.values()}
 
@@ -48,3 +50,24 @@ def test_a_load_read_as_a_place_is_in_metres():
     rows = {(row[0], row[2]): row[3:5] for row in part_rows(scene).rows}
     assert rows["load, position", "rate"] == ("2", "m/s")
     assert rows["profile", "cos"] == ("9 values, 0.001 to 0.001", "periods")
+
+
+def test_a_scene_tells_its_numbers_and_shows_them_in_a_notebook():
+    scene = default_study().scene
+    assert scene.table() == part_rows(scene)
+    shown = scene._repr_html_()
+    assert "<td" in shown
+    assert "steepest slope of the surface" in shown
+    traced = jax.jit(lambda one: isinstance(one._repr_html_(), str))
+    assert traced(scene)
+    with pytest.raises(ValueError, match="Scene = 'a trace': needs known"):
+        jax.jit(lambda one: one.table().rows and 0.0)(scene)
+
+
+def test_a_potential_that_is_given_is_told_by_name():
+    given = fx.GivenPotential(W=lambda Y: 0.02 * jnp.sin(2 * jnp.pi * Y))
+    known = default_study().scene
+    bare = fx.Scene(potential=given, support=known.support, load=known.load, duration=3.0)
+    kinds = {(part, kind) for part, kind, *_ in bare.table().rows}
+    assert ("potential", "GivenPotential") in kinds
+    assert not {part for part, _ in kinds} & {"profile", "bristle"}
