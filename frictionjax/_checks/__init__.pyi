@@ -20,6 +20,7 @@ from .arguments import require_x64 as require_x64
 from .arguments import without_masked as without_masked
 from .grids import cells_of as cells_of
 from .grids import grid_of as grid_of
+from .higher_floors import floor_above as floor_above
 from .noted_origins import eps_of as eps_of
 from .noted_origins import note_origin as note_origin
 from .noted_origins import noting_the_scene as noting_the_scene

@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import html
 import inspect
 import weakref
 from collections.abc import Iterator
@@ -11,6 +12,7 @@ import equinox as eqx
 import jax
 
 from .arguments import in_64_bits, is_concrete, is_known, require
+from .higher_floors import floor_above
 from .shown_parts import part_text
 
 _PartT = TypeVar("_PartT", bound="Part")
@@ -91,6 +93,11 @@ class Part(eqx.Module):
 
     def __repr__(self) -> str:
         return part_text(self, asked_names(type(self), {}))
+
+    def _repr_html_(self) -> str:
+        if is_known(self):
+            return floor_above("io").part_table(self)._repr_html_()
+        return f"<pre>{html.escape(repr(self))}</pre>"
 
 
 def asked_names(kind: type, changes: dict[str, Any]) -> list[str]:

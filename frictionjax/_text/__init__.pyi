@@ -1,5 +1,4 @@
 from .drawn_results import SelfDrawn as SelfDrawn
-from .drawn_results import floor_above as floor_above
 from .drawn_results import require_no_axes as require_no_axes
 from .encoding import decoded as decoded
 from .over_time import dataset_over_time as dataset_over_time

@@ -1,7 +1,6 @@
 """Results that draw themselves, by pictures that stand on a floor above them."""
 
 import sys
-from importlib import import_module
 from typing import Any, ClassVar
 
 from .._checks import is_known, require
@@ -11,11 +10,6 @@ def require_no_axes(ax: Any) -> None:
     """Raise `ValueError` for axes where a picture has several of its own."""
     needs = "None, as the picture has several axes: figure takes a Figure or SubFigure"
     require(ax is None, "ax", ax, needs)
-
-
-def floor_above(package: str) -> Any:
-    """A package of the library that knows what asks for it, imported when it is asked."""
-    return import_module(f"{__name__.partition('.')[0]}.{package}")
 
 
 class SelfDrawn:

@@ -4,6 +4,7 @@ from .example_scenes import example_text as example_text
 from .example_scenes import schema_text as schema_text
 from .part_numbers import MEANINGS as MEANINGS
 from .part_numbers import part_rows as part_rows
+from .part_numbers import part_table as part_table
 from .part_numbers import unit_of as unit_of
 from .registry import EFFECTS as EFFECTS
 from .registry import PARTS as PARTS

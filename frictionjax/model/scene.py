@@ -18,6 +18,7 @@ from .._checks import (
     checked,
     eagerly,
     exchanged,
+    floor_above,
     in_64_bits,
     is_checked,
     is_concrete,
@@ -32,7 +33,7 @@ from .._checks import (
     require_x64,
 )
 from .._compile import Program
-from .._text import ResultTable, SelfDrawn, floor_above
+from .._text import ResultTable, SelfDrawn
 from ..bristles import AbstractBristle, pulling_text
 from ..effects import AbstractEffect, require_bristle, require_together
 from ..loads import AbstractLoad, AbstractPull, Pulled

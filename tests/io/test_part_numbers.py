@@ -8,7 +8,7 @@ import pytest
 import frictionjax as fx
 from frictionjax._checks import asked_names
 from frictionjax.io import EFFECTS, PARTS, example_lines, example_text
-from frictionjax.io.part_numbers import MEANINGS, part_rows, unit_of
+from frictionjax.io.part_numbers import MEANINGS, part_rows, part_table, unit_of
 from frictionjax.io.scene_files import default_study, load_study
 
 KINDS = {kind for kinds in (*PARTS.values(), EFFECTS) for kind in kinds.values()}
@@ -18,7 +18,9 @@ KINDS = {kind for kinds in (*PARTS.values(), EFFECTS) for kind in kinds.values()
 def test_every_number_that_a_file_holds_has_a_unit_and_a_meaning(kind):
     known = MEANINGS[kind.__name__]
     assert set(asked_names(kind, {})) <= set(known)
-    assert all(unit and meaning for unit, meaning in known.values())
+    assert set(kind.asked) <= set(known)
+    assert all(known.values())
+    assert all(unit_of(kind, name) for name in asked_names(kind, {}))
 
 
 def test_a_sine_is_a_surface_or_a_load():
@@ -62,6 +64,21 @@ def test_a_scene_tells_its_numbers_and_shows_them_in_a_notebook():
     assert traced(scene)
     with pytest.raises(ValueError, match="Scene = 'a trace': needs known"):
         jax.jit(lambda one: one.table().rows and 0.0)(scene)
+
+
+def test_a_part_shows_its_numbers_in_a_notebook():
+    lean = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
+    shown = lean._repr_html_()
+    for text in ("SlantedSpring", "angle", "0.5", "rad", "from the vertical"):
+        assert text in shown
+    whole = default_study().scene.replace(bristle=lean).potential
+    assert {kind for kind, *_ in part_table(whole).rows} == {"Sine", "SlantedSpring"}
+    assert ("SlantedSpring", "stiffness", "1", "N/m", "of the spring") in set(
+        part_table(whole).rows
+    )
+    traced = jax.jit(lambda one: "SlantedSpring(" in one._repr_html_())
+    assert traced(lean)
+    assert "Custom" in fx.bristles.Custom(lambda e: 0 * e, lambda e: -e)._repr_html_()
 
 
 def test_a_potential_that_is_given_is_told_by_name():
