@@ -12,5 +12,5 @@ from .plain_system import higher_order as higher_order
 from .setting import AWAY as AWAY
 from .setting import Setting as Setting
 from .setting import setting_of as setting_of
-from .turns_on_folds import phases_of as phases_of
+from .turns_on_folds import bristle_places as bristle_places
 from .turns_on_folds import turns_on_folds as turns_on_folds

@@ -56,7 +56,7 @@ def turns_on_folds(at: Setting, change: float = 0.0) -> Float[np.ndarray, " turn
     Any tip of a `CompliantArray`: folds of each are elsewhere. `change` in N: what the
     force at which a tip goes over a fold changes by.
     """
-    phases = phases_of(at.scene)
+    phases = bristle_places(at.scene)
     everywhere = phases.size > _MANY
     found = [
         turn.time
@@ -66,7 +66,7 @@ def turns_on_folds(at: Setting, change: float = 0.0) -> Float[np.ndarray, " turn
     return np.array(found)
 
 
-def phases_of(scene: Scene) -> Float[np.ndarray, " bristles"]:
+def bristle_places(scene: Scene) -> Float[np.ndarray, " bristles"]:
     """Where bristles stand, each once, in [0, 1) periods; of one alone 0."""
     arrays = [e for e in scene.effects if isinstance(e, CompliantArray)]
     return np.unique(np.asarray(arrays[0].offsets) % 1.0) if arrays else np.zeros(1)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ..called_for import Estimate, Setting, higher_order, phases_of
+from ..called_for import Estimate, Setting, bristle_places, higher_order
 from ..effects import LeadingOrder
 from ..model import Scene, composed
 from ..wiggly import Status, integrate_cells
@@ -45,7 +45,7 @@ def higher_order_told(at: Setting, tell: Callable[[str], None]) -> Estimate:
     tell("solving with the higher order and without it")
     where = f"the load turns on a fold, t = {turns[0]:.3g} s"
     accuracy = max(_FINER * told.in_z / at.eps, _FINEST)
-    phases = phases_of(at.scene)
+    phases = bristle_places(at.scene)
     some, few = thinned(phases, _BRISTLES), thinned(turns, _TURNS)
     seen = _largest_change(at, telling_times(at, few), accuracy, some)
     if seen is None:
@@ -68,10 +68,9 @@ def _largest_change(
     """Of any bristle's state outside of slips, in m; None where a solve fails."""
     whole = at.scene.replace(effects=())
     leading = composed(whole.replace(effects=(LeadingOrder(),)))
-    pair = [_outside_slips(s, at, times, accuracy, phases) for s in (whole, leading)]
-    if pair[0] is None or pair[1] is None:
+    one, other = (_outside_slips(s, at, times, accuracy, phases) for s in (whole, leading))
+    if one is None or other is None:
         return None
-    one, other = pair
     outside = np.abs(one.z - other.z)[one.calm & other.calm]
     return float(np.max(outside)) if outside.size else None
 

@@ -86,7 +86,7 @@ def test_the_higher_order_changes_less_than_told_and_no_tenth_of_it(name, gamma,
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "gamma", "eps"), shipped_cells())
+@pytest.mark.parametrize(("name", "gamma", "eps"), list(shipped_cells()))
 def test_so_it_is_at_every_eps_that_ships(name, gamma, eps):
     scene = scene_that_ships(name)
     cases = each_bristle(scene)

@@ -59,8 +59,8 @@ def test_of_many_turns_those_on_folds_are_kept():
     scene = scene_of(fx.loads.Triangle(1.0, 0.1), 3.0)
     at = setting_of(scene, 0.05, 1.0)
     few = telling_times(at, NO_TURNS).at
-    assert few.size < 0.15 * telling_times(at, np.asarray(scene.turning_points)).at.size
-    turn = np.asarray(scene.turning_points)[30]
+    assert few.size < 0.15 * telling_times(at, np.asarray(scene.turning_points())).at.size
+    turn = np.asarray(scene.turning_points())[30]
     near = telling_times(at, np.array([turn])).at
     assert np.sum(np.abs(near - turn) < 0.02) > np.sum(np.abs(few - turn) < 0.02) + 500
 
