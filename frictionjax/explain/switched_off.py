@@ -18,13 +18,14 @@ from ..wiggly import Status, integrate_cells
 from .telling_times import TellingTimes, telling_times, thinned
 
 _SLIP = 0.05  # of eps in half a percent of a well's time: a tip that moves further slips
-# Times what is measured. Three times as many times saw up to 1.4 times as much, in 189
-# cells of scenes that ship (`pytest -m slow tests/called_for/test_plain_system.py`).
+# Times what is measured: other times saw up to 1.2 times as much of scenes that ship
+# (`pytest -m slow tests/called_for/test_plain_system.py` holds it).
 _UNSEEN = 2.0
-# Of the closed form, which has told up to 94 times what is seen: error of the two solves.
+# Of the closed form, which told up to 94 times what was seen (angular-spring, gamma = 0.5,
+# eps = 0.1): error of the two solves.
 _FINER, _FINEST = 1e-3, 1e-9
 _BRISTLES = 16  # of an array that are measured
-_TURNS = 20  # as many stretches of the load on either side, a second or so each ten
+_TURNS = 20  # on folds, about which it is measured
 
 
 class _Outside(NamedTuple):

@@ -18,7 +18,7 @@ _WINDOW = 3.0  # wells
 _PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of windows, in shares of what is left of a slide
 _FEW = 60.0  # wells of a slide that are all seen
 # Lags of a tip that drag holds up until it slides as it goes on, and wells of them, at
-# most. (Three wells: half of the change at the first slip was seen, nap, gamma = 0.5.)
+# most. (Of three wells half of the change was seen: nap, eps = 0.05, gamma = 0.5.)
 _LAGS, _FIRST = 2.0, 30.0
 _A_WELL = 100  # times
 _RESTS = 800  # times from a turn until the limit slides
