@@ -1,5 +1,7 @@
 """How much of the plain system matters: the potential's higher order, finite speed."""
 
+from typing import NamedTuple
+
 import jax
 import numpy as np
 from jaxtyping import Array, Float
@@ -15,6 +17,13 @@ from .turns_on_folds import turns_on_folds
 _PLACES = 512  # of a period, for forces of a well and their change
 _SLIP = 130.0  # times eps^(1 + gamma)/max|W''|: a slip, with its way over the fold
 _FELT = 6.0  # times eps: the most that tips move while a slip is late
+
+
+class HigherOrder(NamedTuple):
+    """`estimate`: by a closed form, no bound at `turns` (s) of the load on a fold."""
+
+    estimate: Estimate
+    turns: Float[np.ndarray, " turns"]
 
 
 @Program
@@ -35,7 +44,7 @@ def _rest(potential: AbstractPotential, eps: Real, Y: Float[Array, " n"]):
     return jax.vmap(at)(Y)
 
 
-def higher_order(at: Setting) -> Estimate:
+def higher_order(at: Setting) -> HigherOrder:
     """What `eps^2 Q` changes: `LeadingOrder` leaves it out.
 
     The extreme forces of a well change by `eps Q'(Y*)`, and to second order by
@@ -45,7 +54,7 @@ def higher_order(at: Setting) -> Estimate:
     pulled on by as much: `fastest` times less once. (Over a rough surface, eps = 0.02,
     gamma = 2, slips were late by 20 times what the extreme force says.) Where tips rest
     inside wells they move by `eps^2 Q'/W''`, and slips last longer as forces change. Where
-    the load turns while a tip is on a fold that is no bound, and the source says so.
+    the load turns while a tip is on a fold that is no bound.
     """
     Y = np.arange(_PLACES) / _PLACES - 0.5
     Y = np.append(Y, [at.data.phase[np.argmax(s * at.data.force)] for s in (1.0, -1.0)])
@@ -64,12 +73,9 @@ def higher_order(at: Setting) -> Estimate:
     slip = _SLIP * at.eps ** (1 + at.gamma) / float(np.max(np.abs(steep)))
     longer = share * min(at.fastest * at.speed * slip, _FELT * at.eps)
     in_z = max(late, inside) + longer
-    source = "eps Q' at the steepest places (Lemma 2)"
     moved = float(np.max(forces + at.stiffest * at.eps * place))
-    turns = turns_on_folds(at, moved)
-    if turns.size:
-        source += f"; no bound where the load turns on a fold, t = {turns[0]:.3g} s"
-    return Estimate(in_z, force, 1.0, source)
+    told = Estimate(in_z, force, 1.0, "eps Q' at the steepest places (Lemma 2)")
+    return HigherOrder(told, turns_on_folds(at, moved))
 
 
 def finite_speed(at: Setting) -> Estimate:

@@ -13,12 +13,16 @@ is not small beside friction within the time `eps^gamma/Phi''` that a tip lags b
 goes over its last folds after the turn, and where the limit turns says nothing of them.
 """
 
+from collections.abc import Iterator
+from typing import NamedTuple
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from ..model import known_turning_points
+from ..effects import CompliantArray
+from ..model import Scene, known_turning_points
 from .setting import AWAY, Setting
 
 # Times of passage over times near a turn, between which the estimate may be exceeded: at
@@ -27,47 +31,88 @@ _DECIDED = 0.5, 2.5
 _WELLS = 40  # that a tip may lag behind
 _DRAGGED = 0.4  # of friction: drag that is not small
 _MOVED = 2.0  # times a change of the force at a fold: as near to it
+_MANY = 32  # bristles of an array: of more, one is on a fold wherever they are
 _BESIDE = (np.linspace(0.0, 1.0, 801)[1:]) ** 2  # of the way to the next turn
+
+
+class _Turn(NamedTuple):
+    """A turn that the limit slides up to: s, its state there, where the load goes to.
+
+    `drag`: viscous force in N as long before it as a tip lags behind. `beside`: times in s
+    from the turn, before and after it, and `falls`, by how much the load is less there.
+    """
+
+    time: float
+    edge: float
+    sign: float
+    drag: float
+    beside: Float[np.ndarray, "2 times"]
+    falls: Float[np.ndarray, "2 times"]
 
 
 def turns_on_folds(at: Setting, change: float = 0.0) -> Float[np.ndarray, " turns"]:
     """Times in s at which the load turns while a tip may be on a fold.
 
-    `change` in N: what the force at which a tip goes over a fold changes by.
+    Any tip of a `CompliantArray`: folds of each are elsewhere. `change` in N: what the
+    force at which a tip goes over a fold changes by.
     """
+    phases = bristle_places(at.scene)
+    everywhere = phases.size > _MANY
+    found = [
+        turn.time
+        for turn in _slid_up_to(at)
+        if everywhere or any(_on_fold(at, turn, change, phase) for phase in phases)
+    ]
+    return np.array(found)
+
+
+def bristle_places(scene: Scene) -> Float[np.ndarray, " bristles"]:
+    """Where bristles stand, each once, in [0, 1) periods; of one alone 0."""
+    arrays = [e for e in scene.effects if isinstance(e, CompliantArray)]
+    return np.unique(np.asarray(arrays[0].offsets) % 1.0) if arrays else np.zeros(1)
+
+
+def _slid_up_to(at: Setting) -> Iterator[_Turn]:
     scene, duration = at.scene, float(at.scene.duration)
     turns = known_turning_points(scene.load, duration, scene.turns)
     turns = turns[turns > 0]
     edges = np.concatenate([[0.0], turns, [duration]])
     loads = np.asarray(jax.vmap(scene.load)(jnp.asarray(edges)))
-    z, found = float(scene.z0), []
+    z = float(scene.z0)
     for i in range(1, turns.size + 1):
         sign = 1.0 if loads[i] > loads[i - 1] else -1.0
         edge = float(scene.support.state_of(jnp.asarray(loads[i] - sign * _rho(at, sign))))
         if sign * (edge - z) <= 0:  # the tip does not slide up to this turn
             continue
         z = edge
-        ways = edges[i] - edges[i - 1], edges[i + 1] - edges[i]
-        last, following = _gaps(at, edge, sign)
-        well = last + following
-        near = max(AWAY * well, _MOVED * change)
-        behind = last + well * np.arange(_WELLS)
-        if (
-            min(last, following) < near
-            or _dragged(at, edges[i], ways[0]) > _DRAGGED * _rho(at, sign)
-            or any(_undecided(at, gap, edges[i], ways, sign) for gap in behind)
-        ):
-            found.append(edges[i])
-    return np.array(found)
+        ways = np.array([edges[i] - edges[i - 1], edges[i + 1] - edges[i]])
+        beside = ways[:, None] * _BESIDE
+        away = jnp.asarray(edges[i] + np.array([[-1.0], [1.0]]) * beside)
+        falls = sign * (loads[i] - np.asarray(jax.vmap(jax.vmap(scene.load))(away)))
+        drag = _dragged(at, edges[i], ways[0])
+        yield _Turn(float(edges[i]), edge, sign, drag, beside, falls)
+
+
+def _on_fold(at: Setting, turn: _Turn, change: float, phase: float) -> bool:
+    last, following = _gaps(at, turn, phase)
+    well = last + following
+    near = max(AWAY * well, _MOVED * change)
+    behind = last + well * np.arange(_WELLS)
+    return bool(
+        min(last, following) < near
+        or turn.drag > _DRAGGED * _rho(at, turn.sign)
+        or any(_undecided(at, gap, turn) for gap in behind)
+    )
 
 
 def _rho(at: Setting, sign: float) -> float:
     return float(at.law.rho_plus if sign > 0 else -at.law.rho_minus)
 
 
-def _gaps(at: Setting, edge: float, sign: float) -> tuple[float, float]:
+def _gaps(at: Setting, turn: _Turn, phase: float) -> tuple[float, float]:
     """Force in N beyond the last fold, and short of the next one, with the limit there."""
-    top = float(at.data.phase[np.argmax(sign * at.data.force)])
+    sign, edge = turn.sign, turn.edge
+    top = float(at.data.phase[np.argmax(sign * at.data.force)]) - phase
     passed = np.floor(sign * (edge / at.eps - top))
     here = float(at.scene.support.force(jnp.asarray(edge)))
     folds = at.eps * (top + sign * np.array([passed, passed + 1]))
@@ -83,21 +128,15 @@ def _dragged(at: Setting, turn: float, way: float) -> float:
     return viscosity * abs(pull) / at.softest
 
 
-def _undecided(
-    at: Setting, gap: float, turn: float, ways: tuple[float, float], sign: float
-) -> bool:
+def _undecided(at: Setting, gap: float, turn: _Turn) -> bool:
     """Whether passing a fold with this much force (N) takes about as long as the load is so
     near to its turn."""
     # Beyond the fold no force is less than the gap, however flat it is.
     curved = np.pi * np.sqrt(2 / (at.bend * gap)) if at.bend > 0 else np.inf
     passing = min(curved, 1 / gap) * at.eps ** (1 + at.gamma)
-    top, held = float(at.scene.load(jnp.asarray(turn))), 0.0
-    for way in (-ways[0], ways[1]):
-        beside = np.abs(way) * _BESIDE
-        loads = np.asarray(
-            jax.vmap(at.scene.load)(jnp.asarray(turn + np.sign(way) * beside))
-        )
-        off = np.flatnonzero(sign * (top - loads) > gap)
+    held = 0.0
+    for beside, fall in zip(turn.beside, turn.falls, strict=True):
+        off = np.flatnonzero(fall > gap)
         held += float(beside[off[0] if off.size else -1])
     low, high = _DECIDED
     return bool(low * held < passing < high * held)

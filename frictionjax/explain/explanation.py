@@ -1,6 +1,7 @@
 """What a scene simulates at one eps, gamma and accuracy, and what that calls for."""
 
 import html
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +15,6 @@ from ..called_for import (
     Setting,
     estimate_of,
     finite_speed,
-    higher_order,
     setting_of,
 )
 from ..effects import LeadingOrder, Stage
@@ -22,6 +22,7 @@ from ..model import Scene, composed, known_scene
 from ..wiggly import require_accuracy
 from .costs import steps_ratio
 from .equation import composed_equation
+from .switched_off import higher_order_told
 
 _COLUMNS = {
     "in_z": ("m", "largest change of the state, from above"),
@@ -92,8 +93,11 @@ def explain(
     changes in the state at times outside of slips and in the friction force, `called_for`
     (`in_z` is more than `accuracy` eps, or another scene is meant), `asked` (the scene has
     it), `cost` (steps with it over steps without, by rules and laws of the schemes) and
-    `source`. Rows: "higher order", what `LeadingOrder` leaves out; "finite speed", what
-    viscosity adds to dry friction; the scene's effects.
+    `source`. Rows: "higher order", what `LeadingOrder` leaves out of the scene if it had no
+    mass and noise and did not turn over, of an array for the bristle that it changes most;
+    "finite speed", what viscosity adds to dry friction; the scene's effects. Where the load
+    turns while a tip is on a fold no closed form tells what the higher order changes: the
+    scene is solved with it and without, and `source` says so.
 
     `progress`: a line on standard error where it takes more than two seconds.
 
@@ -118,7 +122,7 @@ def explain(
         if at is None:
             raise ValueError("scene.load turns too often: needs slides, to be told of them")
         tell("what effects change")
-        rows, called, asked = _estimates(scene, at, float(as_real(accuracy)))
+        rows, called, asked = _estimates(scene, at, float(as_real(accuracy)), tell)
     columns = {name: [getattr(row, name) for row in rows.values()] for name in _NUMBERS}
     columns |= {"called_for": list(called.values()), "asked": list(asked.values())}
     effects = xr.Dataset(
@@ -136,10 +140,10 @@ _NUMBERS = Estimate._fields
 
 
 def _estimates(
-    scene: Scene, at: Setting, accuracy: float
+    scene: Scene, at: Setting, accuracy: float, tell: Callable[[str], None]
 ) -> tuple[dict[str, Estimate], dict[str, bool], dict[str, bool]]:
     """By name: the estimate, whether it is called for, whether the scene has it."""
-    rows = {"higher order": _rest_of(scene, at), "finite speed": finite_speed(at)}
+    rows = {"higher order": _rest_of(scene, at, tell), "finite speed": finite_speed(at)}
     called = {name: _matters(row, at, accuracy) for name, row in rows.items()}
     asked = {"higher order": not _leading(scene), "finite speed": True}
     for effect in scene.effects:
@@ -159,13 +163,13 @@ def _leading(scene: Scene) -> bool:
     return any(isinstance(effect, LeadingOrder) for effect in scene.effects)
 
 
-def _rest_of(scene: Scene, at: Setting) -> Estimate:
+def _rest_of(scene: Scene, at: Setting, tell: Callable[[str], None]) -> Estimate:
     """Of the scene as it would be with Q."""
     if not _leading(scene):
-        return higher_order(at)
+        return higher_order_told(at, tell)
     rest = tuple(e for e in scene.effects if not isinstance(e, LeadingOrder))
     whole = composed(scene.replace(effects=rest))
-    return higher_order(at._replace(scene=whole))
+    return higher_order_told(at._replace(scene=whole), tell)
 
 
 def _matters(row: Estimate, at: Setting, accuracy: float) -> bool:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.special import ai_zeros, airy
 
 import frictionjax as fx
 from frictionjax.called_for import setting_of
@@ -22,9 +23,24 @@ def test_near_a_fold_a_resting_tip_moves_as_its_parabola_says(eps):
     tip moves by `1/(k + W''/eps)` with the load, k times that of the support."""
     curved = RHO * (2 * np.pi) ** 2
     steep = np.sqrt(0.01 * curved * eps)
-    found = setting_of(SCENE, eps, 2.0).fastest
+    found = setting_of(SCENE, eps, 5.0).fastest
     assert found == pytest.approx(eps / steep, rel=1e-3)
     assert found < 0.2
+
+
+@pytest.mark.parametrize("eps", [3e-3, 1e-3, 3e-4, 1e-4])
+def test_where_drag_holds_tips_up_a_little_airy_functions_tell_how_fast_they_go(eps):
+    """Of `eps^3 Y' = k v t + c Y^2/2` half a percent of a well's time before the slip.
+
+    With t in `(2 eps^6/(k v c))^(1/3)` it is `x' = t + x^2`, and `x = Ai'(-t)/Ai(-t)`.
+    """
+    curved, speed = RHO * (2 * np.pi) ** 2, 2.0
+    unit = (2 * eps**6 / (speed * curved)) ** (1 / 3)
+    t = -ai_zeros(1)[0][0] - 0.005 * eps / speed / unit
+    value, slope, _, _ = airy(-t)
+    times_as_fast = unit / eps**2 * (t + (slope / value) ** 2)
+    found = setting_of(SCENE, eps, 2.0).fastest
+    assert times_as_fast <= found <= 1.25 * times_as_fast
 
 
 def test_no_tip_is_faster_than_the_largest_force_drives_it():

@@ -6,13 +6,13 @@ import numpy as np
 import frictionjax as fx
 
 
-def times_about(scene, eps):
-    """Times, and those half a percent of a well's time before and after.
+def times_about(scene, eps, count=4000):
+    """Times, evenly over a scene, and half a percent of a well's time before and after.
 
     The time of a well is `eps Phi''/|l'|`, Phi'' that of the support at rest.
     """
     duration = float(scene.duration)
-    middle = np.linspace(0.003, 0.995, 4000) * duration
+    middle = np.linspace(0.003, 0.995, count) * duration
     pull = np.abs(jax.vmap(jax.grad(scene.load))(middle))
     stiffness = float(jax.grad(scene.support.force)(0.0))
     speed = np.maximum(pull, 1e-3 * pull.max()) / stiffness
