@@ -8,7 +8,8 @@ from jaxtyping import Array, Float
 
 from .._checks import Real
 from .._compile import Program, in_chunks
-from ..model import AbstractPotential
+from ..bristles import Homothetic, Linear
+from ..model import AbstractPotential, BristlePotential, tabulated_potentials
 from ..slide_laws import predict_errors
 from .estimates import Estimate
 from .setting import Setting
@@ -59,7 +60,7 @@ def higher_order(at: Setting) -> HigherOrder:
     Y = np.arange(_PLACES) / _PLACES - 0.5
     Y = np.append(Y, [at.data.phase[np.argmax(s * at.data.force)] for s in (1.0, -1.0)])
     Y = Y - np.round(Y)
-    fixed = at.scene.potential, np.asarray(at.eps)
+    fixed = _tabulated(at), np.asarray(at.eps)
     slope, bend, steep, sharp = in_chunks(_rest, _PLACES + 2, fixed, (Y,))
     tops = slice(-2, None)
     place = at.eps * np.abs(bend[tops]) / np.maximum(np.abs(sharp[tops]), 1e-300)
@@ -76,6 +77,19 @@ def higher_order(at: Setting) -> HigherOrder:
     moved = float(np.max(forces + at.stiffest * at.eps * place))
     told = Estimate(in_z, force, 1.0, "eps Q' at the steepest places (Lemma 2)")
     return HigherOrder(told, turns_on_folds(at, moved))
+
+
+def _tabulated(at: Setting) -> AbstractPotential:
+    """The potential in tables, whose program is there.
+
+    Q of a sum is known as it is, and that of a straight bristle is 0 and no rounding.
+    """
+    potential = at.scene.potential
+    if not isinstance(potential, BristlePotential):
+        return potential
+    if isinstance(potential.bristle, Homothetic | Linear):
+        return potential
+    return tabulated_potentials(potential, at.eps)[0]
 
 
 def finite_speed(at: Setting) -> Estimate:

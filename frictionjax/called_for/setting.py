@@ -5,7 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..coefficients import Coefficients
-from ..model import Scene, coefficients_jit, composed, require_reach
+from ..model import (
+    Scene,
+    coefficients_jit,
+    composed,
+    require_friction,
+    require_reach,
+)
 from ..slide_laws import SlideData, slide_data
 
 AWAY = 0.005  # of the time that a well takes
@@ -93,10 +99,12 @@ class Setting(NamedTuple):
 def setting_of(scene: Scene, eps: float, gamma: float) -> Setting | None:
     """The setting of a known scene; None where its load turns too often to slide long.
 
-    Raises `ValueError` for an eps (m) at which the bristle loses its contact.
+    Raises `ValueError` for an eps (m) at which the bristle loses its contact, and for tips
+    that leave no friction.
     """
     plain = composed(scene)
     require_reach(plain.potential, eps)
+    require_friction(plain)
     law = coefficients_jit(plain.potential)
     data = slide_data(plain, law, np.array([eps]))
     return None if data is None else Setting(plain, eps, gamma, law, data)

@@ -175,6 +175,14 @@ def test_a_rod_that_turns_over_is_another_scene():
     assert "another scene" in str(found.effects.sel(effect="NapFlip").source.values)
 
 
+def test_tips_that_leave_no_friction_are_refused():
+    apart = scene_of(
+        profile=fx.profiles.Sine(0.1), effects=(fx.effects.RigidArray([0.0, 0.5]),)
+    )
+    with pytest.raises(ValueError, match="needs phases that leave friction"):
+        fx.explain(apart, 1e-2, 1.0)
+
+
 def test_a_given_potential_is_explained():
     potential = fx.GivenPotential(
         W=lambda Y: 0.02 * one_wave(Y), Q=lambda eps, Y: 0.01 * one_wave(Y)
