@@ -72,10 +72,8 @@ def given() -> fx.Scene:
 
 
 def solved(scene, eps, gamma, count=COUNT):
-    """Of few times with dissipation: by the loop of lanes that most scenes run."""
     ts = np.linspace(0.0, float(scene.duration), count)
-    few = count < COUNT
-    found = fx.solve(scene, eps, gamma, ts, accuracy=1e-6, dissipation=few)
+    found = fx.solve(scene, eps, gamma, ts, accuracy=1e-6, dissipation=False)
     return ts, np.asarray(found.z)
 
 
@@ -112,8 +110,7 @@ def named(cases):
 def case(name):
     build, eps, gamma = CASES[name]
     scene = build()
-    count = 2001 if name == "few wells" else COUNT
-    return scene, eps, gamma, *solved(scene, eps, gamma, count)
+    return scene, eps, gamma, *solved(scene, eps, gamma)
 
 
 MONOTONE = {  # sign, duration, gamma, samples

@@ -71,7 +71,7 @@ def test_ripple_falls_with_the_root_of_their_number(monkeypatch):
     # So few bristles and times fit into the loop of lanes that the other tests run.
     monkeypatch.setattr(arrays, "SETTINGS", arrays.SETTINGS._replace(bristles=32))
     load = fx.loads.Ramp(1.0, 0.0)
-    ts = 0.5 + np.linspace(0, 0.0317, 32)  # three slips, after thirty
+    ts = 0.5 + np.linspace(0, 0.0317, 16)  # three slips, after thirty
 
     def ripple(count, seed):
         offsets = np.random.default_rng(seed).uniform(size=count)
