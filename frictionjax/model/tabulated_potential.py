@@ -16,7 +16,8 @@ def potential_at_rest(potential: AbstractPotential) -> AbstractPotential:
     if not is_concrete(potential):
         return potential
     if isinstance(potential, SummedPotential):
-        return surface_of_sum(potential, potential_at_rest(potential.single), 0.0)
+        one = surface_of_sum(potential, potential_at_rest(potential.single), 0.0)
+        return potential_at_rest(one)
     if not isinstance(potential, BristlePotential):
         return potential
     tables = profile_tables(potential.profile)

@@ -111,6 +111,7 @@ COMPILED |= {Engine.SLIDE, Engine.SWEEP, Engine.TRACE}
 
 def cell_of(engine, name):
     compiled = engine in COMPILED and does(engine, EFFECTS[name])
+    compiled |= (engine, name) == (Engine.WINDOWED, "AxialLoad")  # a rod's lanes
     marks = pytest.mark.slow if compiled else ()
     return pytest.param(engine, name, marks=marks, id=f"{engine.name}-{name}")
 

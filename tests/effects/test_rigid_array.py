@@ -2,6 +2,7 @@
 
 import math
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import frictionjax as fx
 
 SINE = fx.profiles.Sine(0.1)
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
+VERTICAL = fx.bristles.VerticalSpring(1.0, 1.5, 1.0)
 SUPPORT, LOAD = fx.supports.Spring(1.0), fx.loads.Sine(1.0488, 3.0)
 
 
@@ -54,9 +56,15 @@ def test_phases_spread_evenly_leave_the_harmonics_that_they_divide():
 
 def test_random_phases_add_up_like_a_random_walk():
     count, turns = 400, np.random.default_rng(7)
-    one = float(fx.friction(SINE, fx.bristles.Homothetic(1.0)).rho_plus)
     bristle = fx.bristles.Homothetic(1.0)
-    found = [rho_of(turns.uniform(size=count), bristle=bristle)[0] for _ in range(200)]
+    one = float(fx.friction(SINE, bristle).rho_plus)
+
+    @jax.jit
+    def rho_plus(offsets):
+        scene = scene_of(fx.effects.RigidArray(offsets), bristle=bristle)
+        return fx.friction(scene).rho_plus
+
+    found = [float(rho_plus(turns.uniform(size=count))) for _ in range(200)]
     mean = np.mean(found) / (one * np.sqrt(count))
     # sqrt(pi)/2, and its standard error over 200 arrays is 0.033.
     assert mean == pytest.approx(0.8862269, abs=3 * 0.4633 / np.sqrt(200))
@@ -80,9 +88,9 @@ def test_a_hundred_thousand_tips_are_no_more_work():
 OFFSETS, WEIGHTS = [0.0, 0.1, 0.25], [1.0, 2.0, 1.0]
 
 
-def pull_of_all(z, eps):
+def pull_of_all(z, eps, angle):
     """Of the tips on one root, each where its spring meets the surface."""
-    lean, cosine, total = math.tan(0.5), math.cos(0.5), 0.0
+    lean, cosine, total = math.tan(angle), math.cos(angle), 0.0
     for offset, weight in zip(OFFSETS, WEIGHTS, strict=True):
         phase = z / eps + offset
         place = optimize.brentq(
@@ -102,14 +110,18 @@ def height_and_slope(y):
     return 0.1 / (2 * math.pi) * math.sin(turn), 0.1 * math.cos(turn)
 
 
-def test_lanes_meet_the_sum_itself():
+# Leaning tips have the harmonics of another loop of lanes: 14 s to compile.
+@pytest.mark.parametrize("angle", [0.0, pytest.param(0.5, marks=pytest.mark.slow)])
+def test_lanes_meet_the_sum_itself(angle):
     """The exact sum of the tips' potentials, slip by slip, by hand and SciPy."""
-    scene = scene_of(fx.effects.RigidArray(OFFSETS, WEIGHTS)).replace(duration=1.2)
+    bristle = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, angle)
+    array = fx.effects.RigidArray(OFFSETS, WEIGHTS)
+    scene = scene_of(array, bristle=bristle).replace(duration=1.2)
     ts, eps = np.linspace(0, 1.2, 7), 0.05
 
     def rates(t, z):
         load = 1.0488 * math.sin(2 * math.pi * t / 3)
-        return [(load - z[0] - pull_of_all(z[0], eps)) / eps]
+        return [(load - z[0] - pull_of_all(z[0], eps, angle)) / eps]
 
     exact = integrate.solve_ivp(
         rates, (0, 1.2), [0.0], "LSODA", t_eval=ts, rtol=1e-8, atol=1e-9 * eps
@@ -130,7 +142,7 @@ def test_solvers_by_name_meet_the_sum_itself():
 
 
 def test_every_eps_of_a_sweep_has_its_own_sum():
-    scene = scene_of(fx.effects.RigidArray([0.0, 0.1]))
+    scene = scene_of(fx.effects.RigidArray([0.0, 0.1]), bristle=VERTICAL)
     ts = np.linspace(0, 3, 7)
     data = fx.sweep(scene, [2e-2, 1e-2], [0.75, 1.0], ts)
     assert "RigidArray" in data.attrs["scene"]
@@ -158,13 +170,11 @@ def test_what_is_no_array_is_refused(offsets, weights, words):
 
 def test_leading_orders_of_all_tips():
     both = fx.effects.RigidArray([0.0, 0.1]), fx.effects.LeadingOrder()
-    bristle = fx.bristles.VerticalSpring(1.0, 1.5, 1.0)
-    scene = scene_of(*both, bristle=bristle)
-    other = scene_of(*both[::-1], bristle=bristle)
+    scene = scene_of(*both, bristle=VERTICAL)
+    other = scene_of(*both[::-1], bristle=VERTICAL)
     plain = scene_of(both[0], bristle=fx.bristles.Homothetic(0.5))
     solutions = [fx.solve(s, 1e-2, ts=[1.0, 2.0]).z for s in (scene, other, plain)]
     np.testing.assert_allclose(solutions[0], solutions[1], atol=1e-8)
     np.testing.assert_allclose(solutions[0], solutions[2], atol=1e-6)
-    assert not jnp.array_equal(
-        solutions[0], fx.solve(scene_of(both[0], bristle=bristle), 1e-2, ts=[1.0, 2.0]).z
-    )
+    whole = scene_of(both[0], bristle=VERTICAL)
+    assert not jnp.array_equal(solutions[0], fx.solve(whole, 1e-2, ts=[1.0, 2.0]).z)

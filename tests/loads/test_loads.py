@@ -2,11 +2,13 @@
 
 from itertools import pairwise
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 from paths import path_of
+from samples import Formula
 
 import frictionjax as fx
 from frictionjax.loads.steep import steep_times
@@ -109,15 +111,25 @@ def test_wrong_parameters_are_named(make, message):
         make()
 
 
+@eqx.filter_jit
+def steep_slopes(load, start, end):
+    times = steep_times(load, start, end)
+    return times, jax.vmap(load.slope)(times)
+
+
 def fastest(load, start, end):
-    times = np.asarray(steep_times(load, start, end))
+    times, slopes = steep_slopes(load, jnp.asarray(start), jnp.asarray(end))
     assert np.all((times > start) & (times < end))
-    return np.max(np.abs(jax.vmap(load.slope)(times)))
+    return np.max(np.abs(slopes))
+
+
+def _ramped(t, center, width, rise):
+    return 0.2 * t + rise * jnp.tanh((t - center) / width)
 
 
 def with_ramp(center, width, rise=0.4):
     """A slow rise with a steep one of `2 rise` N inside it, C^1 and monotone."""
-    return fx.loads.Custom(lambda t: 0.2 * t + rise * jnp.tanh((t - center) / width))
+    return fx.loads.Custom(Formula(_ramped, jnp.asarray([center, width, rise])))
 
 
 @pytest.mark.parametrize("center", [0.7, 1.5, 1.523])

@@ -16,6 +16,7 @@ from frictionjax.design.surface.barrier.bending import free_energy, kernel_ratio
 from frictionjax.design.surface.barrier.constraints import heights_of_waves
 from frictionjax.design.surface.fit import surface_problem
 from frictionjax.design.surface.multistart import multistart
+from frictionjax.design.surface.settings import SETTINGS
 from frictionjax.design.surface.status import ProfileStatus
 
 
@@ -225,15 +226,16 @@ def test_a_bounded_height_has_local_optima():
 
 
 def test_a_batch_of_starts_equals_each_alone():
-    problem = surface_problem([fx.Target(ANGULAR, 0.03, -0.1)])  # no closed form
+    # With bounds that are not felt: by the program of the tests of bounds.
+    target, unfelt = fx.Target(ANGULAR, 0.03, -0.1), {"radius": 1e-3, "amplitude": 10.0}
+    problem = surface_problem([target], **unfelt)
     keys, places = jax.random.split(jax.random.PRNGKey(5), 2), np.array([0.5, 0.375])
-    batch = multistart(
-        problem.layout, 200, np.asarray(200), problem.task, places, keys, np.zeros((2, 0))
-    )
+    known, shares = (problem.layout, SETTINGS.kept, np.asarray(200)), np.zeros((2, 0))
+    batch = multistart(*known, problem.task, places, keys, shares)
     for i in range(2):
         twice = np.array([i, i])
-        args = places[twice], keys[twice], np.zeros((2, 0))
-        alone = multistart(problem.layout, 200, np.asarray(200), problem.task, *args)
+        args = places[twice], keys[twice], shares
+        alone = multistart(*known, problem.task, *args)
         np.testing.assert_allclose(
             batch.settled.waves[i], alone.settled.waves[i], rtol=0, atol=1e-9
         )
