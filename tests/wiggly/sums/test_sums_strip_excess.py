@@ -1,5 +1,6 @@
 """How far tips leave the strip (Lemma 7), where the limit slides and where it rests."""
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -95,8 +96,11 @@ def test_tips_leave_by_the_edge_that_the_load_does_not_move():
 
 @pytest.mark.parametrize("support", [SPRING, QUARTIC, SOFT_PLUS])
 def test_states_near_a_guess_are_those_found_without(support):
+    # One loop each: op by op every call compiles its own.
+    state_of = jax.jit(lambda force: support.state_of(force))
+    state_near = jax.jit(lambda force, guess: support.state_near(force, guess))
     for force in (-2.0, 0.1, 0.7, 3.0):
-        state = support.state_of(force)
+        state = state_of(force)
         for off in (0.0, 0.02, -0.02):
-            near = support.state_near(force, state + off)
+            near = state_near(force, state + off)
             assert abs(float(near - state)) < 1e-11
