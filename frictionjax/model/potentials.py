@@ -17,6 +17,7 @@ from .._checks import (
     Real,
     as_plain,
     checked,
+    is_concrete,
     part_text,
     require,
     require_function,
@@ -77,7 +78,8 @@ class AbstractPotential(Part):
 
         z in m and eps in m, any shapes that broadcast.
         """
-        if jnp.ndim(z) or jnp.ndim(eps):
+        # Known numbers too: op by op each call compiles its own loop.
+        if jnp.ndim(z) or jnp.ndim(eps) or is_concrete(self, z, eps):
             return _elementwise(type(self).tip, self, *_floats(self, z, eps))
         Y = jnp.asarray(z / eps)
         number = jnp.round(Y)

@@ -1,5 +1,6 @@
 """What every entry point refuses, by the argument's name, value and what is allowed."""
 
+import functools
 import re
 
 import jax.numpy as jnp
@@ -21,24 +22,30 @@ def scene_of(support=None, load=None, z0=0.0, potential=None):
     return fx.Scene(SURFACE, BRISTLE, *parts)
 
 
-SCENE = scene_of()
+@functools.cache
+def known():
+    """Made once, and not while workers collect."""
+    return scene_of()
 
 
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: fx.solve(SCENE, 1e-2, ts="abc"), r"ts = 'abc': needs times"),
-        (lambda: fx.solve(SCENE, 1e-2, ts=[0j, 1]), r"ts = .*: needs times"),
-        (lambda: fx.solve(SCENE, 1e-2, ts=[[0.0], [1.0, 2.0]]), r"ts = .*: needs times"),
-        (lambda: fx.solve(SCENE, 1e-2, max_steps=0), r"max_steps = 0: needs a whole"),
-        (lambda: fx.solve(SCENE, 1e-2, max_steps=10.5), r"max_steps = 10\.5: needs a who"),
-        (lambda: fx.solve(SCENE, 1e-2, max_steps="a"), r"max_steps = 'a': needs a whole"),
-        (lambda: fx.solve(SCENE, 1e-2, adjoint=3), r"adjoint = 'int': needs None or an"),
-        (lambda: fx.solve(SCENE, None), r"eps = None: needs one number eps > 0"),
+        (lambda: fx.solve(known(), 1e-2, ts="abc"), r"ts = 'abc': needs times"),
+        (lambda: fx.solve(known(), 1e-2, ts=[0j, 1]), r"ts = .*: needs times"),
+        (lambda: fx.solve(known(), 1e-2, ts=[[0.0], [1.0, 2.0]]), r"ts = .*: needs times"),
+        (lambda: fx.solve(known(), 1e-2, max_steps=0), r"max_steps = 0: needs a whole"),
+        (
+            lambda: fx.solve(known(), 1e-2, max_steps=10.5),
+            r"max_steps = 10\.5: needs a who",
+        ),
+        (lambda: fx.solve(known(), 1e-2, max_steps="a"), r"max_steps = 'a': needs a whole"),
+        (lambda: fx.solve(known(), 1e-2, adjoint=3), r"adjoint = 'int': needs None or an"),
+        (lambda: fx.solve(known(), None), r"eps = None: needs one number eps > 0"),
         (lambda: fx.study(None), r"dataset = 'NoneType': needs a data set"),
         (lambda: fx.study({}), r"dataset = 'dict': needs a data set"),
         (
-            lambda: fx.study(fx.sweep(SCENE, [1e-2], 1.0, suprema=False)),
+            lambda: fx.study(fx.sweep(known(), [1e-2], 1.0, suprema=False)),
             r"dataset = 'one without strip_excess, sup_error': needs .* suprema=True",
         ),
         (
@@ -92,9 +99,9 @@ def test_what_is_no_scene_is_named(call, scene):
 @pytest.mark.parametrize("value", [True, [True, 0.1], [[0.1]], "0.1", {0.1: 1}, {0.1}])
 def test_eps_that_is_no_number_nor_list_is_named(value):
     for call in (
-        lambda: fx.sweep(SCENE, value, 1.0),
-        lambda: fx.solve(SCENE, value),
-        lambda: fx.predict_cost(SCENE, value, measure=False),
+        lambda: fx.sweep(known(), value, 1.0),
+        lambda: fx.solve(known(), value),
+        lambda: fx.predict_cost(known(), value, measure=False),
     ):
         with pytest.raises(ValueError, match=r"eps = .*: needs "):
             call()
@@ -113,13 +120,13 @@ def test_wells_that_floats_cannot_tell_apart_are_refused(call):
     with pytest.raises(
         ValueError, match=r"eps = 1e-20: needs eps >= 9.095e-13: wells at 1 m"
     ):
-        call(SCENE, 1e-20)
+        call(known(), 1e-20)
     with pytest.raises(ValueError, match=r"eps = 1e-07: needs eps >= 9.095e-06"):
         call(scene_of(fx.supports.Spring(1e-7)), 1e-7)
 
 
 def test_eps_of_1e_minus_12():
-    found = fx.solve(SCENE, 1e-12, 1.0, [0.0, 1.0, 3.0])
+    found = fx.solve(known(), 1e-12, 1.0, [0.0, 1.0, 3.0])
     assert found.ok
     assert np.all(np.isfinite(found.z))
 
@@ -137,7 +144,7 @@ def test_wrong_solutions_do_not_balance_at_the_smallest_eps(monkeypatch, gamma):
         return plan._replace(control=plan.control._replace(**control))
 
     monkeypatch.setattr(engine, "plan_of_cells", carelessly)
-    found = fx.solve(SCENE, 1e-12, gamma, [0.0, 1.0, 3.0])
+    found = fx.solve(known(), 1e-12, gamma, [0.0, 1.0, 3.0])
     assert found.status is fx.Status.UNBALANCED
 
 
@@ -159,7 +166,7 @@ def test_the_smallest_eps_named_in_an_error_is_accepted():
 
 
 def test_the_end_named_in_an_error_is_a_time_that_is_accepted():
-    scene = fx.Scene(SURFACE, BRISTLE, SCENE.support, SCENE.load, 1.23456789)
+    scene = fx.Scene(SURFACE, BRISTLE, known().support, known().load, 1.23456789)
     with pytest.raises(ValueError, match=r"\[0, 1\.23456\]"):
         require_times(scene, [0.0, 1.3])
     require_times(scene, [0.0, 1.23456])

@@ -34,7 +34,7 @@ def test_force_by_the_inverse_equals_the_tip_force(kind):
         largest = 0.99 * largest_eps(potential, 0.1)
         for eps in [largest, *(size for size in SIZES if size < largest)]:
             z = eps * jnp.linspace(-10, 10, 401)
-            along, stretch = by_tip(potential, z, jnp.asarray(eps))
+            along, stretch = by_tip(potential, z, jnp.asarray(eps, float))
             found = potential.force(z, eps)
             size = jnp.max(jnp.abs(along))
             assert jnp.all(stretch > 0)
@@ -75,7 +75,7 @@ def test_rest_and_its_slope_stay_bounded(kind):
         slope_size = jnp.max(jnp.abs(limit_slope)) + 1e-3 * (kind == "homothetic")
         for eps in (0.99 * largest_eps(potential, 0.1), *SIZES[1:]):
             found = potential.Q(eps, GRID)
-            found_slope = slopes(potential, jnp.asarray(eps))
+            found_slope = slopes(potential, jnp.asarray(eps, float))
             assert jnp.max(jnp.abs(found)) < 10 * size
             assert jnp.max(jnp.abs(found_slope)) < 100 * slope_size
         assert jnp.max(jnp.abs(found - limit)) < 1e-6 * size  # eps = 1e-8 here
@@ -111,6 +111,17 @@ def test_rest_of_a_vertical_spring_in_closed_form():
         )
 
 
+@eqx.filter_jit
+def there(potential, z, eps):
+    number, inside = jax.vmap(lambda s: potential.tip(s, eps))(z)
+    return number, inside, jax.vmap(lambda y: potential.offset(y, eps))(inside)
+
+
+@eqx.filter_jit
+def flat_tips(potential, Y):
+    return jax.vmap(potential.flat_tip)(Y)
+
+
 @pytest.mark.parametrize("sharp", [1e-1, 1e-2, 1e-3])
 def test_the_inverse_near_its_singular_end(sharp):
     # 1 + a omega_minus = sharp: Kepler's equation with eccentricity 1 - sharp.
@@ -119,19 +130,12 @@ def test_the_inverse_near_its_singular_end(sharp):
     potential = fx.potential(surface, fx.bristles.SlantedSpring(1.0, 3.0, 1.0, lean))
     y = jnp.linspace(-0.5, 0.5, 1001)[1:-1]
     Y = y - np.tan(lean) * surface(y)
-    back = eqx.filter_jit(lambda Y: jax.vmap(potential.flat_tip)(Y))(Y)
+    back = flat_tips(potential, Y)
     assert jnp.max(jnp.abs(back + potential.a() * surface(back) - Y)) < 4e-16
     assert jnp.max(jnp.abs(back - y)) < 4e-16 / sharp
-    eps = jnp.asarray(1e-3)
-    number, inside = jax.vmap(lambda z: potential.tip(z, eps))(eps * (Y + 3))
+    number, inside, _ = there(potential, 1e-3 * (Y + 3), jnp.asarray(1e-3, float))
     assert jnp.all(number == 3)
     assert jnp.max(jnp.abs(inside - y)) < 4e-15 / sharp
-
-
-@eqx.filter_jit
-def there(potential, z, eps):
-    number, inside = jax.vmap(lambda s: potential.tip(s, eps))(z)
-    return number, inside, jax.vmap(lambda y: potential.offset(y, eps))(inside)
 
 
 @pytest.mark.parametrize("kind", FEW_BRISTLES)
@@ -139,7 +143,7 @@ def test_state_to_tip_and_back(kind):
     for potential in potentials(kind, "spline"):
         for eps in (1e-2, 1e-5, 1e-8):
             z = eps * jnp.linspace(-10, 10, 201)
-            number, inside, ahead = there(potential, z, jnp.asarray(eps))
+            number, inside, ahead = there(potential, z, jnp.asarray(eps, float))
             np.testing.assert_allclose(eps * (number + inside) + ahead, z, atol=1e-14 * eps)
 
 
@@ -150,13 +154,13 @@ def test_a_rod_nearly_upright_keeps_its_digits():
     potential = fx.potential(fx.profiles.Sine(1e-5), rod)
     assert float(rod.limit_angle) == pytest.approx(np.sqrt(2e-9), rel=1e-6)
     for eps in (1e-6, 1e-8, 1e-12):
-        along, _ = by_tip(potential, eps * (GRID - 0.5), jnp.asarray(eps))
+        along, _ = by_tip(potential, eps * (GRID - 0.5), jnp.asarray(eps, float))
         found = potential.force(eps * (GRID - 0.5), eps)
         np.testing.assert_allclose(found, along, atol=1e-10 * np.max(np.abs(along)))
         limit, far = potential.Q(0.0, GRID), 5e3 * eps  # (eps w/1e-9) of its size
         size = np.max(np.abs(limit))
         np.testing.assert_allclose(potential.Q(eps, GRID), limit, atol=far * size)
-        climb = eqx.filter_jit(rest_slope)(potential, jnp.asarray(eps))
+        climb = eqx.filter_jit(rest_slope)(potential, jnp.asarray(eps, float))
         limit = rest_slope(potential, jnp.zeros(()))
         np.testing.assert_allclose(climb, limit, atol=2 * far * np.max(np.abs(limit)))
 

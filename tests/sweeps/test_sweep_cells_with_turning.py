@@ -23,7 +23,8 @@ def followed():
 
 
 def test_columns_are_those_of_other_scenes_and_its_own(jumping):
-    plain = fx.sweep(jumping_scene().replace(effects=()), EPS[:1], [1.0], TS)
+    # An eps at which a rod is as short a series as in other tests: their programs.
+    plain = fx.sweep(jumping_scene().replace(effects=()), [0.01], [1.0], TS)
     assert set(plain.data_vars) - set(jumping.data_vars) == set()
     own = {"root", "mode", "root_limit", "mode_limit", "jumps", "jump_loss"}
     own |= {"graph_error", "dissipation_graph_error"}

@@ -114,7 +114,7 @@ def _course(
     checks = np.linspace(0.0, last, SETTINGS.checks if suprema else 2)
     stops = np.unique(np.concatenate([checks, ts, turns[turns < last]]))
     starts = stops[:-1]
-    room = padded_size(max(starts.size, 1), SETTINGS.stops, 2)
+    room = padded_size(max(starts.size, 1), SETTINGS.stops)
     start, length = np.full(room, stops[-1]), np.zeros(room)
     start[: starts.size], length[: starts.size] = starts, np.diff(stops)
     parts = MassiveScene(

@@ -1,5 +1,6 @@
 """How far tips leave the strip (Lemma 7), where the limit slides and where it rests."""
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -19,18 +20,18 @@ def scene_under(times, values, support=SPRING, duration=2.5):
 
 
 RELOADED = [0.0, 1.0, 2.0, 2.0001, 2.5]
+# Of `scene_under`, which each worker would call while it collects.
 CASES = {
     # Faster inside the strip than tips follow: the limit rests, z is left outside.
-    "reloaded": scene_under(RELOADED, [0.0, 0.503, 0.32, 0.4999, 0.4999]),
-    "to the left": scene_under(RELOADED, [0.0, -0.503, -0.31, -0.49, -0.49]),
-    "at rest throughout": scene_under(
-        [0.0, 1e-4, 1.0, 1.0001, 2.0], [0.0, 0.0999, 0.0, -0.0999, -0.0999]
+    "reloaded": (RELOADED, [0.0, 0.503, 0.32, 0.4999, 0.4999]),
+    "to the left": (RELOADED, [0.0, -0.503, -0.31, -0.49, -0.49]),
+    "at rest throughout": (
+        [0.0, 1e-4, 1.0, 1.0001, 2.0],
+        [0.0, 0.0999, 0.0, -0.0999, -0.0999],
     ),
-    "quartic": scene_under(RELOADED, [0.0, 1.503, 1.32, 1.4999, 1.4999], QUARTIC),
+    "quartic": (RELOADED, [0.0, 1.503, 1.32, 1.4999, 1.4999], QUARTIC),
     # Turned while z is still behind, several strips outside.
-    "turned at once": scene_under(
-        [0.0, 1e-3, 2e-3, 3e-3, 1.0], [0.0, 2.0, -1.0, 0.5, 0.5], QUARTIC
-    ),
+    "turned at once": ([0.0, 1e-3, 2e-3, 3e-3, 1.0], [0.0, 2.0, -1.0, 0.5, 0.5], QUARTIC),
 }
 
 
@@ -63,7 +64,7 @@ OWN = [pytest.param(name, marks=pytest.mark.slow) for name in ("quartic", "turne
 @pytest.mark.parametrize("name", ["reloaded", "to the left", "at rest throughout", *OWN])
 def test_lanes_know_how_far_tips_leave_the_strip(name, eps):
     """Taken for the lag behind the limit, an eps of it was missed, or 0.2 too much."""
-    scene = CASES[name]
+    scene = scene_under(*CASES[name])
     cell = cell_of(scene, eps, [0.0, float(scene.duration)])
     assert int(cell.status) == fx.Status.OK
     expected = max(largest_outside(scene, eps), 0.0)
@@ -72,7 +73,7 @@ def test_lanes_know_how_far_tips_leave_the_strip(name, eps):
 
 def test_what_a_reload_leaves_outside_is_the_most():
     """What is outside before the last reload is less: that is what is measured."""
-    scene = CASES["reloaded"]
+    scene = scene_under(*CASES["reloaded"])
     cells = [cell_of(scene, 0.1, [0.0, 2.5])]
     times, values = RELOADED[:3], [0.0, 0.503, 0.32]
     cells.append(cell_of(scene_under(times, values, duration=1.9), 0.1, [0.0, 1.9]))
@@ -95,8 +96,11 @@ def test_tips_leave_by_the_edge_that_the_load_does_not_move():
 
 @pytest.mark.parametrize("support", [SPRING, QUARTIC, SOFT_PLUS])
 def test_states_near_a_guess_are_those_found_without(support):
+    # One loop each: op by op every call compiles its own.
+    state_of = jax.jit(lambda force: support.state_of(force))
+    state_near = jax.jit(lambda force, guess: support.state_near(force, guess))
     for force in (-2.0, 0.1, 0.7, 3.0):
-        state = support.state_of(force)
+        state = state_of(force)
         for off in (0.0, 0.02, -0.02):
-            near = support.state_near(force, state + off)
+            near = state_near(force, state + off)
             assert abs(float(near - state)) < 1e-11
