@@ -40,6 +40,7 @@ DEAR = {
     "fx.order_cost",
     "fx.plot.draw_angle_fit",
     "fx.plot.draw_friction_curve",
+    "fx.plot.draw_order_cost",
     "fx.plot.draw_profile_fit",
     "fx.plot.draw_slide_fit",
     "fx.plot.draw_slide_profile_fit",
