@@ -7,6 +7,7 @@ from outside_slips import states_outside_slips, times_about
 import frictionjax as fx
 from frictionjax.called_for import higher_order, setting_of
 from frictionjax.explain import switched_off
+from frictionjax.explain.telling_times import telling_times
 from frictionjax.io.example_scenes import example_text
 from frictionjax.io.scene_files import parse_scene
 
@@ -81,3 +82,13 @@ def test_a_line_of_progress_says_that_scenes_are_solved(monkeypatch):
     at = setting_of(SPRING, EPS, GAMMA)
     switched_off.higher_order_told(at, lines.append)
     assert lines == ["solving with the higher order and without it"]
+
+
+@pytest.mark.parametrize(("eps", "way"), [(EPS, "resolved"), (1e-8, "auto")])
+def test_every_slip_is_solved_where_slips_are_fewer_than_times(monkeypatch, eps, way):
+    asked = []
+    monkeypatch.setattr(switched_off, "integrate_cells", lambda **a: asked.append(a))
+    at = setting_of(SPRING, eps, GAMMA)
+    times = telling_times(at, np.array([0.75]))
+    switched_off._largest_change(at, times, 1e-6, np.zeros(1))
+    assert [told["method"] for told in asked] == [way, way]
