@@ -15,11 +15,15 @@ def scene_of(name):
     return parse_scene(example_text(name), name).scene
 
 
+def shipped_eps(name):
+    return parse_scene(example_text(name), name).study["eps"]
+
+
 def told_of(scene, effect, eps, gamma=1.0):
     return float(fx.explain(scene, eps, gamma).effects.in_z.sel(effect=effect))
 
 
-@pytest.mark.parametrize("eps", [0.1, 0.02, 0.005])
+@pytest.mark.parametrize("eps", shipped_eps("inertia"))
 def test_a_mass(eps):
     heavy = scene_of("inertia")
     times = times_about(heavy, eps)
@@ -33,7 +37,7 @@ def test_a_mass(eps):
     assert seen <= told_of(heavy, "Inertia", eps) <= 10 * seen
 
 
-@pytest.mark.parametrize("eps", [0.1, 0.02, 0.005])
+@pytest.mark.parametrize("eps", shipped_eps("noise"))
 def test_noise(eps):
     """The worst of eight paths, where tips of neither scene slip."""
     warm = scene_of("noise")
