@@ -5,8 +5,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._checks import require
-
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -16,11 +14,10 @@ def dataset_over_time(
 ) -> "xr.Dataset":
     """Of one trajectory those `columns` (unit, meaning) that it has, over `time` in s.
 
-    `ended`: attributes. Raises `ValueError` of a batch.
+    `ended`: attributes.
     """
     import xarray as xr  # nothing else needs it
 
-    require(np.ndim(solution.z) == 1, "solution", "a batch", "one trajectory")
     data = xr.Dataset(coords={"time": ("time", np.asarray(solution.ts), {"units": "s"})})
     for name, (units, meaning) in columns.items():
         if (values := getattr(solution, name)) is not None:

@@ -21,8 +21,7 @@ _SLIP = 0.05  # of eps in half a percent of a well's time: a tip that moves furt
 # Times what is measured: other times saw up to 1.2 times as much of scenes that ship
 # (`pytest -m slow tests/called_for/test_plain_system.py` holds it).
 _UNSEEN = 2.0
-# Of the closed form, which told up to 94 times what was seen (angular-spring, gamma = 0.5,
-# eps = 0.1): error of the two solves.
+# Error of the two solves, of the closed form, which may tell far more than is seen.
 _FINER, _FINEST = 1e-3, 1e-9
 _BRISTLES = 16  # of an array that are measured
 _TURNS = 20  # on folds, about which it is measured
@@ -87,7 +86,7 @@ def _outside_slips(
     middle = np.clip(times.at, times.away, float(scene.duration) - times.away)
     ts = np.concatenate([middle - times.away, middle, middle + times.away])
     order = np.sort(ts)
-    # By slip maps, from which lanes set off for each time: 12 times as long (1e-3, 0.5).
+    # For so many times lanes that set off from slip maps take longer than every slip does.
     wells = float(np.sum(np.abs(at.data.speed) * at.data.length)) / at.eps
     found = integrate_cells(
         scene=scene,

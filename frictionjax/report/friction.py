@@ -78,7 +78,8 @@ def nap_document(job: Job, bending_stiffness: float | None) -> dict[str, Any]:
     }
     window = None if found.window is None else found.window._asdict()
     told = {**forces, "window": window, "message": found.message}
-    return told | ({"notes": _left_out(job)} if _left_out(job) else {})
+    notes = _left_out(job)
+    return told | ({"notes": notes} if notes else {})
 
 
 def _left_out(job: Job) -> list[str]:
