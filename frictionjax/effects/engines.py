@@ -50,7 +50,9 @@ _DOES: dict[str, frozenset[Engine]] = {
             *(_E.SLIDE, _E.FRICTION_CURVE),
         }
     ),
-    "Noise": frozenset({_E.RESOLVED, _E.SWEEP, _E.ENSEMBLE, _E.FRICTION_CURVE}),
+    "Noise": frozenset(
+        {_E.RESOLVED, _E.WINDOWED, _E.SWEEP, _E.ENSEMBLE, _E.FRICTION_CURVE}
+    ),
     "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE}),
     "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE}),
 }
@@ -85,7 +87,6 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
     ("Noise", _E.SLIDE): "friction_curve, of a scene",
     ("Inertia", _E.SLIDE): "sweep of a long ramp: its dissipation over its way",
     ("AxialLoad", _E.ENSEMBLE): "mechanics or sweep, of a scene without noise",
-    ("Noise", _E.WINDOWED): 'method="auto", and key: in tiles, which skip no step',
     ("Noise", _E.PATH): 'method="auto", and key',
     (
         "Inertia",

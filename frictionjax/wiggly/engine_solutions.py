@@ -83,8 +83,9 @@ def along_one_path(
         "tolerance": None,
         "dissipation_gap": None,
         "step": found.step,
+        "rounds": found.rounds,
     }
-    how = "a path with noise, by fixed steps (Leimkuhler and Matthews)"
+    how = "a path with noise, by fixed steps (Leimkuhler and Matthews), in windows"
     z = jnp.asarray(found.z)
     return Solution(ts, z, None, None, jnp.asarray(int(status)), counts, how)
 

@@ -116,8 +116,9 @@ def solve(
     mode are those of the steps taken, and NaN through more than 15 million of them).
     `max_steps`: of such a solve.
     `key`: of a scene with `effects.Noise`, a seed or a key of `jax.random`, whose path it
-    is. Steps are fixed then, and accuracy, max_steps and adjoint are refused; dissipation
-    and residual are None, as `int eps^gamma z'^2` of a path with noise is infinite.
+    is: in windows that meet to the last bit, by each of our methods. Steps are fixed, and
+    accuracy, max_steps and adjoint are refused; dissipation and residual are None, as
+    `int eps^gamma z'^2` of a path with noise is infinite.
     With `effects.Inertia` the equation has `m_eps z''`, z0 is at rest, every slip is
     integrated at three tolerances, and there are no derivatives.
     With `effects.NapFlip` every slip is integrated, from mode to mode, and there are no

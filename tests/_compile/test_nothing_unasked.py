@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import equinox as eqx
 import jax
@@ -75,7 +76,7 @@ def test_no_dissipation_no_balance(monkeypatch):
     full = traced(lambda scene: trajectory_of(scene, balanced=True), SCENE)
     assert len(bare) < 0.8 * len(full)
 
-    def forbidden(*args):
+    def forbidden(*args, **named):
         raise AssertionError("the balance was traced")
 
     monkeypatch.setattr(observed, "advance", forbidden)
@@ -93,6 +94,23 @@ def test_a_scene_without_effects_is_the_same_program():
         return trajectory_of(scene, balanced=True)
 
     assert traced(program, named) == traced(program, SCENE)
+
+
+@pytest.mark.slow
+def test_scenes_with_effects_leave_no_trace_in_the_programs_of_one_without():
+    """All jaxprs of a solve and a limit, where nothing of theirs can be imported, too."""
+    blocked, after = (programs_of_a_plain_scene(how) for how in ("blocked", "after"))
+    assert sum("run_queue" in line for line in blocked) == 1
+    assert len(blocked) > 10
+    assert blocked == after
+
+
+def programs_of_a_plain_scene(how):
+    script = Path(__file__).parents[1] / "support" / "plain_programs.py"
+    run = subprocess.run(
+        [sys.executable, script, how], check=True, capture_output=True, text=True
+    )
+    return run.stdout.splitlines()
 
 
 def test_unknown_effects_are_refused():

@@ -73,7 +73,9 @@ CALLS = {
     Engine.RESOLVED: lambda s: fx.solve(
         s, 0.05, ts=[0.5, 1.0], method="resolved", key=key_for(s)
     ),
-    Engine.WINDOWED: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="windowed"),
+    Engine.WINDOWED: lambda s: fx.solve(
+        s, 0.05, ts=[0.5, 1.0], method="windowed", key=key_for(s)
+    ),
     Engine.PATH: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="Kvaerno3"),
     Engine.SWEEP: lambda s: fx.sweep(s, [0.05], [1.0], ts=[0.5, 1.0], key=key_for(s)),
     Engine.CERTIFICATE: lambda s: fx.certify(s, 0.05, 1.0, TS, **curve_for(s)),

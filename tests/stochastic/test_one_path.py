@@ -56,6 +56,16 @@ def test_it_has_the_bits_of_the_path_at_once_after_few_rounds(eps, gamma, heat, 
     assert 2 <= tiled.rounds <= most < SETTINGS.lanes
 
 
+@pytest.mark.parametrize("method", ["auto", "resolved", "windowed"])
+def test_a_solve_by_each_of_our_methods_is_that_path_in_windows(method):
+    scene = SCENE.replace(effects=(Noise(0.02),))
+    whole = at_once(SCENE, Noise(0.02), TS, eps=0.02, gamma=1.0)
+    found = fx.solve(scene, 0.02, 1.0, TS, method=method, key=3)
+    assert np.array_equal(found.z, whole.z[0])
+    assert 2 <= found.stats["rounds"] < SETTINGS.lanes
+    assert found.how.endswith("in windows")
+
+
 @pytest.mark.parametrize(
     "ts", [[0.0], [0.0, 0.0, 1e-9], [4.0], [1.7, 1.7, 1.70001, 1.8], np.linspace(2, 4, 300)]
 )
