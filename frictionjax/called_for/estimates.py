@@ -16,7 +16,7 @@ from ..effects import (
 )
 from .activated_slips import activated_slips
 from .inertia_number import inertia_numbers
-from .setting import AWAY, Setting
+from .setting import AWAY, FASTEST, Setting
 
 # Of beta, in eps: what a mass changes below the border, 0.7 (gamma = 0.75) to 1 was seen.
 _LIGHT = 2.0
@@ -82,16 +82,17 @@ def _(effect: Inertia, at: Setting) -> Estimate:
     """By beta: a light mass delays slips, a heavy one runs until the pull has fallen.
 
     Delays are a few times `m_eps/eps^gamma`: a slip is late by the logarithm of its own
-    speed over the slide's. Where that is so long that there are times outside of both
-    slips, one tip is a slip behind the other. A tip that runs is caught where the force
-    falls to about `rho/sqrt(beta)`; on the spring it swings as far again at most. One that
-    viscosity carries over wells without a rest runs the more evenly the heavier it is.
+    speed over the slide's, until the tip slips. Where that is so long that there are times
+    outside of both slips, one tip is a slip behind the other. A tip that runs is caught
+    where the force falls to about `rho/sqrt(beta)`; on the spring it swings as far again at
+    most. One that viscosity carries over wells without a rest runs the more evenly the
+    heavier it is.
     """
     beta = float(inertia_numbers(at.scene.potential, effect, at.eps, at.gamma))
     viscosity = at.eps**at.gamma
     delay = float(effect.mass_at(at.eps)) / viscosity / (1 + beta)
     light = _LIGHT * min(beta, 1.0) * at.eps
-    faster = max(2 * at.rho / (viscosity * at.speed), np.e)
+    faster = np.clip(2 * at.rho / (viscosity * at.speed), np.e, FASTEST)
     if np.log(faster) * delay * at.speed < 2 * AWAY * at.eps:
         light = min(light, _LATE * at.fastest * at.speed * delay)
     carried = min(1.0, viscosity * at.speed / at.rho) ** 2

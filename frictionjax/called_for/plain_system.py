@@ -18,6 +18,9 @@ from .turns_on_folds import turns_on_folds
 _PLACES = 512  # of a period, for forces of a well and their change
 _SLIP = 130.0  # times eps^(1 + gamma)/max|W''|: a slip, with its way over the fold
 _FELT = 6.0  # times eps: the most that tips move while a slip is late
+# Times the law of a slide, of which 0.978 to 1.011 was seen on scenes that ship (`pytest -m
+# slow tests/called_for/test_estimates.py` holds the bound).
+_LAW = 1.03
 
 
 class HigherOrder(NamedTuple):
@@ -95,10 +98,10 @@ def _tabulated(at: Setting) -> AbstractPotential:
 def finite_speed(at: Setting) -> Estimate:
     """What viscosity adds to friction on the fastest slide: force and state beyond rho.
 
-    NaN where the limit does not slide through a few wells.
+    At most 3% less than `law` says. NaN where the limit does not slide through a few wells.
     """
     plain = at.data._replace(change=np.zeros_like(at.data.change))
     found = predict_errors(plain, np.array([at.eps]), np.array([at.gamma]))
-    in_z = float(found["strip_excess"].errors[0, 0])
+    in_z = _LAW * float(found["strip_excess"].errors[0, 0])
     law = found["strip_excess"].laws[0]
     return Estimate(in_z, in_z * at.stiffest, np.nan, f"law of a slide: {law.name}")

@@ -82,7 +82,7 @@ def test_what_finite_speed_does_is_what_is_seen(bristle, gamma):
     data = fx.sweep(scene, [eps], [gamma], ts=[0.0, 3.0])
     row = row_of("finite speed", scene.replace(effects=LEADING), eps, gamma)
     leading = fx.sweep(scene.replace(effects=LEADING), [eps], [gamma], ts=[0.0, 3.0])
-    assert float(row.in_z) == pytest.approx(float(leading.strip_excess[0, 0]), rel=0.02)
+    assert 1.0 <= float(row.in_z / leading.strip_excess[0, 0]) <= 1.05
     assert float(row.in_z) == pytest.approx(float(data.strip_excess[0, 0]), rel=0.1)
 
 
