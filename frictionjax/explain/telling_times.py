@@ -3,16 +3,14 @@
 Time is counted in wells here: by how far the load would move the support alone, in eps.
 """
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
 from ..called_for import AWAY, Setting
-from ..model import Scene, known_turning_points
+from ..model import TabulatedScene, known_turning_points, tabulated_scene
+from ..wiggly import arrivals_at, state_under
 
 _WINDOW = 3.0  # wells
 _PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of windows, in shares of what is left of a slide
@@ -24,7 +22,6 @@ _A_WELL = 100  # times
 _RESTS = 800  # times from a turn until the limit slides
 _OTHERS = 6  # stretches that no turn on a fold ends
 _STILL = 100  # times while the load stands still
-_HALVINGS = 52
 
 
 class TellingTimes(NamedTuple):
@@ -37,15 +34,18 @@ class TellingTimes(NamedTuple):
 class _Stretch(NamedTuple):
     """From one turn of the load to the next: times in s, and wells.
 
-    `resting`: wells until the limit slides; `lag`: by which drag holds tips up then.
+    `start`: where the support alone would be then, in m; `direction` of the load, 0 where
+    it stands still. `resting`: wells until the limit slides; `lag`: by which drag holds
+    tips up then.
     """
 
     began: float
     ended: float
+    start: float
+    direction: float
     wells: float
     resting: float
     lag: float
-    direction: float
 
 
 def telling_times(at: Setting, turns: Float[np.ndarray, " turns"]) -> TellingTimes:
@@ -54,11 +54,15 @@ def telling_times(at: Setting, turns: Float[np.ndarray, " turns"]) -> TellingTim
     Of stretches between turns of the load all that begin or end at one of `turns` (s), and
     of the others no more than a few.
     """
-    stretches = list(_stretches(at))
+    tables = tabulated_scene(at.scene, at.eps)
+    stretches = _stretches(at, tables)
     beside = [np.any((turns == s.began) | (turns == s.ended)) for s in stretches]
     others = thinned(np.flatnonzero(~np.array(beside)), _OTHERS)
-    kept = np.union1d(np.flatnonzero(beside), others)
-    parts = [_times_of(at, stretches[i]) for i in kept]
+    kept = [stretches[i] for i in np.union1d(np.flatnonzero(beside), others)]
+    parts = [_while_it_stands(s) for s in kept if s.direction == 0]
+    moving = [s for s in kept if s.direction != 0]
+    if moving:
+        parts.append(_while_it_moves(at.eps, tables, moving))
     return TellingTimes(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
@@ -67,39 +71,55 @@ def thinned(values: np.ndarray, most: int) -> np.ndarray:
     return values[:: max(1, -(-values.size // most))]
 
 
-def _stretches(at: Setting) -> Iterator[_Stretch]:
-    scene, duration = at.scene, float(at.scene.duration)
-    turns = known_turning_points(scene.load, duration, scene.turns)
+def _stretches(at: Setting, tables: TabulatedScene) -> list[_Stretch]:
+    duration = tables.duration
+    turns = known_turning_points(at.scene.load, duration, at.scene.turns)
     edges = np.concatenate([[0.0], turns[turns > 0], [duration]])
-    pulled = _pulled(scene, edges)
-    z = float(scene.z0)
-    lag = at.eps ** (at.gamma - 1) * at.speed / at.softest
-    for i in range(edges.size - 1):
-        wells = (pulled[i + 1] - pulled[i]) / at.eps
-        if abs(wells) < AWAY:
-            yield _Stretch(edges[i], edges[i + 1], 0.0, 0.0, 0.0, 0.0)
-            continue
-        sign = float(np.sign(wells))
-        rho = float(at.law.rho_plus if sign > 0 else at.law.rho_minus)
-        force = float(scene.support.force(jnp.asarray(z))) + rho
-        onset = float(scene.support.state_of(jnp.asarray(force)))
-        resting = np.clip(sign * (onset - pulled[i]) / at.eps, 0.0, abs(wells))
-        if resting < abs(wells):
-            ahead = float(scene.support.force(jnp.asarray(pulled[i + 1]))) - rho
-            z = float(scene.support.state_of(jnp.asarray(ahead)))
-        yield _Stretch(edges[i], edges[i + 1], abs(wells), float(resting), lag, sign)
+    began, ended = edges[:-1], edges[1:]
+    alone = state_under(tables, edges, np.zeros(edges.size))
+    wells = np.diff(alone) / at.eps
+    direction = np.where(np.abs(wells) < AWAY, 0.0, np.sign(wells))
+    rho = np.where(direction > 0, float(at.law.rho_plus), float(at.law.rho_minus))
+    ahead = state_under(tables, ended, rho)
+    z = _limit_at_turns(tables.z0, direction, ahead)
+    onset = arrivals_at(tables, z, rho, began, ended)
+    until = np.abs(state_under(tables, onset, np.zeros(onset.size)) - alone[:-1]) / at.eps
+    lag = np.full(z.size, at.eps ** (at.gamma - 1) * at.speed / at.softest)
+    columns = began, ended, alone[:-1], direction, np.abs(wells), until, lag
+    return [_Stretch(*row) for row in np.stack(columns, axis=1).tolist()]
 
 
-def _times_of(at: Setting, stretch: _Stretch) -> TellingTimes:
-    length = stretch.ended - stretch.began
-    if stretch.wells == 0.0:  # the load stands still
-        times = np.linspace(stretch.began, stretch.ended, _STILL)
-        return TellingTimes(times, np.full(_STILL, AWAY * length))
-    places = _places(stretch)
-    low = np.maximum(places - 0.5, 0.0)
-    high = np.minimum(places + 0.5, stretch.wells)
-    times, before, after = _when(at, stretch, np.stack([places, low, high]))
-    a_well = np.minimum((after - before) / (high - low), length)
+def _limit_at_turns(
+    z: float, direction: Float[np.ndarray, " n"], ahead: Float[np.ndarray, " n"]
+) -> Float[np.ndarray, " n"]:
+    """The limit's state as each stretch begins: the edge `ahead` takes it along."""
+    states = []
+    for sign, edge in zip(direction.tolist(), ahead.tolist(), strict=True):
+        states.append(z)
+        if sign:
+            z = sign * max(sign * z, sign * edge)
+    return np.array(states)
+
+
+def _while_it_stands(stretch: _Stretch) -> TellingTimes:
+    times = np.linspace(stretch.began, stretch.ended, _STILL)
+    return TellingTimes(times, np.full(_STILL, AWAY * (stretch.ended - stretch.began)))
+
+
+def _while_it_moves(
+    eps: float, tables: TabulatedScene, stretches: list[_Stretch]
+) -> TellingTimes:
+    """When the support alone would be at places of its way, and half a well about them."""
+    parts = [_places(stretch) for stretch in stretches]
+    rows = np.repeat(np.array(stretches), [part.size for part in parts], axis=0)
+    of = _Stretch(*rows.T)
+    places = np.concatenate(parts)
+    low, high = np.maximum(places - 0.5, 0.0), np.minimum(places + 0.5, of.wells)
+    wanted = of.start + of.direction * eps * np.stack([places, low, high])
+    thrice = (np.tile(column, 3) for column in (of.began, of.ended))
+    found = arrivals_at(tables, wanted.ravel(), np.zeros(wanted.size), *thrice)
+    times, before, after = found.reshape(3, -1)
+    a_well = np.minimum((after - before) / (high - low), of.ended - of.began)
     return TellingTimes(times, AWAY * a_well)
 
 
@@ -124,25 +144,3 @@ def _places(stretch: _Stretch) -> Float[np.ndarray, " n"]:
 def _window(start: float, wells: float) -> Float[np.ndarray, " n"]:
     """One place more than fits, so that each well is seen at places of its own."""
     return start + np.linspace(0.0, wells, round(_A_WELL * wells) + 2)
-
-
-def _when(
-    at: Setting, stretch: _Stretch, places: Float[np.ndarray, "3 n"]
-) -> Float[np.ndarray, "3 n"]:
-    """Times in s at which the load has gone so many wells from the start of a stretch."""
-    start = _pulled(at.scene, np.array([stretch.began]))[0]
-    wanted = stretch.direction * start + at.eps * places
-    low = np.full(places.shape, stretch.began)
-    high = np.full(places.shape, stretch.ended)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        short = stretch.direction * _pulled(at.scene, middle) < wanted
-        low, high = np.where(short, middle, low), np.where(short, high, middle)
-    return 0.5 * (low + high)
-
-
-def _pulled(scene: Scene, times: np.ndarray) -> np.ndarray:
-    """Where the support alone would be, in m."""
-    loads = jax.vmap(scene.load)(jnp.asarray(times.ravel()))
-    states = jax.vmap(scene.support.state_of)(loads)
-    return np.asarray(states).reshape(times.shape)

@@ -17,6 +17,8 @@ from .equation import require_accuracy as require_accuracy
 from .equation import status_of as status_of
 from .equation import warn_of_failed as warn_of_failed
 from .inertial import integrate_with_mass as integrate_with_mass
+from .limit_path import arrivals_at as arrivals_at
+from .limit_path import state_under as state_under
 from .predicted_work import Workload as Workload
 from .predicted_work import workload as workload
 from .rosenbrock import RODAS4P2 as RODAS4P2
