@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -10,6 +11,7 @@ from .._checks import Real
 from .._compile import Program, in_chunks
 from ..bristles import Homothetic, Linear
 from ..model import AbstractPotential, BristlePotential, tabulated_potentials
+from ..numerics import slope_of
 from ..slide_laws import predict_errors
 from .estimates import Estimate
 from .setting import Setting
@@ -32,20 +34,14 @@ class HigherOrder(NamedTuple):
 
 @Program
 def _rest(potential: AbstractPotential, eps: Real, Y: Float[Array, " n"]):
-    """Q' and Q'' in N/m, W'' and W''' in N at phases Y."""
+    """Q' and Q'' in N/m, W'' and W''' in N at phases Y.
 
-    def rest(phase: Real) -> Real:
-        return potential._rest(eps, phase)
-
-    def leading(phase: Real) -> Real:
-        return potential._leading(phase)
-
-    def at(phase: Real) -> tuple[Real, ...]:
-        slope, force = jax.grad(rest), jax.grad(leading)
-        steep = jax.grad(force)
-        return slope(phase), jax.grad(slope)(phase), steep(phase), jax.grad(steep)(phase)
-
-    return jax.vmap(at)(Y)
+    Derivatives of all phases at once: traced in half the time of those of each.
+    """
+    rest = slope_of(jax.vmap(lambda phase: potential._rest(eps, phase)))
+    steep = slope_of(slope_of(jax.vmap(potential._leading)))
+    along = (jnp.ones_like(Y),)
+    return *jax.jvp(rest, (Y,), along), *jax.jvp(steep, (Y,), along)
 
 
 def higher_order(at: Setting) -> HigherOrder:
