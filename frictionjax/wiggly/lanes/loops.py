@@ -24,19 +24,19 @@ class Room(NamedTuple):
     legs: int
 
     def holds(self, needed: "Room") -> bool:
-        """Whether that many rows fit, and not into a sixteenth of the legs."""
+        """Whether that many rows fit, and not into less than the next smaller tables."""
         fits = all(a >= b for a, b in zip(self, needed, strict=True))
-        return fits and self.legs <= SETTINGS.spare * max(needed.legs, _ROOM.legs)
+        return fits and self.legs <= SETTINGS.growth * max(needed.legs, _ROOM.legs)
 
 
 _ROOM = Room(*SETTINGS.room)
 
 
 def room_for(needed: Room) -> Room:
-    """Room for that many rows: all sizes grow together, by fours."""
+    """Room for that many rows: all sizes grow together."""
     size = _ROOM
     while not all(a >= b for a, b in zip(size, needed, strict=True)):
-        size = Room(*(4 * rows for rows in size))
+        size = Room(*(SETTINGS.growth * rows for rows in size))
     return size
 
 
