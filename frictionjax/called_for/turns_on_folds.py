@@ -26,8 +26,8 @@ from ..model import Scene, known_turning_points
 from .setting import AWAY, Setting
 
 # Times of passage over times near a turn, between which the estimate may be exceeded: at
-# 1.1, 1.0 and 0.54 it is (`pytest -m slow tests/called_for/test_turns_on_folds.py`).
-_DECIDED = 0.5, 2.5
+# 1.1, 1.0, 0.54 and 0.49 it is (`pytest -m slow tests/called_for/test_turns_on_folds.py`).
+_DECIDED = 0.47, 2.5
 _WELLS = 40  # that a tip may lag behind
 _DRAGGED = 0.4  # of friction: drag that is not small
 _MOVED = 2.0  # times a change of the force at a fold: as near to it
