@@ -9,8 +9,12 @@ import xarray as xr
 from dense_times import finer
 
 import frictionjax as fx
+from frictionjax.model import tabulated_scene
 from frictionjax.wiggly.equation.status import FailedCells
+from frictionjax.wiggly.lanes import loops
+from frictionjax.wiggly.plan import lane_scene
 from frictionjax.wiggly.sequential.rosenbrock_solvers import Rodas5P
+from frictionjax.wiggly.settings import SETTINGS as SWEEP_SETTINGS
 
 EPS = [0.09, 0.05, 0.03]
 GAMMA = [0.5, 1.0, 2.0]
@@ -98,6 +102,11 @@ def test_order_of_cells_does_not_matter(data):
 
 def test_one_compilation_for_any_values(data):
     """Other eps, gamma, accuracy and parameters, and other numbers of cells."""
+    # Both loops are there: when one is compiled in the background hangs on what ran before.
+    lanes = lane_scene(tabulated_scene(scene_of(), EPS))
+    for width in (loops.SETTINGS.narrow, loops.SETTINGS.width):
+        program = lanes, SWEEP_SETTINGS.tableau, True, width
+        loops._LOOPS.run(program, loops.Room(9, 9, 9), loops._nothing)
     compiled = []
     jax.monitoring.register_event_duration_secs_listener(
         lambda event, seconds, **_: (
