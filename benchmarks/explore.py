@@ -2,10 +2,12 @@
 
 `python benchmarks/explore.py` drags each slider through 200 values and times what Python
 does for a frame, from the browser's message to bytes that are ready to go: new numbers,
-checked, solved, packed. `--browser` also draws such frames on the page's canvas in
-Chromium without a window (the extra `browser`), a slider being dragged once a frame.
-`--kernel` sends the same messages to a Jupyter kernel, one after the other, and then 60 a
-second, whatever comes back: how many are answered, how many dropped, how late answers are.
+checked, solved, packed. `--browser` also draws such frames on the page's canvas in Chromium
+without a window (the extra `browser`), one after the other as Python moves the sliders.
+`--kernel` sends the same places to a Jupyter kernel, one after the other, and then 60 a
+second, in the ten messages that the page would send, whatever comes back: how many are
+answered, how many dropped, how late answers are. (JupyterLab itself, with its page and its
+server: `pytest -n 0 -s -m slow tests/explore/test_page_in_jupyterlab.py`.)
 """
 
 import argparse
@@ -23,7 +25,7 @@ from frictionjax.explore.setting import SLIDERS, PageSetting
 
 PAGE = Path(fx.explore.__code__.co_filename).parent
 ENDS = {"angle": (-1.1, 1.1)}  # of what is allowed throughout
-# A model as `anywidget` hands it to the page, that answers from frames which were recorded.
+# A model as `anywidget` hands it to the page, that answers unasked, by recorded frames.
 MODEL = """async ([script, style, frames]) => {
   const sheet = document.createElement("style");
   sheet.textContent = style;
@@ -35,20 +37,15 @@ MODEL = """async ([script, style, frames]) => {
   let [at, heard] = [0, null];
   const model = {
     get: name => name === "arrays" ? arrays[at] : frames[at][name],
-    on: (_, fn) => { heard = fn; }, off: () => {},
-    send: ({view}) => {
-      at = (at + 1) % frames.length;
-      frames[at].told.view = view;
-      heard();
-    },
+    on: (_, fn) => { heard = fn; }, off: () => {}, send: () => {},
   };
   page.render({model, el: document.body});
-  const input = document.querySelector("input"), canvas = document.querySelector("canvas");
+  const canvas = document.querySelector("canvas");
   const waits = [];
   for (let i = 0; i < 200; i++) {
     const [before, drawn] = [performance.now(), Number(canvas.dataset.frames || 0)];
-    input.value = -1 + i / 100;
-    input.dispatchEvent(new Event("input"));
+    at = (at + 1) % frames.length;
+    heard();
     while (Number(canvas.dataset.frames || 0) === drawn)
       await new Promise(requestAnimationFrame);
     waits.push(performance.now() - before);
@@ -64,7 +61,7 @@ def drag(page, name, count):
     spaced = np.geomspace if slider.logarithmic else np.linspace
     seconds, frames, start = [], [], PageSetting()._asdict()
     for value in spaced(low, high, count):
-        content = {"view": "benchmark", "setting": start | {name: float(value)}}
+        content = {"view": "benchmark", "settings": [start | {name: float(value)}]}
         before = time.perf_counter()
         page._heard(page, content, [])
         page._newest.wait()
@@ -75,7 +72,7 @@ def drag(page, name, count):
 
 
 def drawn_in_browser(frames):
-    """Seconds from a slider's event to the frame that is drawn, 200 times."""
+    """Seconds from an answer to the frame that is drawn, 200 times."""
     from playwright.sync_api import sync_playwright
 
     sliders = [one.sent() for one in SLIDERS]
@@ -126,9 +123,9 @@ class Kernel:
             if message["msg_type"] == kind:
                 return message["content"]
 
-    def ask(self, angle):
-        setting = PageSetting(angle=float(angle))._asdict()
-        content = {"view": "benchmark", "setting": setting}
+    def ask(self, angles):
+        settings = [PageSetting(angle=float(angle))._asdict() for angle in angles]
+        content = {"view": "benchmark", "settings": settings}
         data = {"comm_id": self._page, "data": {"method": "custom", "content": content}}
         message = self._client.session.msg("comm_msg", data)
         self._client.shell_channel.send(message)
@@ -146,20 +143,25 @@ def one_by_one(kernel, angles):
     seconds = []
     for angle in angles:
         before = time.perf_counter()
-        kernel.ask(angle)
+        kernel.ask([angle])
         assert kernel.heard() == angle
         seconds.append(time.perf_counter() - before)
     return np.array(seconds)
 
 
-def in_a_hurry(kernel, angles, rate=60):
-    """Messages at a rate, answered or not: seconds between answers, and how late."""
+def in_a_hurry(kernel, angles, rate=60, together=6):
+    """Places at a rate, answered or not: seconds between answers, and how late.
+
+    A message goes when the last of its places is reached.
+    """
     start = time.perf_counter()
 
     def send():
-        for index, angle in enumerate(angles):
-            time.sleep(max(0.0, start + index / rate - time.perf_counter()))
-            kernel.ask(angle)
+        for index in range(0, len(angles), together):
+            some = angles[index : index + together]
+            reached = start + (index + len(some) - 1) / rate
+            time.sleep(max(0.0, reached - time.perf_counter()))
+            kernel.ask(some)
 
     sender = threading.Thread(target=send)
     sender.start()
@@ -203,12 +205,12 @@ def main():
         one_by_one(kernel, angles[:5])
         row("angle, through a kernel", one_by_one(kernel, angles))
         between, late = in_a_hurry(kernel, angles)
-        row("angle, 60 messages a second", between)
+        row("angle, 60 places a second", between)
         kernel.close()
     if options.browser:
         row("canvas alone, in Chromium", drawn_in_browser(recorded))
     if options.kernel:
-        told = f"{late.size} of {angles.size} messages answered, others dropped"
+        told = f"{late.size} of {angles.size} places answered, others dropped"
         print(f"\n{told}; late by {np.median(late):.2f} s, at most {late.max():.2f} s")
 
 

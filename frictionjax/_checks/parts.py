@@ -2,7 +2,6 @@
 
 import contextlib
 import dataclasses
-import html
 import inspect
 import weakref
 from collections.abc import Iterator
@@ -13,7 +12,7 @@ import jax
 
 from .arguments import in_64_bits, is_concrete, is_known, require
 from .higher_floors import floor_above
-from .shown_parts import part_text
+from .shown_parts import notebook_text, part_text
 
 _PartT = TypeVar("_PartT", bound="Part")
 
@@ -95,9 +94,7 @@ class Part(eqx.Module):
         return part_text(self, asked_names(type(self), {}))
 
     def _repr_html_(self) -> str:
-        if is_known(self):
-            return floor_above("io").part_table(self)._repr_html_()
-        return f"<pre>{html.escape(repr(self))}</pre>"
+        return notebook_text(self, lambda: floor_above("io").part_table(self))
 
 
 def asked_names(kind: type, changes: dict[str, Any]) -> list[str]:

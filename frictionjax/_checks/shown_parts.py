@@ -1,15 +1,26 @@
 """Parts as the call that makes them, with their numbers."""
 
 import dataclasses
+import html
 import inspect
+from collections.abc import Callable
 from typing import Any
 
 import equinox as eqx
 import jax
 import numpy as np
 
+from .arguments import is_known
+
 _WIDTH = 88
 _FEW = 6  # numbers that are written out
+
+
+def notebook_text(thing: Any, table: Callable[[], Any]) -> str:
+    """What a notebook shows, as HTML: a table of known numbers, else what prints show."""
+    if is_known(thing):
+        return table()._repr_html_()
+    return f"<pre>{html.escape(repr(thing))}</pre>"
 
 
 def part_text(part: Any, names: list[str]) -> str:

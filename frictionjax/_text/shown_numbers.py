@@ -1,11 +1,10 @@
 """Results that show themselves: a line for each number, with its unit and meaning."""
 
-import html
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._checks import as_text, is_known
+from .._checks import as_text, is_known, notebook_text
 from .result_table import ResultTable
 
 _MOST = 40  # lines of a batch that are shown
@@ -52,9 +51,7 @@ class ShownNumbers:
         return _of_one(told, status, getattr(self, "message", ""))
 
     def _repr_html_(self) -> str:
-        if not is_known(self):
-            return f"<pre>{html.escape(repr(self))}</pre>"
-        return self.table()._repr_html_()
+        return notebook_text(self, self.table)
 
 
 def _of_one(told: list[Named], status: Any, message: str) -> ResultTable:

@@ -7,12 +7,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .._checks import Real, require_real
+from .._checks import require_real
 from .._compile import Program
 from ..bristles import SlantedSpring
 from ..limit import solve_limit
 from ..loads import Sine
-from ..model import Scene, friction, require_reach, require_told_apart
+from ..model import Scene, friction, is_admitted, require_reach, require_told_apart
 from ..profiles import Fourier
 from ..supports import Spring
 from ..wiggly import Status, solve
@@ -52,13 +52,13 @@ class Explored(NamedTuple):
         return np.concatenate(arrays).astype("<f4").tobytes()
 
 
-@lru_cache(maxsize=16)
 def scene_at(angle: Any, slope: Any, asymmetry: Any) -> Scene:
     """The scene at some values of the sliders: all else about it is fixed.
 
-    Raises `ValueError` where Theorem 1 does not hold.
+    Raises `ValueError` where Theorem 1 does not hold, of known values.
     """
-    waves: Any = ([0.0, 0.0], slope / (2 * np.pi) * np.array([1.0, 0.5 * asymmetry]))
+    first = slope / (2 * np.pi)
+    waves: Any = ([0.0, 0.0], jnp.stack([first, 0.5 * asymmetry * first]))
     return Scene(
         Fourier(*waves),
         SlantedSpring(**_BRISTLE, angle=angle),
@@ -69,23 +69,38 @@ def scene_at(angle: Any, slope: Any, asymmetry: Any) -> Scene:
 
 
 @Program
-def _drawn(scene: Scene, eps: Real, gamma: Real) -> dict[str, Any]:
-    # Of traced numbers everything is one program: calls one by one spend most of their
-    # time in Python.
+def _drawn(setting: Any) -> dict[str, Any]:
+    # Of traced numbers everything is one program, checks too: calls one by one, and a
+    # scene made for each frame, spend most of their time in Python.
+    scene, eps, gamma = scene_at(*setting[:3]), setting.eps, setting.gamma
+    potential: Any = scene.potential
+    upright = jnp.abs(setting.angle) < np.pi / 2  # a constructor's only bound that can fail
     law = friction(scene)
     motion = solve(scene, eps, gamma, _TIMES, accuracy=_ACCURACY, dissipation=False)
     limit = solve_limit(scene, _TIMES)
     load = jax.vmap(scene.load)(jnp.asarray(_TIMES))
     held = jax.vmap(scene.support.force)
     return {
+        "allowed": is_admitted(potential, eps) & upright,
         "coefficients": (law.rho_plus, law.rho_minus),
         "status": motion.status_code,
-        "energy": scene.potential.energy(eps * _WELLS, eps),
+        "energy": potential.energy(eps * _WELLS, eps),
         "z": motion.z,
         "force": load - held(motion.z),
         "z_limit": limit.z,
         "force_limit": load - held(limit.z),
     }
+
+
+def _require_allowed(setting: PageSetting) -> None:
+    scene, size = scene_at(*setting[:3]), jnp.asarray(setting.eps)
+    require_reach(scene.potential, size)
+
+
+@lru_cache(maxsize=1)
+def _resting() -> Scene:
+    """Whose wells lie where those of every setting do: load and support are fixed."""
+    return scene_at(*PageSetting()[:3])
 
 
 def explored_at(setting: PageSetting) -> Explored:
@@ -94,17 +109,17 @@ def explored_at(setting: PageSetting) -> Explored:
     Raises `ValueError` where Theorem 1 does not hold, and for an eps at which the bristle
     loses its contact.
     """
-    _, _, _, eps, gamma = setting
     for name, value in zip(PageSetting._fields, setting, strict=True):
         require_real(name, value, "as a slider gives")
     require_real("slope", setting.slope, "slope > 0", lambda v: v > 0)
-    require_real("eps", eps, "eps > 0", lambda v: v > 0)
-    require_real("gamma", gamma, "gamma > 0", lambda v: v > 0)
-    scene = scene_at(*map(float, setting[:3]))
-    size = jnp.asarray(float(eps))
-    require_reach(scene.potential, size)
-    require_told_apart(scene, size)
-    found = jax.device_get(_drawn(scene, size, jnp.asarray(float(gamma))))
+    require_real("eps", setting.eps, "eps > 0", lambda v: v > 0)
+    require_real("gamma", setting.gamma, "gamma > 0", lambda v: v > 0)
+    numbers = PageSetting(*map(float, setting))
+    require_told_apart(_resting(), numbers.eps)
+    traced: Any = map(np.asarray, numbers)
+    found = jax.device_get(_drawn(PageSetting(*traced)))
+    if not found.pop("allowed"):
+        _require_allowed(numbers)  # says which hypothesis fails
     plus, minus = map(float, found.pop("coefficients"))
     return Explored(
         setting=setting,

@@ -1,14 +1,14 @@
 """Requests that come faster than they are answered."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Generic, TypeVar
 
 _Request = TypeVar("_Request")
 
 
 class NewestOnly(Generic[_Request]):
-    """Hands on the newest request, in a thread of its own; what it overtakes is dropped.
+    """Hands on requests, in a thread of its own; what newer ones overtake is dropped.
 
     The thread that asks, that of a kernel, goes on reading requests: else all of them
     would be answered, one after the other, long after the slider has stopped.
@@ -21,12 +21,12 @@ class NewestOnly(Generic[_Request]):
         self._worker: threading.Thread | None = None
         self.dropped = 0
 
-    def ask(self, request: _Request) -> None:
-        """Answer this one next, whatever waits."""
+    def ask(self, requests: Sequence[_Request]) -> None:
+        """Answer these next, in their order, in place of all that wait."""
         with self._lock:
             self.dropped += len(self._waiting)
-            self._waiting = [request]
-            if self._worker is None:
+            self._waiting = list(requests)
+            if self._worker is None and self._waiting:
                 self._worker = threading.Thread(target=self._work, name="explore")
                 self._worker.start()
 
@@ -48,6 +48,6 @@ class NewestOnly(Generic[_Request]):
     def _next(self) -> _Request | None:
         with self._lock:
             if self._waiting:
-                return self._waiting.pop()
+                return self._waiting.pop(0)
             self._worker = None
             return None

@@ -2,6 +2,11 @@
 // Python sends arrays and what it has to say of them; see `ExplorePage` in widget.py.
 
 const FONT = "12px system-ui, sans-serif";
+// JupyterLab pays for each message to Python with its signs of a busy kernel, more than
+// for a frame: places of the sliders go together, and are answered one by one.
+const PAUSE = 100; // ms between messages
+const LATE = 300; // ms after which it is asked again, and what waits is dropped
+const MOST = 6; // places in one; answers that wait for their frame
 
 function coloursOf(element) {
   const style = getComputedStyle(element);
@@ -169,17 +174,35 @@ function drawCoefficients(ctx, box, colours, shown) {
   });
 }
 
+// As many as there is room for, evenly, the last one always.
+function thinned(places, room) {
+  const count = Math.min(room, places.length);
+  return Array.from(
+    { length: count },
+    (_, i) => places[Math.ceil(((i + 1) * places.length) / count) - 1],
+  );
+}
+
+// The canvas in this size; to set it anew, though it is the same, lays out the page.
+function sized(canvas, width, height, dots) {
+  const size = [Math.round(width * dots), Math.round(height * dots)];
+  if (canvas.width !== size[0] || canvas.height !== size[1]) {
+    [canvas.width, canvas.height] = size;
+    canvas.style.height = `${height}px`;
+  }
+  const ctx = canvas.getContext("2d");
+  ctx.setTransform(dots, 0, 0, dots, 0, 0);
+  ctx.clearRect(0, 0, width, height);
+  return ctx;
+}
+
 function draw(canvas, shown, row) {
   const width = canvas.clientWidth || 900;
   const wide = width >= 760;
   const panel = wide ? width / 3 : width;
   const height = wide ? 300 : 840;
   const dots = globalThis.devicePixelRatio || 1;
-  canvas.width = Math.round(width * dots);
-  canvas.height = Math.round(height * dots);
-  canvas.style.height = `${height}px`;
-  const ctx = canvas.getContext("2d");
-  ctx.setTransform(dots, 0, 0, dots, 0, 0);
+  const ctx = sized(canvas, width, height, dots);
   ctx.lineJoin = "round";
   const colours = coloursOf(canvas);
   const box = (i) =>
@@ -251,7 +274,10 @@ function render({ model, el }) {
     return unpacked(model.get("arrays"), wells, times);
   };
   const end = read().ts.at(-1);
-  let [asking, drawing, shown] = [false, false, null];
+  let [drawing, shown] = [false, null];
+  let [timer, sent, left] = [null, -PAUSE, 0]; // left to be answered
+  let [since, pace] = [0, PAUSE / 2]; // ms: when the next one was begun, what each takes
+  const [places, heard] = [[], []];
   const sliders = Object.fromEntries(
     model.get("sliders").map((one) => [one.name, slider(rows, one, ask)]),
   );
@@ -262,24 +288,46 @@ function render({ model, el }) {
   );
   time.set(0);
 
-  // Once a frame at most; Python drops what it has no time for.
   function ask() {
-    if (asking) return;
-    asking = true;
-    requestAnimationFrame(() => {
-      asking = false;
-      const setting = Object.fromEntries(
-        Object.entries(sliders).map(([name, one]) => [name, one.get()]),
-      );
-      model.send({ view, setting });
-    });
+    places.push(
+      Object.fromEntries(Object.entries(sliders).map(([name, one]) => [name, one.get()])),
+    );
+    sendInTime();
   }
 
+  // At once after a rest; else when Python is about to run out of places.
+  function sendInTime() {
+    clearTimeout(timer);
+    if (!places.length) return;
+    const due = sent + (left > 1 ? LATE : PAUSE);
+    timer = setTimeout(send, Math.max(0, due - performance.now()));
+  }
+
+  function send() {
+    const room = Math.max(2, Math.min(MOST, Math.ceil(PAUSE / pace)));
+    const settings = thinned(places.splice(0), room);
+    sent = performance.now();
+    if (!left) since = sent;
+    left = Math.min(left, 1) + settings.length; // one is in work, others are dropped
+    model.send({ view, settings });
+  }
+
+  function countAnswer(own) {
+    const now = performance.now();
+    if (own && left) pace += 0.3 * (now - since - pace);
+    left = own ? Math.max(0, left - 1) : 0; // another's, or Python's, came in place of them
+    since = now;
+    sendInTime();
+  }
+
+  // One answer a frame.
   function redraw() {
-    if (drawing || !shown) return;
+    if (drawing) return;
     drawing = true;
     requestAnimationFrame(() => {
       drawing = false;
+      if (heard.length) take(heard.shift());
+      if (heard.length) redraw();
       const row = Math.round((time.get() / end) * (shown.arrays.ts.length - 1));
       draw(canvas, shown, row);
       canvas.dataset.frames = Number(canvas.dataset.frames || 0) + 1;
@@ -288,16 +336,23 @@ function render({ model, el }) {
 
   function hear() {
     const told = model.get("told");
-    status.textContent = told.status;
-    status.classList.toggle("refused", !told.ok);
-    canvas.classList.toggle("stale", !told.ok);
     if (told.view !== view) {
       for (const [name, one] of Object.entries(sliders)) one.set(told.setting[name]);
+      places.length = 0; // where they are no more
     }
-    if (told.ok || !shown) {
-      shown = { eps: told.eps, coefficients: told.coefficients, arrays: read() };
-    }
+    countAnswer(told.view === view);
+    heard.push({ told, arrays: read() });
+    if (heard.length > MOST) take(heard.shift()); // of a page that is not in sight
     redraw();
+  }
+
+  function take({ told, arrays }) {
+    if (status.textContent !== told.status) status.textContent = told.status;
+    status.classList.toggle("refused", !told.ok);
+    canvas.classList.toggle("stale", !told.ok);
+    if (told.ok || !shown) {
+      shown = { eps: told.eps, coefficients: told.coefficients, arrays };
+    }
   }
 
   const lights = matchMedia("(prefers-color-scheme: dark)");
@@ -307,6 +362,7 @@ function render({ model, el }) {
   sizes.observe(root);
   hear();
   return () => {
+    clearTimeout(timer);
     model.off("change:told", hear);
     lights.removeEventListener("change", redraw);
     sizes.disconnect();

@@ -19,10 +19,11 @@ _Asked = tuple[str, PageSetting]
 class ExplorePage(anywidget.AnyWidget):
     """The page of `explore`.
 
-    The browser sends where its sliders stand, and the name of the view that they are in.
-    Back go `arrays` (`Explored.packed`) and `told`: that name (none where Python moved the
-    sliders), the setting, whether it went well and the status; sizes of the arrays, their
-    eps and coefficients.
+    The browser sends where its sliders have been since it last did, in that order, and the
+    name of the view that they are in. Back go, for each place, `arrays`
+    (`Explored.packed`) and `told`: that name (none where Python moved the sliders), the
+    setting, whether it went well and the status; sizes of the arrays, their eps and
+    coefficients.
     """
 
     _esm = Path(__file__).with_name("page.js")
@@ -74,13 +75,18 @@ class ExplorePage(anywidget.AnyWidget):
         return data | {"image/png": picture}, metadata
 
     def _heard(self, _: Any, content: Any, buffers: Any) -> None:
-        values = (float(content["setting"][name]) for name in PageSetting._fields)
-        self._newest.ask((str(content["view"]), PageSetting(*values)))
+        view = str(content["view"])
+        settings = [
+            PageSetting(*(float(setting[name]) for name in PageSetting._fields))
+            for setting in content["settings"]
+        ]
+        self._newest.ask([(view, setting) for setting in settings])
 
     def _moved(self, change: Any) -> None:
         """Python has moved sliders: answered at once, before the next line runs."""
         setting = PageSetting(*(getattr(self, name) for name in PageSetting._fields))
         if setting != self._asked:
+            self._newest.ask([])  # where sliders were before that
             self._answer(("", setting))
 
     def _answer(self, request: _Asked) -> None:

@@ -7,7 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, ArrayLike, Float
+from jaxtyping import Array, ArrayLike, Bool, Float
 
 from .._checks import Real, is_concrete, no_more, require
 from .._compile import Interpreted, Program, in_chunks
@@ -16,7 +16,7 @@ from ..coefficients import Coefficients
 from ..numerics import smallest
 from ..supports import AbstractSupport
 from .clearance import clearance
-from .friction_coefficients import coefficients_jit
+from .friction_coefficients import coefficients, coefficients_jit
 from .given_rest import require_given
 from .potentials import AbstractPotential, BristlePotential, smallest_stretch
 from .settings import SETTINGS
@@ -26,10 +26,12 @@ from .tabulated_potential import potential_in_reach
 _EPS64 = float(np.finfo(np.float64).eps)
 
 
-@Interpreted
-def _bristle_facts(bristle: AbstractBristle):
+def _bristle_facts_of(bristle: AbstractBristle) -> tuple[Any, Any, Real]:
     bounds = bristle.slope_bounds()
     return bounds.lower, bounds.upper, rounding_of_alpha(bristle)
+
+
+_bristle_facts = Interpreted(_bristle_facts_of)
 
 
 def rounding_of_alpha(bristle: AbstractBristle) -> Real:
@@ -125,6 +127,25 @@ def _margins(
 def _fits(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:
     stretch, clear = _margins(potential, eps)
     return (stretch > 0) & (clear > 0)
+
+
+def is_admitted(potential: BristlePotential, eps: Real) -> Bool[Array, ""]:
+    """Whether `require_admissible` and `require_reach` accept a bristle, of traced numbers.
+
+    What is not finite is not accepted.
+    """
+    found = coefficients(potential)
+    lower, upper, noise = _bristle_facts_of(potential.bristle)
+    stretch, clear = _margins_at(potential, eps)
+    low, high, a = found.omega_minus, found.omega_plus, found.a
+    good = [
+        (low < 0) & (high > 0),
+        jnp.isfinite(found.alpha) & (jnp.abs(found.alpha) > noise),
+        (lower < low) & (high < upper),
+        jnp.minimum(1 + a * low, 1 + a * high) > 0,
+        (stretch > 0) & (clear > 0),
+    ]
+    return jnp.all(jnp.stack(good))
 
 
 def require_reach(potential: AbstractPotential, eps: Float[ArrayLike, "*shape"]) -> None:

@@ -1,7 +1,6 @@
 """What is simulated, as data."""
 
 import dataclasses
-import html
 from typing import Any
 
 import equinox as eqx
@@ -27,6 +26,7 @@ from .._checks import (
     mark_checked,
     no_less,
     no_more,
+    notebook_text,
     part_text,
     require,
     require_real,
@@ -161,9 +161,7 @@ class Scene(SelfDrawn, eqx.Module):
         return floor_above("io").part_rows(self)
 
     def _repr_html_(self) -> str:
-        if is_known(self):
-            return self.table()._repr_html_()
-        return f"<pre>{html.escape(repr(self))}</pre>"
+        return notebook_text(self, self.table)
 
     @property
     def profile(self) -> AbstractProfile | None:

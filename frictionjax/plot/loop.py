@@ -58,7 +58,8 @@ def draw_loop(
     axes.plot(z, force, "--", color=LIMIT, linewidth=1.4, label="limit")
     _coefficients(axes, found)
     axes.set(xlabel="z (m)", ylabel="friction force $\\ell - \\Phi'(z)$ (N)")
-    axes.set_title(f"Friction loop, $\\gamma$ = {gamma:.3g}")
+    several = "s" if chosen.size > 1 else ""
+    axes.set_title(f"Friction loop{several} and limit, $\\gamma$ = {gamma:.3g}")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
 

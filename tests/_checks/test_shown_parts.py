@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax._checks import exact_text
+from frictionjax._checks import exact_text, notebook_text
 
 PROFILE = fx.profiles.Sine(0.1)
 SCENE = fx.Scene(
@@ -73,3 +73,20 @@ def test_provenance_has_every_digit_of_every_field():
         assert told in text
     waves = np.linspace(0.0, 1e-3, 9)
     assert str((waves / 7).tolist()) in exact_text(fx.profiles.Fourier(waves / 7, waves))
+
+
+def test_a_notebook_shows_a_table_of_what_is_known_and_escaped_text_of_a_trace():
+    class Table:
+        def _repr_html_(self):
+            return "<table>"
+
+    shown = []
+
+    def look(number):
+        shown.append(notebook_text({"<": number}, Table))
+        return number
+
+    look(1.0)
+    jax.jit(look)(1.0)
+    assert shown[0] == "<table>"
+    assert shown[1].startswith("<pre>{&#x27;&lt;&#x27;: ")

@@ -67,6 +67,9 @@ def test_asymmetry_is_the_slope_of_the_second_harmonic_over_the_first():
     ("changed", "message"),
     [
         ({"angle": 1.3, "slope": 0.5}, r"bristle\.angle = 1\.3: needs omega_plus < cot"),
+        ({"angle": -1.6}, r"bristle\.angle = -1\.6: needs -pi/2 < angle < pi/2"),
+        ({"angle": 7.0}, r"bristle\.angle = 7: needs -pi/2 < angle < pi/2"),
+        ({"eps": 1e-18}, r"eps = 1e-18: needs eps >="),
         ({"slope": 0.0}, "slope = 0: needs slope > 0"),
         ({"eps": -0.1}, r"eps = -0\.1: needs eps > 0"),
         ({"gamma": 0.0}, "gamma = 0: needs gamma > 0"),

@@ -2,6 +2,7 @@
 
 import base64
 from importlib.resources import files
+from itertools import groupby
 
 import pytest
 from browser import RULES, opened_browser, skip_without_browser
@@ -115,11 +116,92 @@ def test_sliders_are_named_and_keys_move_them(page):
     slider.focus()
     page.keyboard.press("ArrowRight")
     page.wait_for_function("sent.length > 0")
-    (message,) = page.evaluate("sent")
-    assert message["setting"]["angle"] == pytest.approx(0.51)
-    others = PageSetting()._replace(angle=message["setting"]["angle"])
-    assert message["setting"] == others._asdict()  # eps too, though its slider has steps
+    (setting,) = page.evaluate("sent[0].settings")
+    assert setting["angle"] == pytest.approx(0.51)
+    others = PageSetting()._replace(angle=setting["angle"])
+    assert setting == others._asdict()  # eps too, though its slider has steps
     assert slider.get_attribute("aria-valuetext") == "0.51 rad"
+
+
+# In place of Python: answers after `pace` ms each what the newest message asks, rho_plus
+# being the angle, so that the picture's label says whose it is.
+ANSWERING = """([frame, pace]) => {
+  let waiting = [];
+  window.labels = [];
+  const canvas = document.querySelector("canvas");
+  const seen = () => labels.push(canvas.getAttribute("aria-label"));
+  new MutationObserver(seen).observe(canvas, {attributeFilter: ["aria-label"]});
+  sent.push = message => {
+    Array.prototype.push.call(sent, message);
+    waiting = message.settings.map(setting => [message.view, setting]);
+  };
+  setInterval(() => {
+    if (!waiting.length) return;
+    const [view, setting] = waiting.shift();
+    const coefficients = {...frame.told.coefficients, rho_plus: setting.angle};
+    answer({...frame, told: {...frame.told, view, setting, coefficients}});
+  }, pace);
+}"""
+# A slider to and fro in 200 places, and what has been sent two seconds after that.
+DRAGGED = """async () => {
+  const input = document.querySelector("input");
+  const places = [];
+  for (let i = 0; i < 200; i++) {
+    input.value = 0.6 + 0.4 * Math.sin(i / 7);
+    places.push(Number(input.value));
+    input.dispatchEvent(new Event("input"));
+    await new Promise(done => setTimeout(done, 8));
+  }
+  await new Promise(done => setTimeout(done, 2000));
+  return [places, sent.map(one => one.settings.map(setting => setting.angle))];
+}"""
+
+
+# A place that is sent at once, another one, and before its time has come Python's.
+MOVED_BY_BOTH = """async frame => {
+  const input = document.querySelector("input");
+  const moved = angle => {
+    input.value = angle;
+    input.dispatchEvent(new Event("input"));
+  };
+  moved(0.7);
+  while (!sent.length) await new Promise(done => setTimeout(done, 1));
+  moved(0.8);
+  answer(frame);
+  await new Promise(done => setTimeout(done, 500));
+}"""
+
+
+def in_order(some, places):
+    rest = iter(places)
+    return all(one in rest for one in some)
+
+
+@pytest.mark.parametrize("pace", [1, 40, 150])
+def test_the_last_place_of_a_slider_is_shown_however_slow_python_is(page, pace):
+    page.evaluate(ANSWERING, [frame(), pace])
+    places, messages = page.evaluate(DRAGGED)
+    sent = [angle for message in messages for angle in message]
+    assert messages[0] == places[:1]  # at once
+    assert in_order(sent, places)
+    assert 2 <= len(messages) <= 40  # of 200 places
+    labels = page.evaluate("labels")
+    shown = [float(label.split("rho_plus ")[1].split(" N")[0]) for label in labels]
+    assert in_order([one for one, _ in groupby(shown)], places)
+    assert sent[-1] == shown[-1] == places[-1]
+    assert len(set(shown)) > (5 if pace > 100 else 15)
+
+
+def test_places_are_asked_for_again_where_no_answer_comes(page):
+    places, messages = page.evaluate(DRAGGED)
+    assert len(messages) > 3
+    assert messages[-1][-1] == places[-1]
+
+
+def test_where_python_moves_a_slider_to_places_before_are_not_asked_for(page):
+    page.evaluate(MOVED_BY_BOTH, frame(view="", angle=-0.3))
+    assert page.get_by_label("angle of the bristle").input_value() == "-0.3"
+    assert page.evaluate("sent.map(one => one.settings[0].angle)") == [0.7]
 
 
 def test_the_tip_goes_along_without_python(page):

@@ -22,8 +22,13 @@ def page():
 
 def hear(page, wait=True, **changed):
     """As the browser sends it."""
-    setting = PageSetting()._replace(**changed)._asdict()
-    page._handle_custom_msg({"view": "here", "setting": setting}, [])
+    hear_of(page, [changed], wait)
+
+
+def hear_of(page, places, wait=True):
+    """Several places of the sliders in one message."""
+    settings = [PageSetting()._replace(**changed)._asdict() for changed in places]
+    page._handle_custom_msg({"view": "here", "settings": settings}, [])
     if wait:
         page._newest.wait()
 
@@ -98,6 +103,37 @@ def test_a_slider_that_moves_on_is_not_answered_where_it_was(page, monkeypatch):
     page._newest.wait()
     assert solved == [0.0, 0.6]
     assert page.shown.setting.angle == 0.6
+
+
+def test_all_places_of_a_message_are_answered_one_after_the_other(page):
+    told = []
+    page.observe(lambda change: told.append(change["new"]), names="told")
+    hear_of(page, [{"angle": 0.1}, {"angle": 1.3, "slope": 0.5}, {"angle": 0.3}])
+    assert [one["setting"]["angle"] for one in told] == [0.1, 1.3, 0.3]
+    assert [one["ok"] for one in told] == [True, False, True]
+    for one in told[::2]:
+        wanted = explored_at(PageSetting(**one["setting"]))
+        assert one["coefficients"] == wanted.coefficients
+    assert page.arrays == explored_at(PageSetting(angle=0.3)).packed()
+
+
+def test_where_sliders_were_before_python_moved_them_is_not_answered(page, monkeypatch):
+    started, go, solved = threading.Event(), threading.Event(), []
+
+    def slowly(setting):
+        solved.append(setting.angle)
+        started.set()
+        assert go.wait(PATIENCE)
+        return explored_at(setting)
+
+    monkeypatch.setattr(widgets, "explored_at", slowly)
+    hear_of(page, [{"angle": 0.1}, {"angle": 0.2}], wait=False)
+    assert started.wait(PATIENCE)
+    threading.Timer(0.1, go.set).start()
+    page.angle = 0.9
+    page._newest.wait()
+    assert solved == [0.1, 0.9]
+    assert page.shown.setting.angle == page.angle == 0.9
 
 
 def test_readers_without_a_kernel_see_a_picture(page):

@@ -9,7 +9,12 @@ from samples import BRISTLES, pair
 
 import frictionjax as fx
 from frictionjax._checks.arguments import no_more
-from frictionjax.model.admissibility import largest_eps, require_reach
+from frictionjax.model.admissibility import (
+    is_admitted,
+    largest_eps,
+    require_admissible,
+    require_reach,
+)
 from frictionjax.numerics.extrema import smallest
 
 SINE = fx.profiles.Sine(0.5)
@@ -240,6 +245,58 @@ def test_a_rod_clears_the_surface_at_the_eps_in_use(ratio):
         require_reach(potential, 1.01 * largest)
     assert not cuts(potential, 0.98 * largest)
     assert cuts(potential, 1.1 * largest)
+
+
+admitted = eqx.filter_jit(is_admitted)
+
+
+def accepted(potential, eps):
+    """The same by what says why not."""
+    try:
+        require_admissible(potential)
+        require_reach(potential, eps)
+    except ValueError:
+        return False
+    return True
+
+
+def test_traced_numbers_are_admitted_where_known_ones_are_accepted():
+    """Angles and slopes on both sides of the bounds."""
+    seen = {True: 0, False: 0}
+    rng = np.random.default_rng(39)
+    for _ in range(60):
+        angle, slope, second = rng.uniform([-1.5, 0.02, -0.6], [1.5, 1.5, 0.6])
+        surface = fx.profiles.Fourier([0.0, 0.0], [slope / 6, second * slope / 12])
+        potential = fx.potential(surface, fx.bristles.SlantedSpring(1.0, 9.0, 1.0, angle))
+        eps = 10 ** rng.uniform(-2, 1)
+        wanted = accepted(potential, eps)
+        seen[wanted] += 1
+        assert bool(admitted(potential, jnp.asarray(eps))) == wanted
+    assert min(seen.values()) > 10
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_traced_slopes_beyond_the_bristle_are_not_admitted(case):
+    assert not admitted(fx.potential(*CASES[case]), jnp.asarray(1e-3))
+
+
+def test_a_traced_bristle_that_does_not_press_is_not_admitted():
+    for rest_length in (1.2, NEARLY):
+        bristle = eqx.tree_at(
+            lambda one: one.rest_length,
+            fx.bristles.VerticalSpring(3.0, 2.0, 1.2),
+            jnp.asarray(rest_length),
+        )
+        potential = fx.potential(fx.profiles.Sine(0.1), bristle)
+        assert not admitted(potential, jnp.asarray(1e-3))
+
+
+@pytest.mark.parametrize("ratio", [0.99, 0.998])
+def test_a_traced_rod_that_cuts_the_surface_is_not_admitted(ratio):
+    potential = steep(ratio)
+    largest = largest_eps(potential, 1.0)
+    for share in 0.99, 1.01:
+        assert admitted(potential, jnp.asarray(share * largest)) == (share < 1)
 
 
 def test_gentle_slopes_let_a_rod_clear_at_any_eps():

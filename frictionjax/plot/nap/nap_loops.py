@@ -9,8 +9,8 @@ from ...model import Scene
 from ..style import GUIDE, colour, new_figure, styled
 
 _TITLES = {
-    "geometric": "Geometric: the rod keeps its nap",
-    "energetic": "Energetic: the rod turns over",
+    "geometric": "Geometric effect: a stiff rod",
+    "energetic": "Energetic effect: a rod that turns over",
 }
 _LEVELS = {
     "geometric": (("rho_with", 1, "with"), ("rho_against", -1, "against")),

@@ -14,13 +14,22 @@ Html = NewType("Html", str)
 
 _CODE = re.compile("`([^`]+)`")
 _POWER = re.compile(r"\^(-?\w+(?:\.\d+)?)")
+_NUMBER = re.compile(r"\d[\d.]*e[-+]\d+")
+_OPTION = re.compile(r"(?<!\S)--[a-z-]+")
+_LISTED = re.compile(r",(?=\S)")
 _TO_ZERO = "eps\u00a0\u2192\u00a00"  # browsers break a line inside of `->`
 
 
 def inline(text: str) -> Html:
-    """A text, with code where backticks are, powers raised, and `eps -> 0` in one piece."""
+    """A text, with code where backticks are, powers raised, and in one piece `eps -> 0`
+    and numbers."""
     raised = _POWER.sub(r"<sup>\1</sup>", html.escape(text.replace("eps -> 0", _TO_ZERO)))
-    return Html(_CODE.sub(r"<code>\1</code>", raised))
+    return Html(_CODE.sub(r"<code>\1</code>", _NUMBER.sub(_whole, raised)))
+
+
+def _whole(found: re.Match) -> str:
+    """Browsers break a line after a hyphen, in `1e-03` and `--eps` too."""
+    return f'<span class="whole">{found[0]}</span>'
 
 
 def paragraph(text: str) -> Html:
@@ -50,8 +59,9 @@ def linked_files(files: Sequence[tuple[str, str]]) -> Html:
 
 
 def preformatted(text: str) -> Html:
-    """Lines as they stand; long ones go on below."""
-    return Html(f"<pre>{html.escape(text)}</pre>")
+    """Lines as they stand; long ones go on below, after a space or a comma."""
+    whole = _OPTION.sub(_whole, html.escape(text))
+    return Html(f"<pre>{_LISTED.sub(',<wbr>', whole)}</pre>")
 
 
 def table_region(table: ResultTable, caption: str, as_csv: bool = True) -> Html:

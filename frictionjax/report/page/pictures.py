@@ -15,6 +15,7 @@ from .markup import Html, inline
 _WIDE = 6.0  # inches: beyond, a phone moves it sideways instead of making it small
 _PIXELS = 96  # an inch, on screens
 _LEAST = 58  # an inch, on phones: letters of 8 pixels
+_FAR = 7.8  # inches: beyond, no phone shows all of it, and the page says so
 _SETTINGS: Any = {"svg.fonttype": "path", "svg.hashsalt": "frictionjax"}
 _PATH = re.compile(r' d="[^"]*"')
 _DECIMALS = re.compile(r"(\.\d\d)\d+")
@@ -44,9 +45,10 @@ def shown(drawn: Captioned, name: str) -> Html:
             "<img ", f'<img style="min-width: {round(width * _LEAST)}px" '
         )
         label = html.escape(f"Picture: {name}")
+        far = " far" if width > _FAR else ""
         image = (
-            f'<div class="wide picture" role="region" aria-label="{label}" tabindex="0">'
-            f"{image}</div>"
+            f'<div class="wide picture{far}" role="region" aria-label="{label}" '
+            f'tabindex="0">{image}</div>'
         )
     return Html(f"<figure>{image}<figcaption>{inline(drawn.caption)}</figcaption></figure>")
 

@@ -40,6 +40,21 @@ def test_no_line_ends_inside_of_an_arrow():
     assert inline("as eps -> 0: 1 -> 2") == "as eps\u00a0\u2192\u00a00: 1 -&gt; 2"
 
 
+def test_no_line_ends_inside_of_a_number():
+    assert inline("within 1.0e-06 eps") == 'within <span class="whole">1.0e-06</span> eps'
+    assert inline("`1e+03` and e-1") == (
+        '<code><span class="whole">1e+03</span></code> and e-1'
+    )
+
+
+def test_lines_of_commands_end_between_options_and_after_commas():
+    assert preformatted("cost a--b --eps 1,2 --no-x") == (
+        '<pre>cost a--b <span class="whole">--eps</span> 1,<wbr>2 '
+        '<span class="whole">--no-x</span></pre>'
+    )
+    assert preformatted("f(a, b)") == "<pre>f(a, b)</pre>"
+
+
 def test_code_and_powers_are_shown():
     assert inline("`a<b` is eps^1.000, eps^gamma.") == (
         "<code>a&lt;b</code> is eps<sup>1.000</sup>, eps<sup>gamma</sup>."

@@ -44,6 +44,13 @@ def test_wide_pictures_are_moved_instead_of_made_small(width, regions):
     assert ("min-width" in page.of("img")[0].get("style", "")) == bool(regions)
 
 
+@pytest.mark.parametrize(("width", "far"), [(7.0, False), (9.0, True)])
+def test_pictures_that_no_phone_shows_all_of_say_so(width, far):
+    page = PageParts(shown(Captioned(figure_of(width), "told", "caption"), "a name"))
+    (around,) = page.of("div")
+    assert ("far" in around["class"].split()) == far
+
+
 def test_the_same_figure_is_the_same_graphic_with_nothing_of_the_day_in_it():
     one, other = vector_graphic(figure_of(3.0)), vector_graphic(figure_of(3.0))
     assert one == other
