@@ -4,7 +4,9 @@
 const FONT = "12px system-ui, sans-serif";
 // JupyterLab pays for each message to Python with its signs of a busy kernel, more than
 // for a frame: places of the sliders go together, and are answered one by one.
-const PAUSE = 100; // ms between messages
+const PAUSE = 100; // ms between messages; less where answers are there sooner, as they
+const LEAST = 50; // are behind the slider by that
+const ANSWERS = 4; // that are waited for
 const LATE = 300; // ms after which it is asked again, and what waits is dropped
 const MOST = 6; // places in one; answers that wait for their frame
 
@@ -296,15 +298,19 @@ function render({ model, el }) {
   }
 
   // At once after a rest; else when Python is about to run out of places.
+  function pause() {
+    return Math.max(LEAST, Math.min(PAUSE, ANSWERS * pace));
+  }
+
   function sendInTime() {
     clearTimeout(timer);
     if (!places.length) return;
-    const due = sent + (left > 1 ? LATE : PAUSE);
+    const due = sent + (left > 1 ? LATE : pause());
     timer = setTimeout(send, Math.max(0, due - performance.now()));
   }
 
   function send() {
-    const room = Math.max(2, Math.min(MOST, Math.ceil(PAUSE / pace)));
+    const room = Math.max(2, Math.min(MOST, Math.ceil(pause() / pace)));
     const settings = thinned(places.splice(0), room);
     sent = performance.now();
     if (!left) since = sent;
