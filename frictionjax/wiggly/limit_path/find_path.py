@@ -33,11 +33,15 @@ def _looked_at(scene: TabulatedScene, path: Path) -> Path:
 
 
 def known_path(scene: Scene, tables: TabulatedScene) -> Path | None:
-    """The path of a scene with these tables, found once; None as of `path_of`."""
+    """The path of a scene with these tables, found once where it has few pieces.
+
+    None as of `path_of`.
+    """
     path = _PATHS.get(scene)
     if path is None:
         path = path_of(tables)
-        _PATHS.put(scene, path)
+        if path is not None and path.direction.size <= SETTINGS.few_pieces:
+            _PATHS.put(scene, path)
     return path
 
 
