@@ -2,6 +2,7 @@
 
 from functools import partial
 
+import numpy as np
 import pytest
 
 import frictionjax as fx
@@ -20,7 +21,8 @@ def test_lanes_of_few_wells_stay_in_one_thread(monkeypatch, eps, asked):
     known, two = marching.crew, partial(batch.AttemptContext, workers=2)
     monkeypatch.setattr(marching, "crew", crew)
     monkeypatch.setattr(batch, "AttemptContext", two)
-    bristle = fx.bristles.SlantedSpring(1.1, rest_length=2.4, height=1.0, angle=0.43)
-    parts = fx.profiles.Sine(0.11), bristle, fx.supports.Spring(2.0), fx.loads.Sine(1.05, 3.0)
-    fx.solve(fx.Scene(*parts, 3.0), eps, method="resolved")
+    profile, support = fx.profiles.Sine(0.10635), fx.supports.Spring(1.7858)
+    bristle = fx.bristles.SlantedSpring(1.34635, 2.4, 1.0, angle=0.50613)
+    scene = fx.Scene(profile, bristle, support, fx.loads.Sine(1.02157, 3.0), 3.0)
+    fx.solve(scene, eps, ts=np.linspace(0, 3, 101), method="resolved")
     assert bool(found) == asked
