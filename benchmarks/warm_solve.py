@@ -38,13 +38,14 @@ STEPS = {
 def scene():
     """Of a sine, a slanted spring and a sine load."""
     least, most = [0.05, 0.7, 0.3, 1.5, 1.0], [0.12, 1.5, 0.7, 2.5, 1.4]
-    a, k, angle, held, pull = RNG.uniform(least, most)
+    slope, stiffness, angle, held, pull = RNG.uniform(least, most)
+    rest_length, height, duration = np.array([2.4, 1.0, 3.0])
     return fx.Scene(
-        fx.profiles.Sine(a),
-        fx.bristles.SlantedSpring(k, rest_length=2.4, height=1.0, angle=angle),
+        fx.profiles.Sine(slope),
+        fx.bristles.SlantedSpring(stiffness, rest_length, height, angle),
         fx.supports.Spring(held),
-        fx.loads.Sine(pull, 3.0),
-        3.0,
+        fx.loads.Sine(pull, duration),
+        duration,
     )
 
 
