@@ -73,20 +73,12 @@ def _places(count: int) -> np.ndarray:
 
 def _in_series(series: Series, height: float) -> ProfileTables:
     count = series.cos.size
-    few = count <= SETTINGS.waves[-1]
-    sizes = SETTINGS.waves if few else SETTINGS.blocks
-    kinds = SeriesProfile, Waves if few else SeriesProfile
-    lanes, planning = (
-        _padded(kind, series, size_for(count, fitting) or count)
-        for kind, fitting in zip(kinds, (SETTINGS.harmonics, sizes), strict=True)
-    )
+    size = size_for(count, SETTINGS.harmonics) or count
+    cos, sin = (jnp.asarray(np.pad(c, (0, size - count))) for c in (series.cos, series.sin))
+    parts = jnp.asarray(series.mean), cos, sin
+    lanes = SeriesProfile(*parts)
+    planning = Waves(*parts) if 1 < size <= SETTINGS.waves else lanes
     return ProfileTables(lanes, planning, height)
-
-
-def _padded(kind: type[SeriesProfile], series: Series, size: int) -> SeriesProfile:
-    room = (0, size - series.cos.size)
-    cos, sin = (jnp.asarray(np.pad(c, room)) for c in (series.cos, series.sin))
-    return kind(jnp.asarray(series.mean), cos, sin)
 
 
 @singledispatch

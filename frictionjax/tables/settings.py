@@ -10,10 +10,9 @@ class Settings(NamedTuple):
     # with 8, 0.18 with 16; each size is a loop to compile. (A larger loop until the right
     # one is there: last digits would depend on what has run before.)
     harmonics: tuple[int, ...] = (1, 4, 8, 16, 64)
-    # In planning: up to so many as an axis (`waves.py`), more in blocks. A plan of 64 cells
-    # takes 3, 4, 12 and 36 ms.
-    waves: tuple[int, ...] = (4, 8)
-    blocks: tuple[int, ...] = (16, 64)
+    # In planning: several, up to so many, as an axis (`waves.py`), one, and more, as lanes
+    # do. A plan of 64 cells takes 3, 4, 12 and 36 ms for 4, 8, 16 and 64.
+    waves: int = 8
     # Samples of a function that may be a series: twice what 64 harmonics need, and as many
     # between them, which the series must meet.
     samples: int = 256

@@ -38,9 +38,9 @@ def with_harmonics(profile: AbstractProfile, count: int) -> AbstractProfile:
 class Waves(SeriesProfile):
     """The same with harmonics as an axis.
 
-    For planning with few harmonics: written out one by one, 8 of them take 1.4 times as
-    long to compile. (64 of them, at the 4096 places that they need, as an axis: 180 ms for
-    64 cells; one after the other in blocks 36.)
+    For planning with two to eight harmonics: written out one by one, 8 of them take 1.4
+    times as long to compile. (64 of them, at the 4096 places that they need, as an axis:
+    180 ms for 64 cells; one after the other in blocks 36.)
     """
 
     def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:

@@ -16,7 +16,7 @@ from .enclosure import Report, find_fast_slides
 from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
-from .limit_path import Path, path_of
+from .limit_path import Path, known_path
 from .plan import Planned, in_phases, lane_scene
 from .plans_ahead import plan_of_cells
 from .rosenbrock import Tableau
@@ -96,7 +96,7 @@ def _integrated(
     tableau: Tableau,
 ) -> CellResults | None:
     tables = tabulated_scene(scene, eps)
-    path = path_of(tables)
+    path = known_path(scene, tables)
     if path is None:
         return None
     accuracy = min(accuracy, SETTINGS.loosest)

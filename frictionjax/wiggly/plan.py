@@ -7,11 +7,11 @@ import numpy as np
 
 from .._checks import Real, viscosity_of
 from .._compile import Program, in_chunks
-from ..model import AbstractPotential, TabulatedScene, padded_edges
+from ..model import AbstractPotential, TabulatedScene
 from ..tables import bent_part
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import CellBounds, Requirements, wells_of
-from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps, pull_between
+from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps
 from .equation import StepPlan as StepPlan
 from .lanes import LaneScene
 from .limit_path import SETTINGS as PATH_SETTINGS
@@ -32,21 +32,15 @@ def _plans(parts: SteppedParts, pull: PullRange, accuracy, eps, gamma):
     return jax.vmap(one)(eps, gamma)
 
 
-_pull = Program(pull_between)
-
-
-def _controls(scene: TabulatedScene, eps, gamma, accuracy: float):
+def _controls(scene: TabulatedScene, path: Path, eps, gamma, accuracy: float):
     """Step control of all cells, and the wells and tips of their z0."""
-    edges = padded_edges(scene.turning_points, scene.duration)
-    rho = np.asarray(scene.rho_plus), np.asarray(scene.rho_minus)
-    pull = _pull(scene.load, scene.support, edges, *rho)
     parts = SteppedParts(
         potential=scene.potential,
         support=scene.support,
         duration=np.asarray(scene.duration),
         z0=np.asarray(scene.z0),
     )
-    fixed = parts, pull, np.asarray(accuracy)
+    fixed = parts, path.pull, np.asarray(accuracy)
     return in_chunks(_plans, SETTINGS.cells, fixed, (eps, gamma))
 
 
@@ -237,7 +231,7 @@ def planned(
     method: str,
 ) -> Planned:
     """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
-    control, start = _controls(scene, eps, gamma, accuracy)
+    control, start = _controls(scene, path, eps, gamma, accuracy)
     ground = ground_of(scene, path, eps, gamma, control.folds, start)
     needs = _needs(ground, path, accuracy)
     brackets = by_brackets(path, eps, needs, times, method)

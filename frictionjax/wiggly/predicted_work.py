@@ -9,7 +9,7 @@ from ..model import BristlePotential, Scene, TabulatedScene, tabulated_scene
 from ..tables import SeriesBristle, SeriesProfile
 from .enclosure import Requirements, cost_of, longest_lane, wells_a_leg, wells_of
 from .equation import StepPlan as StepPlan
-from .limit_path import Path, path_of
+from .limit_path import Path, known_path
 from .plans_ahead import plan_of_cells
 from .settings import SETTINGS
 from .ways import Way, slides_of
@@ -44,7 +44,7 @@ def workload(
 ) -> Workload | None:
     """Work of the cells (eps, gamma), shape (cells,); None where lanes do not serve."""
     tables = tabulated_scene(scene, eps)
-    path = path_of(tables)
+    path = known_path(scene, tables)
     if path is None:
         return None
     accuracy = min(accuracy, SETTINGS.loosest)

@@ -68,8 +68,10 @@ def test_few_classes_and_sizes_stand_for_all():
     lanes = {shapes(profile_tables(p).lanes) for p in PROFILES.values()}
     planning = {shapes(profile_tables(p).planning) for p in PROFILES.values()}
     assert len(lanes) == 7  # 1, 4, 8, 16 and 64 harmonics; two of pieces
-    assert len(planning) == 6  # 4 and 8 as an axis, 16 and 64 in blocks; two of pieces
-    assert isinstance(profile_tables(PROFILES["sine"]).planning, Waves)
+    assert len(planning) == 7  # 4 and 8 as an axis; the others are those of lanes
+    assert isinstance(profile_tables(series(3)).planning, Waves)
+    sine = profile_tables(PROFILES["sine"])
+    assert sine.planning is sine.lanes
     assert isinstance(profile_tables(PROFILES["nine"]).planning, SeriesProfile)
     assert isinstance(profile_tables(PROFILES["spline"]).lanes, PiecewiseProfile)
 

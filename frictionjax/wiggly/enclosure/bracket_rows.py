@@ -16,15 +16,20 @@ class BracketRows:
         self._stops: list[np.ndarray] = []
         self._count = 0
 
-    def add(self, cell, begin, paired: bool, stops: np.ndarray, sizes=None) -> np.ndarray:
+    def add(
+        self,
+        cell: np.ndarray,
+        begin: np.ndarray,
+        paired: bool,
+        stops: np.ndarray,
+        sizes: np.ndarray,
+    ) -> np.ndarray:
         """Add brackets; the numbers of their stops among all.
 
-        `cell`, `begin`, `sizes`: of each, so many of the stops as its size; of one bracket
-        with all the stops where there are no sizes.
+        `cell`, `begin`, `sizes`: of each, so many of the stops as its size.
         """
-        sizes = np.array([stops.size]) if sizes is None else sizes
-        self._cells.append(np.atleast_1d(cell))
-        self._begins.append(np.atleast_1d(begin))
+        self._cells.append(cell)
+        self._begins.append(begin)
         self._paired.append(np.full(sizes.size, paired))
         self._sizes.append(sizes)
         self._stops.append(stops)

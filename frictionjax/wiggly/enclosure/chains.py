@@ -64,18 +64,15 @@ def chains_of(
         tile += np.searchsorted(path.edges[1:][needs.restarts[cell]], stops)
         begins = stops > opening[stretch]
         stops, stretch, tile = stops[begins], stretch[begins], tile[begins]
-        tiles = _tiles(stretch, tile)
+        first, sizes = _tiles(stretch, tile)
+        fresh = np.diff(stretch[first], prepend=-1) != 0
+        begin = np.where(fresh, opening[stretch[first]], stops[first - 1])
         if not summed:
-            wanted = np.isin(stops, ts)
-            tiles = [group for group in tiles if wanted[group].any()]
-        numbers = [np.zeros(0, dtype=int)]
-        for group in tiles:
-            first = group[0]
-            fresh = first == 0 or stretch[first] != stretch[first - 1]
-            begin = opening[stretch[first]] if fresh else stops[first - 1]
-            numbers.append(rows.add(cell, begin, False, stops[group]))
-        stops = stops[np.concatenate([*tiles, np.zeros(0, dtype=int)])]
-        chain[cell] = np.concatenate(numbers)
+            shown = np.logical_or.reduceat(np.isin(stops, ts), first)
+            stops = stops[np.repeat(shown, sizes)]
+            begin, sizes = begin[shown], sizes[shown]
+        whose = np.full(sizes.size, cell)
+        chain[cell] = rows.add(whose, begin, False, stops, sizes)
         which = np.searchsorted(stops, ts)
         hit = np.append(stops, np.nan)[which] == ts
         output[cell, hit] = chain[cell][which[hit]]
@@ -141,10 +138,11 @@ def _cut(parts: Parts, cell: int, fixed: np.ndarray, lattice: np.ndarray) -> Cut
     return Cut(np.concatenate([[0.0], high]), stops)
 
 
-def _tiles(stretch: np.ndarray, tile: np.ndarray) -> list[np.ndarray]:
-    """Stops of a chain that one bracket holds: of one stretch and one tile of it."""
+def _tiles(stretch: np.ndarray, tile: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """First stops of brackets, each of one stretch and one tile of it, and how many."""
     cut = (np.diff(stretch) != 0) | (np.diff(tile) > 0)
-    return np.split(np.arange(stretch.size), np.flatnonzero(cut) + 1)
+    first = np.flatnonzero(np.append(stretch.size > 0, cut))
+    return first, np.diff(first, append=stretch.size)
 
 
 def _on_slides(slides: tuple, times: np.ndarray) -> np.ndarray:

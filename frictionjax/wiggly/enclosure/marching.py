@@ -183,9 +183,9 @@ class BracketContext(NamedTuple):
         jobs, cells = self._steered(jobs, plan.brief | plan.forgetful)
         order = np.argsort(-work, kind="stable")
         order = order[able[order]]
-        # What one narrow loop does while its longest lane runs needs no other thread.
-        alone = work[able].sum() <= LANE_SETTINGS.narrow * work[able].max(initial=0.0)
-        workers = 1 if alone else self.workers
+        # Where a narrow loop ends little later than its longest lane, one thread is enough.
+        soon = work[able].max(initial=0.0) + LANE_SETTINGS.handed_over
+        workers = 1 if work[able].sum() <= LANE_SETTINGS.narrow * soon else self.workers
         batches = _batches(work[able], workers)
         ends = np.full((len(SegmentEnds._fields), segments.start.size), np.nan)
         # Overwritten by lanes that run.

@@ -16,6 +16,10 @@ class Settings(NamedTuple):
     # Seconds of a narrow loop's step, of a wide one's. (Between 0.15 and 0.33 sweeps take
     # the same.)
     narrow_step: float = 0.22
+    # Wells that lanes of a narrow loop go through until another thread has taken its share.
+    # (Two threads for 60 to 90 wells: each goes through a lane as long as the longest, in
+    # twice the CPU time.)
+    handed_over: float = 20.0
     # Wells that few jobs go through in a wide loop that is there before the narrow one is
     # compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load,
     # 2 s to compile.

@@ -2,6 +2,7 @@ from .fast_stretches import nodes_inside as nodes_inside
 from .fast_stretches import probes_of as probes_of
 from .fast_stretches import strictly_between as strictly_between
 from .fast_stretches import unseen_of as unseen_of
+from .find_path import known_path as known_path
 from .find_path import path_of as path_of
 from .path import Path as Path
 from .path import arrivals_at as arrivals_at

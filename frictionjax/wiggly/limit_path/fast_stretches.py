@@ -30,14 +30,16 @@ def _zoomed(
     """Times closer and closer to the steepest place of each interval, on both sides."""
     states = jax.vmap(lambda time: state_on_path(load, support, rows, time)[0])
 
+    def zoom(ends: Array, _: None) -> tuple[Array, Array]:
+        share = jnp.arange(SETTINGS.parts + 1) / SETTINGS.parts
+        inner = ends[0] + (ends[1] - ends[0]) * share
+        part = jnp.argmax(jnp.abs(jnp.diff(states(inner))))
+        ends = jax.lax.dynamic_slice_in_dim(inner, part, 2)
+        return ends, ends
+
     def closer(low: Real, high: Real) -> Array:
-        found = []
-        for _ in range(SETTINGS.zooms):
-            inner = low + (high - low) * jnp.arange(SETTINGS.parts + 1) / SETTINGS.parts
-            part = jnp.argmax(jnp.abs(jnp.diff(states(inner))))
-            low, high = inner[part], inner[part + 1]
-            found += [low, high]
-        return jnp.stack([*found, 0.5 * (low + high)])
+        ends, found = jax.lax.scan(zoom, jnp.stack([low, high]), length=SETTINGS.zooms)
+        return jnp.append(found, 0.5 * (ends[0] + ends[1]))
 
     return (jax.vmap(closer)(low, high),)
 

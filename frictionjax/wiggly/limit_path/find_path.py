@@ -2,10 +2,16 @@
 
 import numpy as np
 
-from ...model import TabulatedScene, strips_at
+from ..._checks import ByIdentity
+from ..._compile import Program
+from ...model import Scene, TabulatedScene, padded_edges, strips_at
+from ..equation import pull_between
 from .fast_stretches import nodes_inside, probes_of, unseen_of
 from .path import Path, Probes, motion_at, rows_of_path, times_at
 from .settings import SETTINGS
+
+_pull = Program(pull_between)
+_PATHS = ByIdentity()  # of scenes, whatever the eps
 
 
 def _looked_at(scene: TabulatedScene, path: Path) -> Path:
@@ -24,6 +30,19 @@ def _looked_at(scene: TabulatedScene, path: Path) -> Path:
         stiffness=float(np.min(motion.stiffness)),
         probes=Probes(times, seen, np.where(long, unseen, 0.0)),
     )
+
+
+def known_path(scene: Scene, tables: TabulatedScene) -> Path | None:
+    """The path of a scene with these tables, found once where it has few pieces.
+
+    None as of `path_of`.
+    """
+    path = _PATHS.get(scene)
+    if path is None:
+        path = path_of(tables)
+        if path is not None and path.direction.size <= SETTINGS.few_pieces:
+            _PATHS.put(scene, path)
+    return path
 
 
 def path_of(scene: TabulatedScene) -> Path | None:
@@ -56,4 +75,6 @@ def path_of(scene: TabulatedScene) -> Path | None:
     touch = path.touch.copy()
     touch[sliding] = times_at(scene, path, sliding, states[sliding])
     path = path._replace(touch=touch)
-    return _looked_at(scene, path._replace(rows=rows_of_path(path)))
+    rho_ends = np.asarray(rho_plus), np.asarray(rho_minus)
+    pull = _pull(scene.load, scene.support, padded_edges(turns, duration), *rho_ends)
+    return _looked_at(scene, path._replace(rows=rows_of_path(path), pull=pull))

@@ -20,6 +20,7 @@ from ...model import TabulatedScene
 from ...numerics import find_root
 from ...supports import AbstractSupport
 from ...tables import straight_part
+from ..equation import PullRange
 from .settings import SETTINGS
 
 
@@ -46,7 +47,8 @@ class Path(NamedTuple):
     where none does. `travel` (P+1,): way so far, in m. `rho` (P,): force of friction in N
     on the slide. `rho_plus`, `rho_minus`: in N. `speed`, `stiffness`: largest speed of
     slides in m/s, smallest Phi''. `pulled`: what the load goes up and down in all, N.
-    `probes`: speeds on the way. `rows` (room, 7): the pieces for compiled programs.
+    `pull`: how hard the load pulls. `probes`: speeds on the way. `rows` (room, 7): the
+    pieces for compiled programs.
     """
 
     edges: Float[np.ndarray, " edges"]
@@ -60,6 +62,7 @@ class Path(NamedTuple):
     speed: float = 0.0
     stiffness: float = 1.0
     pulled: float = 0.0
+    pull: PullRange | None = None
     probes: Probes = NO_PROBES
     rows: Float[np.ndarray, "room 7"] = np.zeros((0, 7))
 

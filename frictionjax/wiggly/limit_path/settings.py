@@ -7,7 +7,8 @@ class Settings(NamedTuple):
     """Shares of a stretch of time, of a speed, of a shift; counts of samples."""
 
     # Where the path is (`path.py`, `find_path.py`).
-    few_pieces: int = 128  # that are all compared with a time: half of a bisection's time
+    # That are all compared with a time, in half of a bisection's, and kept with a scene.
+    few_pieces: int = 128
     roots: int = 128  # times of one compiled call
     brief: float = 1e-9  # of the duration: pieces of which floats leave little to look into
 

@@ -1,11 +1,13 @@
 """How far the tip can lag behind the strip's edge on a slide."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..._checks import Real
 from ..._compile import Program, in_chunks
 from ...model import AbstractPotential
 from ...numerics import rows_of
@@ -21,12 +23,6 @@ _THIN_STEPS = np.diff(_GRID[:: SETTINGS.thin])
 LAG_FORCES = np.logspace(*SETTINGS.lag_forces)
 
 
-@Program
-def _forces(potential: AbstractPotential, eps: Array, places: Float[Array, "wells n"]):
-    one = jax.vmap(potential.tip_force, in_axes=(0, None))
-    return jax.vmap(one)(places, eps)
-
-
 class Wells(NamedTuple):
     """The way through a well, from fold to fold, shape (wells, grid).
 
@@ -34,9 +30,9 @@ class Wells(NamedTuple):
     nearly as high.
     """
 
-    gaps: np.ndarray
-    stretch: np.ndarray
-    folds: np.ndarray
+    gaps: Any
+    stretch: Any
+    folds: Any
 
     def thinned(self) -> "Wells":
         """Every eleventh point: integrals to about a percent."""
@@ -56,24 +52,36 @@ class Wells(NamedTuple):
         return self.folds[:, None] * whole
 
 
+@Program
+def _wells(
+    potential: AbstractPotential,
+    eps: Float[Array, " wells"],
+    place: Float[Array, " wells"],
+    side: Float[Array, " wells"],
+) -> Wells:
+    scan = np.arange(potential.points) / potential.points
+    force_at = jax.vmap(potential.tip_force, in_axes=(0, None))
+
+    def one(eps: Real, place: Real, side: Real) -> Wells:
+        forces, stretch = force_at(jnp.concatenate([place + _GRID, scan]), eps)
+        way, heights = jnp.split(side * forces, [_GRID.size])
+        bump = (heights >= jnp.roll(heights, 1)) & (heights > jnp.roll(heights, -1))
+        least = heights.max() - SETTINGS.as_high * jnp.ptp(heights)
+        return Wells(
+            gaps=jnp.maximum(way[_GRID.size // 2] - way, 0.0),
+            stretch=stretch[: _GRID.size],
+            folds=jnp.maximum(jnp.sum(bump & (heights > least)), 1),
+        )
+
+    return jax.vmap(one)(eps, place, side)
+
+
 def from_fold_to_fold(
     potential: AbstractPotential, eps: np.ndarray, place: np.ndarray, side: np.ndarray
 ) -> Wells:
     """Wells at each eps from the extreme fold `place`, right (`side` 1) or left (-1)."""
-    count = eps.size
-    scan = np.arange(potential.points) / potential.points
-    around = np.concatenate([place[:, None] + _GRID, np.tile(scan, (count, 1))], axis=1)
-    force, stretch = in_chunks(
-        _forces, SETTINGS.wells_together, (potential,), (eps, around)
-    )
-    force = side[:, None] * force
-    heights, top = force[:, _GRID.size :], force[:, _GRID.size // 2, None]
-    bump = (heights >= np.roll(heights, 1, 1)) & (heights > np.roll(heights, -1, 1))
-    high = heights.max(axis=1, keepdims=True)
-    near = bump & (heights > high - 0.05 * np.ptp(heights, axis=1, keepdims=True))
-    gaps = np.maximum(top - force[:, : _GRID.size], 0.0)
-    folds = np.maximum(near.sum(axis=1), 1)
-    return Wells(gaps, stretch[:, : _GRID.size], folds)
+    columns = eps, place, side
+    return in_chunks(_wells, SETTINGS.wells_together, (potential,), columns)
 
 
 def lag_forces(

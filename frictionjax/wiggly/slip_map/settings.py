@@ -43,6 +43,7 @@ class Settings(NamedTuple):
     half_grid: int = 1024  # places
     thin: int = 11  # 1023 is a multiple, so that the fold stays on the grid
     lag_forces: tuple[int, int, int] = (-24, 4, 85)  # decades from, to; how many
+    as_high: float = 0.05  # of the range of forces: how much lower other folds may be
     wells_together: int = 2  # in a compiled call
 
     # First wells of a slide (`slow_flow.py`), in times in which it is forgotten.

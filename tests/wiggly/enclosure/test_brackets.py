@@ -205,7 +205,7 @@ def test_values_just_before_slips_at_small_eps():
     scene, eps, gamma = scene_of(), 1e-7, 2.0
     path = path_of(scene)
     control, _ = planning._controls(
-        tabulated_scene(scene, eps), np.full(64, eps), np.full(64, gamma), 1e-3
+        tabulated_scene(scene, eps), path, np.full(64, eps), np.full(64, gamma), 1e-3
     )
     wells = np.round(np.linspace(0.1, 0.9, 300) / eps)
     # 0.6% of a period before the strip's edge is at a fold; slides at gamma = 2 hardly lag.
@@ -228,7 +228,7 @@ def test_brackets_hold_the_tip():
     scene, eps, gamma = scene_of(), 2e-3, 1.0
     path = path_of(scene)
     control, start = planning._controls(
-        tabulated_scene(scene, eps), np.full(64, eps), np.full(64, gamma), 1e-3
+        tabulated_scene(scene, eps), path, np.full(64, eps), np.full(64, gamma), 1e-3
     )
     folds, start = rows_of((control.folds, start), slice(1))
     tables = tabulated_scene(scene, eps)
