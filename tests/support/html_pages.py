@@ -4,7 +4,7 @@ from html.parser import HTMLParser
 from itertools import pairwise
 
 _LOADED = ("src", "srcset", "poster", "data", "background")
-_VOID = {"meta", "link", "img", "source", "br", "hr"}
+_VOID = {"meta", "link", "img", "source", "br", "hr", "wbr"}
 
 
 class PageParts(HTMLParser):

@@ -6,7 +6,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.stochastic import cell_keys, key_words, path_steps
-from frictionjax.wiggly import Status
+from frictionjax.wiggly import OURS, Status
 from frictionjax.wiggly.equation.status import FailedCells
 
 TS = np.array([0.0, 0.5, 0.5, 1.3, 2.0])
@@ -148,7 +148,6 @@ def test_a_study_says_whether_noise_vanishes(exponent, falls):
         (NOISY, {"key": None}, "key = None: needs a seed"),
         (scene_with(), {"key": 0}, r"key = 0: needs None, or a scene with effects\.Noise"),
         (NOISY, {"accuracy": 1e-4}, "accuracy = 0.0001: needs its default: steps of"),
-        (NOISY, {"method": "windowed"}, r'method="windowed"\) does not do Noise: needs'),
         (NOISY, {"method": "Kvaerno5"}, "solver of diffrax.* does not do Noise: needs"),
     ],
 )
@@ -156,3 +155,11 @@ def test_what_cannot_be_done_is_refused_by_name(scene, change, message):
     given = {"eps": [0.1], "gamma": [1.0], "ts": TS, "key": 0} | change
     with pytest.raises(ValueError, match=message):
         fx.sweep(scene, **given)
+
+
+@pytest.mark.parametrize("method", OURS[1:])
+def test_each_method_of_ours_takes_the_same_path(method):
+    given = {"eps": [0.1], "gamma": [1.0], "ts": TS, "key": 0}
+    assert np.array_equal(
+        fx.sweep(NOISY, **given, method=method).z, fx.sweep(NOISY, **given).z
+    )

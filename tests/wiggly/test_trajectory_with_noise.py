@@ -37,7 +37,6 @@ def test_a_cold_path_is_near_the_trajectory():
         (PLAIN, {"key": 0}, r"key = 0: needs None, or a scene with effects\.Noise"),
         (NOISY, {"key": 0, "accuracy": 1e-4}, "accuracy = 0.0001: needs its default"),
         (NOISY, {"key": 0, "max_steps": 10}, "max_steps = 10: needs its default"),
-        (NOISY, {"key": 0, "method": "windowed"}, r"windowed.* does not do Noise"),
         (NOISY, {"key": 0, "method": "Kvaerno5"}, "does not do Noise: needs method"),
     ],
 )
