@@ -4,6 +4,7 @@ from html.parser import HTMLParser
 from itertools import pairwise
 
 _LOADED = ("src", "srcset", "poster", "data", "background")
+_INSIDE = {"span", "wbr"}  # what is on both sides is one word
 _VOID = {"meta", "link", "img", "source", "br", "hr", "wbr"}
 
 
@@ -13,21 +14,29 @@ class PageParts(HTMLParser):
     def __init__(self, text):
         super().__init__()
         self.tags, self.words, self._open = [], [], []
+        self._goes_on = False
         self.feed(text)
         self.close()
         assert not self._open, f"never closed: {self._open}"
 
     def handle_starttag(self, tag, attrs):
         self.tags.append((tag, dict(attrs)))
+        self._goes_on = bool(self.words) and tag in _INSIDE
         if tag not in _VOID:
             self._open.append(tag)
 
     def handle_endtag(self, tag):
         assert self._open.pop() == tag
+        self._goes_on = bool(self.words) and tag in _INSIDE
 
     def handle_data(self, data):
-        if self._open and self._open[-1] != "style":
+        if not self._open or self._open[-1] == "style":
+            return
+        if self._goes_on:
+            self.words[-1] += data
+        else:
             self.words.append(data)
+        self._goes_on = False
 
     def of(self, tag):
         """Attributes of all tags of this name."""
