@@ -79,4 +79,4 @@ def test_slips_that_floats_cannot_sample_are_said_to_be():
     z = fx.solve(one.build(), one.eps, one.gamma, ts).z
     found = fx.certify(one.build(), one.eps, one.gamma, ts, z)
     assert not found.ok
-    assert "not resolved" in found.message
+    assert "undecided" in found.message
