@@ -78,14 +78,20 @@ def _lane_segments(
 ):
     """Segments of one lane for each bracket: owner, start, end, stop's index or -1 or -2.
 
-    Segments end at kinks of the load on the way, where the bracket begins (-1), and at its
-    stops, where `whole`; segments that end at kinks have -2.
+    Segments end at kinks of the load on the way, as they know its straight part as one
+    line; where the bracket begins (-1), and at its stops, where `whole`; segments that end
+    at other kinks have -2.
     """
     count = brackets.cell.size
-    kink_owner, kink = points_between(kinks, starts.time, brackets.begin)
     mine = np.flatnonzero(whole[brackets.owner])
-    owner = np.concatenate([kink_owner, np.arange(count), brackets.owner[mine]])
-    end = np.concatenate([kink, brackets.begin, brackets.stop[mine]])
+    owner = np.concatenate([np.arange(count), brackets.owner[mine]])
+    end = np.concatenate([brackets.begin, brackets.stop[mine]])
+    last = np.full(count, -np.inf)
+    np.maximum.at(last, owner, end)
+    kink_owner, kink = points_between(kinks, starts.time, last)
+    inside = ~np.isin(kink_owner + 1j * kink, owner + 1j * end)
+    kink_owner, kink = kink_owner[inside], kink[inside]
+    owner, end = np.concatenate([kink_owner, owner]), np.concatenate([kink, end])
     mark = np.concatenate([np.full(kink.size, -2), np.full(count, -1), mine])
     order = np.lexsort((mark, end, owner))
     owner, end, mark = owner[order], end[order], mark[order]

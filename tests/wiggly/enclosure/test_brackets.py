@@ -1,5 +1,7 @@
 """Windows against every slip integrated; cost, brackets and fall-backs."""
 
+from types import SimpleNamespace
+
 import jax
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from frictionjax.numerics import rows_of
 from frictionjax.wiggly import batch as engine
 from frictionjax.wiggly import plan as planning
 from frictionjax.wiggly.enclosure import close as rounds
+from frictionjax.wiggly.enclosure.brackets import Brackets, _lane_segments
 from frictionjax.wiggly.enclosure.starts import starts_of
 from frictionjax.wiggly.limit_path.path import states_at, times_at
 
@@ -252,6 +255,25 @@ def test_brackets_hold_the_tip():
 
 
 @pytest.mark.slow
+def test_legs_end_at_kinks_after_their_bracket_has_begun_too():
+    """They know a load that is straight between kinks by one line: values were 0.42 eps
+    off where a look at a fast slide began before a turn and ended after it."""
+    brackets = Brackets(
+        cell=np.zeros(2, dtype=int),
+        begin=np.array([0.3, 1.0]),
+        paired=np.ones(2, dtype=bool),
+        owner=np.array([0, 0, 1]),
+        stop=np.array([0.9, 1.2, 1.5]),
+    )
+    starts = SimpleNamespace(time=np.array([0.1, 0.95]))
+    kinks = np.array([0.2, 0.5, 0.9, 1.4, 1.6])
+    owner, start, end, mark = _lane_segments(brackets, starts, kinks, np.ones(2, bool))
+    assert owner.tolist() == [0, 0, 0, 0, 0, 1, 1, 1]
+    assert start.tolist() == [0.1, 0.2, 0.3, 0.5, 0.9, 0.95, 1.0, 1.4]
+    assert end.tolist() == [0.2, 0.3, 0.5, 0.9, 1.2, 1.0, 1.4, 1.5]
+    assert mark.tolist() == [-2, -1, -2, 0, 1, -1, -2, 2]
+
+
 def test_memory_is_that_of_the_flatter_fold():
     # From the sharper one, brackets of this slide stayed open and 1.3e6 steps were taken.
     waves = fx.profiles.Fourier([0.004, -0.002, 0.0, 0.0005], [0.008, 0.003, -0.001, 0.0])
