@@ -94,7 +94,8 @@ def _tabulated(at: Setting) -> AbstractPotential:
 def finite_speed(at: Setting) -> Estimate:
     """What viscosity adds to friction on the fastest slide: force and state beyond rho.
 
-    At most 3% less than `law` says. NaN where the limit does not slide through a few wells.
+    From above: 3% more than the law says. NaN where the limit does not slide through a few
+    wells.
     """
     plain = at.data._replace(change=np.zeros_like(at.data.change))
     found = predict_errors(plain, np.array([at.eps]), np.array([at.gamma]))

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ..called_for import AWAY, Setting
-from ..model import TabulatedScene, known_turning_points, tabulated_scene
+from ..model import TabulatedScene, tabulated_scene
 from ..wiggly import arrivals_at, state_under
 
 _WINDOW = 3.0  # wells
@@ -72,9 +72,8 @@ def thinned(values: np.ndarray, most: int) -> np.ndarray:
 
 
 def _stretches(at: Setting, tables: TabulatedScene) -> list[_Stretch]:
-    duration = tables.duration
-    turns = known_turning_points(at.scene.load, duration, at.scene.turns)
-    edges = np.concatenate([[0.0], turns[turns > 0], [duration]])
+    turns = tables.turning_points
+    edges = np.concatenate([[0.0], turns[turns > 0], [tables.duration]])
     began, ended = edges[:-1], edges[1:]
     alone = state_under(tables, edges, np.zeros(edges.size))
     wells = np.diff(alone) / at.eps

@@ -4,9 +4,9 @@
 const FONT = "12px system-ui, sans-serif";
 // JupyterLab pays for each message to Python with its signs of a busy kernel, more than
 // for a frame: places of the sliders go together, and are answered one by one.
-const PAUSE = 100; // ms between messages; less where answers are there sooner, as they
-const LEAST = 50; // are behind the slider by that
-const ANSWERS = 4; // that are waited for
+const PAUSE = 100; // ms between messages, at most: pictures trail the slider by that
+const LEAST = 50; // ms, where answers are there sooner
+const ANSWERS = 4; // that take as long as the pause between
 const LATE = 300; // ms after which it is asked again, and what waits is dropped
 const MOST = 6; // places in one; answers that wait for their frame
 

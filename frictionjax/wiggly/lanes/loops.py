@@ -24,7 +24,7 @@ class Room(NamedTuple):
     legs: int
 
     def holds(self, needed: "Room") -> bool:
-        """Whether that many rows fit, and not into less than the next smaller tables."""
+        """Whether that many rows fit, and no more than one size too large."""
         fits = all(a >= b for a, b in zip(self, needed, strict=True))
         return fits and self.legs <= SETTINGS.growth * max(needed.legs, _ROOM.legs)
 

@@ -26,8 +26,8 @@ class Settings(NamedTuple):
     patience: int = 500
     at_once: int = 20_000  # wells: for more they wait for the narrow loop
     # Rows of the smallest tables: cells, jobs, legs, and how much larger the next are. Each
-    # size costs 0.4 s to trace and load, 2 s to compile; empty rows 0.3 ms in the first, 3
-    # in the second: so few sizes. (A quarter of the first is 0.1 ms less.)
+    # size costs 0.4 s to trace and load, 2 s to compile, an empty row next to nothing: so
+    # few sizes.
     room: tuple[int, int, int] = (256, 8192, 16384)
     growth: int = 16
 
