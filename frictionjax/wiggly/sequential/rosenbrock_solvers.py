@@ -9,7 +9,7 @@ from equinox import AbstractClassVar
 from jaxtyping import Array, Float
 
 from ..._checks import Real, require
-from ..rosenbrock import RODAS4P2, RODAS5P, Linearised, Tableau, rolled_step
+from ..rosenbrock import RODAS4P2, RODAS5P, Linearised, Tableau, rosenbrock_step
 
 
 class StageInterpolation(diffrax.AbstractLocalInterpolation):
@@ -66,8 +66,8 @@ class AbstractRosenbrock(diffrax.AbstractAdaptiveSolver):
         velocity, by_state = jax.jvp(lambda y: field(t0, y), (y0,), (jnp.ones_like(y0),))
         _, by_time = jax.jvp(lambda t: field(t, y0), (t0,), (jnp.ones_like(t0),))
         start = Linearised(velocity, by_state, by_time)
-        y1, stages = rolled_step(self.tableau, field, start, t0, t1 - t0, y0)
-        bends = jnp.array(self.tableau.dense) @ stages
+        y1, stages = rosenbrock_step(self.tableau, field, start, t0, t1 - t0, y0)
+        bends = jnp.array(self.tableau.dense) @ jnp.stack(stages)
         info = {"y0": y0, "y1": y1, "bends": bends}
         return y1, stages[-1], info, None, diffrax.RESULTS.successful
 
