@@ -42,6 +42,11 @@ class _Curve(NamedTuple):
     residual: Array | None
 
 
+def _as_array(leaf: Any) -> Any:
+    """Plain floats hide in the tracers of `jax.grad(f)(0.1)`, and had derivatives 0."""
+    return jnp.asarray(leaf, dtype=float) if eqx.is_inexact_array(leaf) else leaf
+
+
 @Program
 def _planned(problem: Problem) -> StepPlan:
     scene, eps, gamma, _, accuracy = problem
@@ -123,6 +128,7 @@ def _pulled_back(
 
 
 def solve_one_after_the_other(problem: Problem, options: Options) -> Solution:
+    problem = jax.tree_util.tree_map(_as_array, problem)
     if options.adjoint is None:
         curve, (status, counts) = _differentiable(problem, options)
     else:
