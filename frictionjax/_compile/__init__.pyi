@@ -6,6 +6,7 @@ from .programs import Program as Program
 from .programs import flattened as flattened
 from .programs import in_chunks as in_chunks
 from .programs import padded_size as padded_size
+from .programs import strong_arrays as strong_arrays
 from .progress import progress_bar as progress_bar
 from .progress import waiting as waiting
 from .workers import WORKERS as WORKERS

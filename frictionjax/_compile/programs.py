@@ -5,6 +5,7 @@ from typing import Any
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from .._checks import is_debugged, with_nan
@@ -102,6 +103,18 @@ def flattened(args: tuple) -> tuple[list, tuple]:
         leaves += own
         structures.append(structure)
     return leaves, tuple(structures)
+
+
+def strong_arrays(tree: Any) -> Any:
+    """Plain floats that hide in the tracers of `jax.grad(f)(0.1)` as arrays.
+
+    Rules of derivatives get them as they are, and take what is no array for a constant.
+    """
+
+    def strong(leaf: Any) -> Any:
+        return jnp.asarray(leaf, dtype=float) if eqx.is_inexact_array(leaf) else leaf
+
+    return jax.tree_util.tree_map(strong, tree)
 
 
 def in_chunks(

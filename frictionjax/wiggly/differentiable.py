@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array
 
 from .._checks import Real
-from .._compile import Program
+from .._compile import Program, strong_arrays
 from ..model import Scene
 from .equation import StepPlan, plan_steps
 from .sequential import integrate
@@ -40,11 +40,6 @@ class _Curve(NamedTuple):
     z: Array
     dissipation: Array | None
     residual: Array | None
-
-
-def _as_array(leaf: Any) -> Any:
-    """Plain floats hide in the tracers of `jax.grad(f)(0.1)`, and had derivatives 0."""
-    return jnp.asarray(leaf, dtype=float) if eqx.is_inexact_array(leaf) else leaf
 
 
 @Program
@@ -128,7 +123,7 @@ def _pulled_back(
 
 
 def solve_one_after_the_other(problem: Problem, options: Options) -> Solution:
-    problem = jax.tree_util.tree_map(_as_array, problem)
+    problem = strong_arrays(problem)
     if options.adjoint is None:
         curve, (status, counts) = _differentiable(problem, options)
     else:

@@ -24,7 +24,7 @@ from ..._checks import (
     require_x64,
     with_nan,
 )
-from ..._compile import Program, padded_size, waiting
+from ..._compile import padded_size, waiting
 from ..._text import Named, SelfDrawn, ShownNumbers
 from ...bristles import AbstractBristle
 from ...effects import (
@@ -47,10 +47,11 @@ from ...model import (
 from ...profiles import AbstractProfile
 from ...supports import Spring
 from ...wiggly import Status
+from .differentiable_slides import AskedSlides, differentiable_sides, slides_both_ways
 from .settings import SETTINGS
 from .slide_curve import array_peaks, require_bristles, with_peaks
 from .slide_rows import find_both_ways, slide_table
-from .slide_sides import Sides, one_side
+from .slide_sides import Sides
 
 SLIDE_FORCES = ("mean", "peak")  # of a slide, that designs may ask for
 
@@ -116,16 +117,9 @@ class SlideForces(NamedTuple):
     rho_minus: Real
 
 
-def _both_sides(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> Sides:
-    def one(sign: Real) -> Sides:
-        return one_side(potential, eps, gamma, rate, stiffness, sign)
-
-    return jax.vmap(one)(jnp.array([1.0, -1.0]))
-
-
 def slide_at(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> SteadySlide:
     """The steady slide at one eps; without checks, traceable."""
-    return _joined(eps, _both_sides(potential, eps, gamma, rate, stiffness))
+    return _joined(eps, slides_both_ways(potential, gamma, rate, stiffness, eps))
 
 
 def _joined(eps: Real, both: Sides) -> SteadySlide:
@@ -149,13 +143,6 @@ def forces_of(slide: SteadySlide, force: str) -> SlideForces:
     """Its mean or its peak forces."""
     plus, minus = getattr(slide, f"{force}_plus"), getattr(slide, f"{force}_minus")
     return SlideForces(plus, minus)
-
-
-@Program
-def _forces(
-    potential: AbstractPotential, eps: Array, gamma: Array, rate: Array, stiffness: Array
-) -> Any:
-    return jax.vmap(lambda e: _both_sides(potential, e, gamma, rate, stiffness))(eps)
 
 
 def spring_of(support: Spring | None) -> Spring:
@@ -300,5 +287,5 @@ def _forces_of(
     count = eps.shape[0]
     more = padded_size(count, SETTINGS.lanes, 2) - count
     padded = jnp.pad(eps, (0, more), mode="edge")
-    found = _forces(wiggle, padded, *numbers)
+    found = differentiable_sides(AskedSlides(wiggle, *numbers, padded))
     return jax.tree_util.tree_map(lambda leaf: leaf[:count], found)
