@@ -1,0 +1,238 @@
+"""What the engine takes for scenes of every kind, beside another checkout of this library.
+
+`python benchmarks/engine.py --before PATH` runs the same in both, turn by turn, and prints
+a table. (First calls: first_calls.py.) CPU seconds, the least of a few runs, of
+
+    solve     a warm `solve` of few wells, eps = 0.02, gamma = 1, the median of scenes
+    step      a step of one lane of a sweep, whole: planning and results included, on a
+              sine and on series of 4 and 16 harmonics, with energies and suprema
+    rows      rows of a measured map (`--map`, or series by chance) x 16 eps from 0.05 to
+              1e-5, energies and suprema, a row: in one sweep, or one each
+    scenes    sines by chance x 8 eps from 0.1 to 1e-3, values alone, a scene: the same
+    flat      cells of surfaces with straight flanks and with flat extremes over a sine's
+    gradient  of a steady slide and of a value of a trajectory, for the first time in a
+              process: without a cache, then with every program kept
+    times     a `solve` with another number of times than before
+"""
+
+import argparse
+import json
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve()
+sys.path.insert(0, str(HERE.parent))
+REPEATS = 5
+
+
+def library():
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+    import frictionjax as fx
+
+    fx.use_fast_cpu()
+    fx.keep_compiled()
+    return fx
+
+
+def least(call, repeats=REPEATS):
+    call()
+    seconds = []
+    for _ in range(repeats):
+        begin = time.process_time()
+        call()
+        seconds.append(time.process_time() - begin)
+    return min(seconds)
+
+
+def scene_of(fx, profile, stiffness=1.0, held=1.0, pull=1.2, angle=0.5):
+    bristle = fx.bristles.SlantedSpring(stiffness, 2.4, 1.0, angle)
+    support, load = fx.supports.Spring(held), fx.loads.Sine(pull, 3.0)
+    return fx.Scene(profile, bristle, support, load, 3.0)
+
+
+def sines(fx, count, rng):
+    least, most = [0.02, 0.7, 0.7, 1.0, 0.3], [0.12, 1.5, 1.5, 1.4, 0.7]
+    numbers = rng.uniform(least, most, (count, 5)).tolist()
+    return [scene_of(fx, fx.profiles.Sine(slope), *rest) for slope, *rest in numbers]
+
+
+def series(fx, count, rng):
+    waves = rng.normal(size=(2, count)) / np.arange(1, count + 1) ** 2.5
+    slopes = np.abs(2 * np.pi * np.arange(1, count + 1) * waves).sum()
+    return fx.profiles.Fourier(*(0.15 / slopes * waves))
+
+
+def solve(fx, options):
+    ts = np.linspace(0, 3, 101)
+    scenes = sines(fx, 12, np.random.default_rng(1))
+    taken = [least(lambda one=one: fx.solve(one, 0.02, 1.0, ts)) for one in scenes]
+    return {"warm solve of few wells, ms": 1e3 * np.median(taken)}
+
+
+def step(fx, options):
+    rng, figures = np.random.default_rng(2), {}
+    eps, gamma = np.geomspace(1e-2, 1e-4, 24), [0.5, 1.0]
+    for name, profile in {
+        "a sine": fx.profiles.Sine(0.1),
+        "4 harmonics": series(fx, 4, rng),
+        "16 harmonics": series(fx, 16, rng),
+    }.items():
+        scene = scene_of(fx, profile)
+        steps = float(fx.sweep(scene, eps, gamma).steps.sum())
+        taken = least(lambda s=scene: fx.sweep(s, eps, gamma))
+        figures[f"a step, {name}, us"] = 1e6 * taken / steps
+    return figures
+
+
+def swept(fx, scenes, eps, **options):
+    """The least time a scene, and the mean of what came out."""
+
+    def together():
+        return fx.sweep(scenes, eps, [1.0], **options)
+
+    def alone():
+        return [fx.sweep(scene, eps, [1.0], **options) for scene in scenes]
+
+    figures = {"one each": 1e3 * least(alone, 2) / len(scenes)}
+    if "scene" in fx.sweep.__doc__ and hasattr(fx, "ensemble"):
+        figures["in one sweep"] = 1e3 * least(together, 2) / len(scenes)
+    return figures
+
+
+def rows(fx, options):
+    rng = np.random.default_rng(3)
+    profiles = [series(fx, 8, rng) for _ in range(options.count)]
+    if options.map:
+        heights = fx.measured.read_heights(options.map).heights
+        places = np.linspace(0, heights.shape[0] - 1, options.count).astype(int)
+        profiles = [row_profile(fx, heights[i]) for i in places]
+    scenes = [scene_of(fx, p) for p in profiles]
+    found = swept(fx, scenes, np.geomspace(0.05, 1e-5, 16))
+    return {f"a row of 8 harmonics x 16 eps, {how}, ms": s for how, s in found.items()}
+
+
+def row_profile(fx, heights):
+    waves = np.fft.rfft(heights - heights.mean())[1:9] / heights.size
+    slopes = np.abs(4 * np.pi * np.arange(1, 9) * waves).sum()
+    return fx.profiles.Fourier(*(0.15 / slopes * 2 * np.array([waves.real, -waves.imag])))
+
+
+def scenes(fx, options):
+    many = sines(fx, options.count, np.random.default_rng(4))
+    found = swept(fx, many, np.geomspace(0.1, 1e-3, 8), dissipation=False, suprema=False)
+    return {f"a scene of a sine x 8 eps, {how}, ms": s for how, s in found.items()}
+
+
+def flat(fx, options):
+    n = np.arange(1, 65)
+    slopes = (0.05 / 0.8 + 0.05 / 0.2) / (2j * np.pi * n) * (1 - np.exp(-1.6j * np.pi * n))
+    waves = slopes / (2j * np.pi * n) * np.exp(-2 * (np.pi * n * 0.02) ** 2)
+    flat = 0.12 / (2 * np.pi) * np.array([9 / 8, 0.0, -1 / 24])
+    kinds = {
+        "a sine": fx.profiles.Sine(0.1),
+        "straight flanks": fx.profiles.Fourier(2 * waves.real, -2 * waves.imag),
+        "flat extremes": fx.profiles.Fourier(np.zeros(3), flat),
+    }
+    figures, of_sine = {}, {}
+    for name, profile in kinds.items():
+        scene = scene_of(fx, profile, pull=1.0)
+        for gamma in (0.5, 0.75, 1.0, 2.0):
+            for eps in (1e-4, 1e-6, 1e-8):
+                if options.quick and eps < 1e-4:
+                    continue
+                begin = time.process_time()
+                found = fx.sweep(scene, [eps], [gamma])
+                begin, early = time.process_time(), time.process_time() - begin
+                if early < 20:
+                    found = fx.sweep(scene, [eps], [gamma])
+                    early = time.process_time() - begin
+                of_sine.setdefault((gamma, eps), early)
+                cell = f"{name}, gamma = {gamma:g}, eps = {eps:g}"
+                figures[f"{cell}: s"] = early
+                figures[f"{cell}: over a sine's"] = early / of_sine[gamma, eps]
+                figures[f"{cell}: status"] = int(found.status.values.ravel()[0])
+    return figures
+
+
+def gradient(fx, options):
+    import jax
+
+    def slide(slope):
+        bristle = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
+        return fx.steady_slide(fx.profiles.Sine(slope), bristle, 1e-2).mean_plus
+
+    def value(slope):
+        return fx.solve(scene_of(fx, fx.profiles.Sine(slope)), 1e-2, 1.0, [3.0]).z[0]
+
+    figures = {}
+    for name, fn in {"a steady slide": slide, "a trajectory's value": value}.items():
+        begin = time.process_time()
+        float(jax.grad(fn)(0.1))
+        figures[f"gradient of {name}, first call, s"] = time.process_time() - begin
+    return figures
+
+
+def times(fx, options):
+    scene = scene_of(fx, fx.profiles.Sine(0.1))
+    fx.solve(scene, 0.02, 1.0, np.linspace(0, 3, 101))
+    taken = []
+    for count in (57, 83, 129):
+        begin = time.process_time()
+        fx.solve(scene, 0.02, 1.0, np.linspace(0, 3, count))
+        taken.append(time.process_time() - begin)
+    return {"a solve with another number of times, s": max(taken)}
+
+
+PARTS = {f.__name__: f for f in (solve, step, rows, scenes, flat, gradient, times)}
+
+
+def measured(checkout, parts, arguments):
+    from first_calls import called
+
+    figures = {}
+    with tempfile.TemporaryDirectory() as cache:
+        for part in parts:
+            for turn in ("no cache", "kept") if part == "gradient" else ("",):
+                worker = [str(HERE), "--worker", part, *arguments]
+                found = json.loads(called(checkout, cache, *worker)[0].splitlines()[-1])
+                for name, value in found.items():
+                    figures[f"{name} {turn}".strip()] = value
+                print(f"  {checkout.name}: {part}", file=sys.stderr, flush=True)
+    return figures
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--before", type=Path, help="another checkout, to compare with")
+    parser.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS))
+    parser.add_argument("--count", type=int, default=24, help="rows, and scenes")
+    parser.add_argument("--map", type=Path, help="heights of a measured map, rows of text")
+    parser.add_argument("--quick", action="store_true", help="no cells below eps = 1e-4")
+    parser.add_argument("--worker", choices=PARTS, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.worker:
+        print(json.dumps(PARTS[options.worker](library(), options)))
+        return
+    passed = ["--count", str(options.count)]
+    if options.map:
+        passed += ["--map", str(options.map.resolve())]
+    passed += ["--quick"] * options.quick
+    checkouts = [HERE.parents[1]]
+    if options.before:
+        checkouts.insert(0, options.before.resolve())
+    columns = [measured(home, options.parts, passed) for home in checkouts]
+    names = ["before", "now"][-len(columns) :]
+    print(f"| | {' | '.join(names)} |\n|---|{'---|' * len(names)}")
+    for name in columns[-1]:
+        values = " | ".join(f"{c[name]:.3g}" if name in c else "-" for c in columns)
+        print(f"| {name} | {values} |")
+
+
+if __name__ == "__main__":
+    main()
