@@ -17,7 +17,7 @@ from .lanes import LaneScene
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, slow_ends
 from .settings import SETTINGS
-from .slip_map import lag_forces, none_known
+from .slip_map import SteadyLags, none_known, steady_lags
 from .ways import Way, by_brackets, ends_before_tips_follow, ways_of
 
 
@@ -55,14 +55,17 @@ def ground_of(
     """What brackets need to know of each cell; `start`: well and tip of its z0."""
     lags, powers = _lags(scene, path, eps, gamma, folds)
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
+    memories = lags.power * lags.force / path.stiffness
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
     return CellBounds(
         eps,
         folds,
-        lag_plus=lags[0] / path.stiffness,
-        lag_minus=lags[1] / path.stiffness,
+        lag_plus=lags.force[0] / path.stiffness,
+        lag_minus=lags.force[1] / path.stiffness,
         power_plus=powers[0],
         power_minus=powers[1],
+        memory_plus=memories[0],
+        memory_minus=memories[1],
         shift_plus=shifts[0],
         shift_minus=shifts[1],
         start_well=start[0],
@@ -74,7 +77,7 @@ def ground_of(
 
 
 def _lags(scene: TabulatedScene, path: Path, eps, gamma, folds: WiggleFolds):
-    """Lags of the fastest slide in N, to the right and left, and powers of the speed.
+    """Lags of the fastest slide, and powers of the speed that bound those of slower ones.
 
     2 where folds have a curvature and tips nearly rest, p/(p - 1) where W' falls off like
     the power p, 1 where flanks are straight or lags larger than the well's forces.
@@ -83,9 +86,11 @@ def _lags(scene: TabulatedScene, path: Path, eps, gamma, folds: WiggleFolds):
     # Both speeds at once: the way through a well, which takes longest, is found once.
     twice = jax.tree_util.tree_map(lambda each: np.tile(each, 2), folds)
     drags = np.concatenate([drag, SETTINGS.slower * drag])
-    both = np.stack(lag_forces(scene.potential, np.tile(eps, 2), twice, drags))
-    lags, slower = np.split(both, 2, axis=1)
-    powers = np.log(lags / slower) / -np.log(SETTINGS.slower)
+    both = steady_lags(scene.potential, np.tile(eps, 2), twice, drags)
+    lags, slower = (
+        SteadyLags(*part) for part in zip(*(np.split(b, 2, axis=1) for b in both), strict=True)
+    )
+    powers = np.log(lags.force / slower.force) / -np.log(SETTINGS.slower)
     return lags, np.where(powers > SETTINGS.square, 2.0, np.maximum(powers, 1.0))
 
 
@@ -105,12 +110,13 @@ def lane_scene(scene: TabulatedScene) -> LaneScene:
 def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
     """How far back brackets start: until one as wide as the lag has closed.
 
-    Slides remember twice the wells that they lag by. (The closed form of step control is
-    that for one fold far below the others: on the angular scene of the benchmarks, gamma =
-    1/2, it was a third of it at eps = 1e-3, and 119 of 354 brackets stayed open.)
+    (The closed form of step control is that for one fold far below the others: on the
+    angular scene of the benchmarks, gamma = 1/2, memory was a third of it at eps = 1e-3,
+    and 119 of 354 brackets stayed open.)
     """
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
-    forgets = 2 * lag * np.log((lag + 2) / (0.1 * accuracy))
+    memory = np.maximum(ground.memory_plus, ground.memory_minus) / ground.eps
+    forgets = memory * np.log((lag + 2) / (0.1 * accuracy))
     slow = np.ceil(ENCLOSURE_SETTINGS.margin + forgets)
     run_up = np.minimum(slow, _resting(ground, lag, forgets))
     offset = _lattice_offsets(ground, path)

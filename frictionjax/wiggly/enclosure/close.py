@@ -96,7 +96,7 @@ def run_ups(rounds: BracketContext, brackets: Brackets, needed: np.ndarray) -> n
     states = states_at(scene, path, starts.time)
     cell, direction = brackets.cell, path.direction[path.piece_of(starts.time)]
     share = slow_share(scene, path, starts.time, states, np.full(cell.size, 2.0))
-    share *= rounds.ground.lag_share(cell, direction)
+    share *= rounds.ground.memory_share(cell, direction)
     share = np.where(starts.from_slide | starts.lagging, 1.0, share)
     # Others keep theirs: what they find must not depend on their neighbours.
     return np.where(

@@ -16,7 +16,8 @@ class CellBounds(NamedTuple):
     """What brackets need to know of each cell, shape (cells,) each.
 
     `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
-    most. `power_plus`, `power_minus`: of the speed that lags grow with. `shift_plus`,
+    most. `power_plus`, `power_minus`: of the speed that lags grow with. `memory_plus`,
+    `memory_minus`: way in m in which it forgets all but 1/e. `shift_plus`,
     `shift_minus`: by how much in m folds at this eps differ from rho.
     `phase`: how far ahead on the surface the bristle stands, in periods: its wells have
     numbers less by that.
@@ -30,6 +31,8 @@ class CellBounds(NamedTuple):
     lag_minus: np.ndarray
     power_plus: np.ndarray
     power_minus: np.ndarray
+    memory_plus: np.ndarray
+    memory_minus: np.ndarray
     shift_plus: np.ndarray
     shift_minus: np.ndarray
     start_well: np.ndarray
@@ -42,11 +45,11 @@ class CellBounds(NamedTuple):
         """Of slides of cells in a direction."""
         return np.where(direction > 0, self.power_plus[cell], self.power_minus[cell])
 
-    def lag_share(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
-        """Of slides of cells in a direction: their lag over the larger of both."""
-        lags = self.lag_plus[cell], self.lag_minus[cell]
-        own = np.where(direction > 0, *lags)
-        return own / np.maximum(np.maximum(*lags), 1e-300)
+    def memory_share(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
+        """Of slides of cells in a direction: their memory over the longer of both."""
+        both = self.memory_plus[cell], self.memory_minus[cell]
+        own = np.where(direction > 0, *both)
+        return own / np.maximum(np.maximum(*both), 1e-300)
 
 
 class Starts(NamedTuple):
