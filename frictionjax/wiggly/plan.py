@@ -107,7 +107,9 @@ def lane_scene(scene: TabulatedScene) -> LaneScene:
     return LaneScene(scene.lane_potential, scene.support, bent_part(scene.load), *rho)
 
 
-def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
+def _needs(
+    scene: TabulatedScene, path: Path, ground: CellBounds, accuracy: float
+) -> Requirements:
     """How far back brackets start: until one as wide as the lag has closed.
 
     (The closed form of step control is that for one fold far below the others: on the
@@ -124,10 +126,35 @@ def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
         run_up=run_up,
         transient=np.ceil(lag + run_up + 2),
         tile=SETTINGS.tile * slow,
+        share=_shares(scene, path, ground, run_up),
         samples=np.zeros(lag.size),
         lattice_offset=offset,
         restarts=np.zeros(offset.shape, dtype=bool),
     )
+
+
+def _shares(
+    scene: TabulatedScene, path: Path, ground: CellBounds, run_up: np.ndarray
+) -> np.ndarray:
+    """Of what the slides need that remember longest, for each piece, (cells, pieces).
+
+    Slides one way may remember less than those the other way, unless the one before ends
+    so fast that it is remembered. Where little is remembered all pieces are alike.
+    """
+    share = np.ones((run_up.size, path.direction.size))
+    some = np.flatnonzero(run_up > ENCLOSURE_SETTINGS.some_memory)
+    if some.size == 0:
+        return share
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
+    slow = slow_ends(scene, path, ground.eps[some], lag[some])
+    own = ground.memory_share(some[:, None], path.direction[None, :])
+    before = np.zeros(some.size)
+    for piece in np.flatnonzero(path.direction):
+        share[some, piece] = np.maximum(own[:, piece], before)
+        before = np.where(slow[:, piece], 0.0, own[:, piece])
+    margin = ENCLOSURE_SETTINGS.margin / run_up[some, None]
+    share[some] = margin + (1 - margin) * share[some]
+    return share
 
 
 def _resting(ground: CellBounds, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
@@ -239,7 +266,7 @@ def planned(
     """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
     control, start = _controls(scene, path, eps, gamma, accuracy)
     ground = ground_of(scene, path, eps, gamma, control.folds, start)
-    needs = _needs(ground, path, accuracy)
+    needs = _needs(scene, path, ground, accuracy)
     brackets = by_brackets(path, eps, needs, times, method)
     needs = _with_brackets(path, eps, needs, brackets)
     follows = viscosity_of(eps, gamma) / path.stiffness

@@ -72,14 +72,15 @@ def close_brackets(
 def run_ups(rounds: BracketContext, brackets: Brackets, needed: np.ndarray) -> np.ndarray:
     """Wells that each bracket starts earlier: fewer where its slide is slow, (W,).
 
-    As with the square of the speed: where folds are flat slides remember longer, and their
-    brackets set off again if need be. (By the power of their lags: looks after turns at
-    gamma = 1/4, eps = 1e-8 went on for minutes, for 1 s.) In the direction of smaller lags
-    fewer. (Sawtooth, gamma = 3/4, eps = 1e-8: 2.8e6 steps for 1.4e8.)
+    By the power of their lags; long ones as with the square of the speed: where folds are
+    flat slides remember longer, and their brackets set off again if need be. (By that power
+    too: looks after turns at gamma = 1/4, eps = 1e-8 went on for minutes, for 1 s.) In the
+    direction in which less is remembered fewer. (Sawtooth, gamma = 3/4, eps = 1e-8: 2.8e6
+    steps for 1.4e8.)
     """
     wells = needed[brackets.cell].astype(float)
-    long = (wells > SETTINGS.long_memory) & np.isfinite(wells)
-    if not long.any():
+    some = (wells > SETTINGS.some_memory) & np.isfinite(wells)
+    if not some.any():
         return wells
     near = np.full(wells.size, SETTINGS.margin + 1.0)
     scene, path = rounds.scene, rounds.path
@@ -95,10 +96,12 @@ def run_ups(rounds: BracketContext, brackets: Brackets, needed: np.ndarray) -> n
     )
     states = states_at(scene, path, starts.time)
     cell, direction = brackets.cell, path.direction[path.piece_of(starts.time)]
-    share = slow_share(scene, path, starts.time, states, np.full(cell.size, 2.0))
+    power = rounds.ground.power(cell, direction)
+    power = np.where(wells > SETTINGS.long_memory, 2.0, power)
+    share = slow_share(scene, path, starts.time, states, power)
     share *= rounds.ground.memory_share(cell, direction)
     share = np.where(starts.from_slide | starts.lagging, 1.0, share)
     # Others keep theirs: what they find must not depend on their neighbours.
     return np.where(
-        long, np.ceil(SETTINGS.margin + share * (wells - SETTINGS.margin)), wells
+        some, np.ceil(SETTINGS.margin + share * (wells - SETTINGS.margin)), wells
     )

@@ -11,7 +11,8 @@ class Settings(NamedTuple):
     rounds: int = 3
     earlier: int = 4  # times as far back in each round
     margin: int = 3  # one to fall behind, one to catch up, one to forget
-    # Windows that set off further back look at how fast slides are.
+    # Windows that set off further back look at how fast slides are, and which way they go.
+    some_memory: float = 15.0
     long_memory: float = 100.0
     fast: float = 0.35  # steps a well where tips do not rest, of those elsewhere
     longest_job: float = 1.5  # times what its longest job takes: the shortest batch
