@@ -10,7 +10,7 @@ from .._compile import Program, in_chunks
 from ..model import AbstractPotential, TabulatedScene
 from ..tables import bent_part
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
-from .enclosure import CellBounds, Requirements, wells_of
+from .enclosure import CellBounds, Requirements, forgotten_after, resting_after, wells_of
 from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps
 from .equation import StepPlan as StepPlan
 from .lanes import LaneScene
@@ -116,11 +116,12 @@ def _needs(
     angular scene of the benchmarks, gamma = 1/2, memory was a third of it at eps = 1e-3,
     and 119 of 354 brackets stayed open.)
     """
-    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
-    memory = np.maximum(ground.memory_plus, ground.memory_minus) / ground.eps
-    forgets = memory * np.log((lag + 2) / (0.1 * accuracy))
-    slow = np.ceil(ENCLOSURE_SETTINGS.margin + forgets)
-    run_up = np.minimum(slow, _resting(ground, lag, forgets))
+    lags = np.stack([ground.lag_plus, ground.lag_minus]) / ground.eps
+    memories = np.stack([ground.memory_plus, ground.memory_minus]) / ground.eps
+    lag, memory = np.max(lags, axis=0), np.max(memories, axis=0)
+    shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
+    forgets, slow = forgotten_after(lag, memory, accuracy)
+    run_up = np.minimum(slow, resting_after(lag, shift, forgets))
     offset = _lattice_offsets(ground, path)
     return Requirements(
         run_up=run_up,
@@ -155,20 +156,6 @@ def _shares(
     margin = ENCLOSURE_SETTINGS.margin / run_up[some, None]
     share[some] = margin + (1 - margin) * share[some]
     return share
-
-
-def _resting(ground: CellBounds, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
-    """Wells back to a start between slips, from which a bracket closes at rest.
-
-    Windows begin half a period behind slips. Where tips lag by less than that, both lanes
-    of a bracket that sets off a little after a slip come to rest in one well; `forgets`
-    wells more pass where the rest of half a period is too short. Infinite where tips lag
-    further: their lanes have to catch up with each other.
-    """
-    shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
-    rest = 0.5 - SETTINGS.after_slip - lag - shift
-    wells = rest + np.ceil(np.maximum(SETTINGS.slips_forget * forgets - rest, 0.0))
-    return np.where(rest > SETTINGS.short_rest, wells, np.inf)
 
 
 def _lattice_offsets(ground: CellBounds, path: Path) -> np.ndarray:

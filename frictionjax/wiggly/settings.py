@@ -23,12 +23,6 @@ class Settings(NamedTuple):
     bristles: int = 4096  # of an array at once: 31 times take 0.2 GB
     slower: float = 0.1  # of the largest speed: there lags are compared with those at it
     square: float = 1.8  # powers of the speed that count as its square
-    after_slip: float = 0.05  # at which lanes may set off
-    short_rest: float = 0.2  # the shortest that is worth it
-    # Lanes set off in the middle of a slip or two, and forget less in their first wells.
-    # (1: brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the
-    # first.)
-    slips_forget: float = 1.5
     # Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2,
     # 16 eps to 1e-4, seconds at 1, 1.5, 2, 3 and 5: vertical 0.74, 0.57, 0.62, 0.52, 0.45,
     # angular 2.1, 2.0, 1.9, 1.4, 1.6.)

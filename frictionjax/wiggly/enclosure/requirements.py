@@ -30,6 +30,28 @@ class Requirements(NamedTuple):
     restarts: np.ndarray
 
 
+def forgotten_after(lag, memory, accuracy: float):
+    """Wells in which a bracket closes that is as wide as the lag, and those of a run-up.
+
+    `lag`, `memory`: wells, of one shape.
+    """
+    forgets = memory * np.log((lag + 2) / (SETTINGS.forgotten * accuracy))
+    return forgets, np.ceil(SETTINGS.margin + forgets)
+
+
+def resting_after(lag, shift, forgets):
+    """Wells back to a start between slips, from which a bracket closes at rest.
+
+    Windows begin half a period behind slips. Where tips lag by less than that, both lanes
+    of a bracket that sets off a little after a slip come to rest in one well; `forgets`
+    wells more pass where the rest of half a period is too short. Infinite where tips lag
+    further: their lanes have to catch up with each other. `shift`: of folds, wells.
+    """
+    rest = 0.5 - SETTINGS.after_slip - lag - shift
+    wells = rest + np.ceil(np.maximum(SETTINGS.slips_forget * forgets - rest, 0.0))
+    return np.where(rest > SETTINGS.short_rest, wells, np.inf)
+
+
 def wells_of(
     path: Path, eps: np.ndarray, needs: Requirements
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -135,7 +135,7 @@ def starts_of(
     share = np.ones(begin.size)
     power = ground.power(cell[slide], direction[slide])
     share[slide] = slow_share(scene, path, time[slide], level[slide], power)
-    share = np.where(lag > SETTINGS.long_lag * eps, share, 1.0)
+    share = lag_share(ground, cell, share)
     slides, which = last_begun(ground.fast_slides, cell, begin)
     lagging = _still_lagging(path, slides, which, time)
     share = np.where(lagging, 1.0, share)
@@ -239,6 +239,12 @@ def slow_share(
     # Nothing slides at 0.
     share = np.maximum(*np.split(speeds, 2)) / (path.speed or 1.0)
     return np.minimum(SETTINGS.faster * share**power, 1.0)
+
+
+def lag_share(ground: CellBounds, cell: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Share of the largest lag that brackets count with, where slides have that share."""
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
+    return np.where(lag[cell] > SETTINGS.long_lag, share, 1.0)
 
 
 def _bracket(ground: CellBounds, cell, direction, level, known, share):
