@@ -116,11 +116,9 @@ def _needs(
     angular scene of the benchmarks, gamma = 1/2, memory was a third of it at eps = 1e-3,
     and 119 of 354 brackets stayed open.)
     """
-    lags = np.stack([ground.lag_plus, ground.lag_minus]) / ground.eps
-    memories = np.stack([ground.memory_plus, ground.memory_minus]) / ground.eps
-    lag, memory = np.max(lags, axis=0), np.max(memories, axis=0)
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
-    forgets, slow = forgotten_after(lag, memory, accuracy)
+    forgets, slow = forgotten_after(lag, ground.longest_memory, accuracy)
     run_up = np.minimum(slow, resting_after(lag, shift, forgets))
     offset = _lattice_offsets(ground, path)
     return Requirements(
@@ -148,7 +146,8 @@ def _shares(
         return share
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     slow = slow_ends(scene, path, ground.eps[some], lag[some])
-    own = ground.memory_share(some[:, None], path.direction[None, :])
+    own = ground.memory(some[:, None], path.direction[None, :])
+    own = own / np.maximum(ground.longest_memory[some, None], 1e-300)
     before = np.zeros(some.size)
     for piece in np.flatnonzero(path.direction):
         share[some, piece] = np.maximum(own[:, piece], before)

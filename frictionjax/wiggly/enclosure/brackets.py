@@ -197,8 +197,9 @@ def _forgetful(
     speed = np.maximum(np.abs(segments.slope0), np.abs(segments.slope1))
     start = np.abs(segments.slope0[first])
     slower = np.maximum.reduceat(speed, first) <= start
-    lag = np.maximum(ground.lag_plus, ground.lag_minus)[jobs.cell] / ground.eps[jobs.cell]
-    memory = 2 * SETTINGS.faster * lag * (start / (path.speed or 1.0)) ** 2
+    direction = path.direction[piece]
+    share = (start / (path.speed or 1.0)) ** ground.power(jobs.cell, direction)
+    memory = SETTINGS.faster * share * ground.memory(jobs.cell, direction)
     return has[jobs.cell] & inside & slower & (memory <= 0.5 * SETTINGS.brief)
 
 

@@ -113,7 +113,7 @@ def _slow_run_ups(
         return np.where(direction > 0, plus[cell], minus[cell]) / ground.eps[cell]
 
     lag = lag_share(ground, cell, share) * own(ground.lag_plus, ground.lag_minus)
-    memory = share * own(ground.memory_plus, ground.memory_minus)
+    memory = share * ground.memory(cell, direction)
     forgets, slow = forgotten_after(lag, memory, accuracy)
     shift = own(ground.shift_plus, ground.shift_minus)
     return np.minimum(slow, resting_after(lag, shift, forgets))

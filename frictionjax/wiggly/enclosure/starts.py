@@ -45,11 +45,15 @@ class CellBounds(NamedTuple):
         """Of slides of cells in a direction."""
         return np.where(direction > 0, self.power_plus[cell], self.power_minus[cell])
 
-    def memory_share(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
-        """Of slides of cells in a direction: their memory over the longer of both."""
-        both = self.memory_plus[cell], self.memory_minus[cell]
-        own = np.where(direction > 0, *both)
-        return own / np.maximum(np.maximum(*both), 1e-300)
+    def memory(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
+        """Of the fastest slides of cells in a direction, in wells."""
+        own = np.where(direction > 0, self.memory_plus[cell], self.memory_minus[cell])
+        return own / self.eps[cell]
+
+    @property
+    def longest_memory(self) -> np.ndarray:
+        """Of both directions, in wells, (cells,)."""
+        return np.maximum(self.memory_plus, self.memory_minus) / self.eps
 
 
 class Starts(NamedTuple):
