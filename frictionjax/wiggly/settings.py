@@ -34,6 +34,10 @@ class Settings(NamedTuple):
 
     # Ways (`ways.py`).
     long_slide: float = 60.0  # worth a slip map, where windows set off far back
+    # Windows that set off further back go by slip maps. (gamma = 0.6, eps = 1e-5, a sine:
+    # 2.0e6 steps at 50 and 100, 2.6e5 at 25; gamma = 0.65: 3.8e5 at 25, and at 12 4.1e5 in
+    # 1.5 times the time.)
+    far_back: float = 25.0
     # That one lane from z0 goes through in about the time of the slip map of a slide, three
     # times these at least, for a sine. (16 eps to 1e-4, gamma = 1/2, seconds with maps from
     # 1100, 1800, 2500 and 4000 on: 0.35, 0.26, 0.25, 0.39. Whatever the number of slides:

@@ -47,7 +47,7 @@ class BracketPlan(NamedTuple):
 
     `behind`, `ahead` (S,): segment of each stop in either lane, -1 where the second does
     not run. `meet_behind`, `meet_ahead` (W,): segments that end where the brackets begin.
-    `known_start`, `from_slide` (W,): as in `Starts`. `brief` (J,): jobs on a fast slide
+    `known_start`, `from_slide`, `pace` (W,): as in `Starts`. `brief` (J,): jobs on a fast slide
     that go through a few wells; `forgetful` (J,): in a part of a slide where few wells are
     remembered.
     """
@@ -60,6 +60,7 @@ class BracketPlan(NamedTuple):
     meet_ahead: np.ndarray
     known_start: np.ndarray
     from_slide: np.ndarray
+    pace: np.ndarray
     brief: np.ndarray
     forgetful: np.ndarray
 
@@ -177,6 +178,7 @@ def plan_brackets(
         meet_ahead=meet_ahead,
         known_start=starts.known_start,
         from_slide=starts.from_slide,
+        pace=starts.pace,
         brief=brief,
         forgetful=_forgetful(path, ground, jobs, segments),
     )

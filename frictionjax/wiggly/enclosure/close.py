@@ -34,7 +34,8 @@ def close_brackets(
         rounds = rounds._replace(effort=effort)
         speed = rounds.path.speed
         gaps = gaps_of(ends, plan.segments, plan.behind, plan.ahead, speed)
-        meets = gaps_of(ends, plan.segments, plan.meet_behind, plan.meet_ahead, speed)
+        where = plan.segments, plan.meet_behind, plan.meet_ahead, speed, plan.pace
+        meets = gaps_of(ends, *where)
         # Stops that one lane alone has reached count as closed as their bracket's begin.
         alone = plan.ahead < 0
         gaps = np.where(alone, meets[open_brackets.owner], gaps)
@@ -49,7 +50,7 @@ def close_brackets(
         # close by have had steps of their own, which part them further: they go back once,
         # and so do those that set off from a fast slide where their bracket begins.
         far = (wells[open_] > SETTINGS.margin) & ~(plan.from_slide & (back[open_] < 1))
-        shifts = shifts_of(ends, plan.segments, plan.meet_behind, plan.meet_ahead, speed)
+        shifts = shifts_of(ends, *where)
         met = np.maximum(meets, shifts)
         met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
         worst = np.minimum(worst, met)

@@ -169,6 +169,7 @@ def _measuring(
         from_slide=~every,
         lagging=every,
         until=np.full(tip.size, -np.inf),
+        pace=np.full(tip.size, np.inf),
         behind_well=well,
         behind_tip=tip,
         ahead_well=well,

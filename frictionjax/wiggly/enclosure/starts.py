@@ -60,8 +60,8 @@ class Starts(NamedTuple):
     """Where lanes of brackets set off, shape (W,).
 
     `time` in s. `known_start`: from the known z0; `from_slide`: from a fast slide, as
-    closely as its error says, which ends at `until` (s); `lagging`: behind one, with the
-    largest lag there is.
+    closely as its error says, which ends at `until` (s) and has the speed `pace` (m/s)
+    where the bracket begins; `lagging`: behind one, with the largest lag there is.
     `behind_*` and `ahead_*`: well and tip of the two lanes of the bracket.
     """
 
@@ -70,6 +70,7 @@ class Starts(NamedTuple):
     from_slide: np.ndarray
     lagging: np.ndarray
     until: np.ndarray
+    pace: np.ndarray
     behind_well: np.ndarray
     behind_tip: np.ndarray
     ahead_well: np.ndarray
@@ -150,6 +151,7 @@ def starts_of(
         from_slide=np.zeros(begin.size, dtype=bool),
         lagging=lagging,
         until=np.full(begin.size, -np.inf),
+        pace=np.full(begin.size, np.inf),
         behind_well=behind,
         behind_tip=tip,
         ahead_well=ahead,
@@ -163,6 +165,7 @@ def starts_of(
     near, inside = _on_slides(
         slides, which[after_slide], begin[after_slide], back[after_slide], measured
     )
+    near = near._replace(pace=np.where(inside, near.pace * eps[after_slide], np.inf))
     late, early = np.split(way_at(scene, path, np.append(begin[after_slide], near.time)), 2)
     nearer = known[after_slide] | inside | (late - early <= reach[after_slide])
     return _replaced(plain, after_slide[nearer], rows_of(near, nearer))
@@ -196,8 +199,8 @@ def _replaced(starts: Starts, which: np.ndarray, others: Starts) -> Starts:
 
 
 def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured: bool):
-    """Starts at lattice points of fast slides, their errors behind and ahead; and which
-    hold `begin`."""
+    """Starts at lattice points of fast slides, their errors behind and ahead, with the
+    pace in wells a second; and which hold `begin`."""
     curves = ManyTransitTimes([slide.curve for slide in slides])
     rows = [(r.sign, r.well, r.tip, r.curve.edges[0], r.end) for r in slides]
     sign, well, tip, first, end = np.array(rows)[which].T
@@ -205,6 +208,7 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
         np.floor(curves.number_at(which, np.minimum(begin, end)) + SETTINGS.whole) - back
     )
     number = np.maximum(number, first)
+    period = curves.time_of(which, number + 1) - curves.time_of(which, number)
     error = np.zeros(which.size)
     if measured:
         errors = np.concatenate([slide.error for slide in slides])
@@ -216,6 +220,7 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
         from_slide=~none,
         lagging=none,
         until=end,
+        pace=1 / np.maximum(period, 1e-300),
         behind_well=well,
         behind_tip=tip - error,
         ahead_well=well,
