@@ -144,8 +144,7 @@ def _shares(
     some = np.flatnonzero(run_up > ENCLOSURE_SETTINGS.some_memory)
     if some.size == 0:
         return share
-    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
-    slow = slow_ends(scene, path, ground.eps[some], lag[some])
+    slow = _slow_ends(scene, path, ground, some)
     own = ground.memory(some[:, None], path.direction[None, :])
     own = own / np.maximum(ground.longest_memory[some, None], 1e-300)
     before = np.zeros(some.size)
@@ -155,6 +154,14 @@ def _shares(
     margin = ENCLOSURE_SETTINGS.margin / run_up[some, None]
     share[some] = margin + (1 - margin) * share[some]
     return share
+
+
+def _slow_ends(
+    scene: TabulatedScene, path: Path, ground: CellBounds, some: np.ndarray
+) -> np.ndarray:
+    """Whether pieces should end slow in some cells, (some, pieces)."""
+    of = some[:, None], path.direction[None, :]
+    return slow_ends(scene, path, ground.eps[some], ground.memory(*of), ground.power(*of))
 
 
 def _lattice_offsets(ground: CellBounds, path: Path) -> np.ndarray:
@@ -190,9 +197,8 @@ def _along(
     alone, by_map = way == Way.ONE_LANE, way == Way.SLIP_MAP
     if not np.any(alone | by_map):
         return needs
-    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     late = ends_before_tips_follow(path, ground.eps, follows)
-    restarts = slow_ends(scene, path, ground.eps, lag)
+    restarts = _slow_ends(scene, path, ground, np.arange(ground.eps.size))
     return needs._replace(
         samples=np.where(alone, 0, needs.samples),
         tile=np.where(alone, np.inf, needs.tile),

@@ -104,7 +104,9 @@ def _seen(
     paired, one = np.ones(count, dtype=bool), np.arange(count)
     begins = np.minimum(wanted.begins, wanted.stops)
     brackets = Brackets(wanted.cells, begins, paired, one, wanted.stops)
-    wells, back = run_ups(looks, brackets, needs.run_up), np.ones(count)
+    # They have to close to less than others.
+    wells = np.maximum(run_ups(looks, brackets, needs.run_up), SETTINGS.margin + 1)
+    back = np.ones(count)
     found, open_ = FoundTips._make(np.empty((3, count))), one
     for _ in range(SETTINGS.rounds):
         open_brackets = brackets.chosen(open_)
