@@ -159,9 +159,14 @@ def _shares(
 def _slow_ends(
     scene: TabulatedScene, path: Path, ground: CellBounds, some: np.ndarray
 ) -> np.ndarray:
-    """Whether pieces should end slow in some cells, (some, pieces)."""
-    of = some[:, None], path.direction[None, :]
-    return slow_ends(scene, path, ground.eps[some], ground.memory(*of), ground.power(*of))
+    """Whether pieces should end slow in some cells, (some, pieces).
+
+    Slides remember twice the wells that they lag by, at most.
+    """
+    cell, direction = some[:, None], path.direction[None, :]
+    lag = np.where(direction > 0, ground.lag_plus[cell], ground.lag_minus[cell])
+    eps, power = ground.eps[some], ground.power(cell, direction)
+    return slow_ends(scene, path, eps, 2 * lag / eps[:, None], power)
 
 
 def _lattice_offsets(ground: CellBounds, path: Path) -> np.ndarray:

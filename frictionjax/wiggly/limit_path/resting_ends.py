@@ -17,8 +17,8 @@ def slow_ends(
 ) -> Bool[np.ndarray, "cells pieces"]:
     """Whether each piece should end slow, (cells, pieces); rests of the path do not.
 
-    `eps` in m, shape (cells,). `memory`: wells that the fastest slide remembers in the
-    direction of each piece; slower ones in proportion to a `power` of their speed.
+    `eps` in m, shape (cells,). `memory`: wells that the fastest slide in the direction of
+    each piece remembers, about; slower ones in proportion to a `power` of their speed.
     """
     slides = np.flatnonzero(path.direction)
     slow = np.zeros((eps.size, path.direction.size), dtype=bool)

@@ -71,18 +71,19 @@ class Settings(NamedTuple):
     stretch: float = 1.3
     first_of_two: float = 0.6  # of what is left: there it is cut in two
     recovers: float = 0.7  # power of a panel's share for the next (1: twice as many panels)
-    # As the averaged equation has it: a little more than what the recursion may show.
-    slower: float = 0.15
+    # As the averaged equation has it: a little less than what the recursion may show.
+    slower: float = 0.4
 
     # The recursion on panels (`map.py`).
     newton: int = 6  # sweeps
-    converged: float = 1e-4  # what these leave, by how their corrections shrink
+    converged: float = 1e-4  # what these leave, by how their corrections shrink, at most
+    left_over: float = 0.3  # and of the last coefficients allowed
     # A slide is slow where a transit forgets more than this of a shift: tips nearly rest at
-    # folds, and windows started a few slips earlier do as well. (0.3: at flat folds the
-    # slow ends of slides cost more than the rest, sawtooth, gamma = 3/4, eps = 1e-8: 1.5
-    # times the steps.)
-    slow: float = 0.1
-    on_above: float = 0.2  # at the end of the last panel: the slide may go on
+    # folds, and windows started a few slips earlier do as well. (With 0.2 slow ends cost a
+    # tenth to a third less, and times near slips there are 7e-5 eps off for 1e-5; below
+    # that transits of a sine converge no more.)
+    slow: float = 0.3
+    on_above: float = 0.5  # at the end of the last panel: the slide may go on
     again: float = 0.6  # of a panel that does not hold, and of those behind it
     # Of the accuracy: last coefficients of a panel where slides are surveyed. (Surveys
     # through longer panels are rougher: at gamma = 1/4, eps = 1.3e-4 with 1e-2 made twice,
