@@ -68,13 +68,19 @@ class Settings(NamedTuple):
     by_drag: float = -0.131  # an order of magnitude, downward
     above_tenth: float = 0.505  # more, at drags above 0.1
     above_one: float = 1.466  # more, at drags above 1
-    # Slip maps, in the same cells: steps of a slide over those of one run-up. Both these
-    # and the chain are for a thousand wells. Steps are twice as many as measured on the
-    # vertical scene, half on the angular one. (1 to 100 periods, 3 to 201 slides.)
-    map_steps: float = 4.0 / 3
+    # Smaller drags change nothing. (Without, 2 and 5 times too few steps were foretold at
+    # eps = 1e-8 for gamma = 1 and 2, and 14 times for the sawtooth.)
+    smoothest: float = 2.0
+    # Slip maps: steps of a slide, from the orders of magnitude of its wells and of the
+    # accuracy. 96 cells of four scenes (vertical, angular, sawtooth, quartic, gamma 0.4 to
+    # 0.9, eps 1e-2 to 1e-8, accuracy 1e-3 and 1e-5) lie within a factor of 1.7 of it (rms),
+    # 90% within 2; where slides turn out to be too slow for maps, up to 9 times as many.
+    map_steps: float = 919.0
+    map_orders: float = 1.85
+    map_accuracy: float = 0.247
+    # The chain is for a thousand wells.
     map_chain: float = 4e2  # wells that lanes, one after the other, wait for each other
     map_growth: float = 0.05  # power of thousands of wells that both grow with
-    run_up: float = 2500.0  # of a slip map, at most
     # Drag of tips that are still on their way when a slide is over, and a rest begins.
     behind: float = 0.1
     # What a step costs more: for each harmonic after the first (1.3 at 4, 2.0 at 16, 3.7 at
