@@ -88,7 +88,8 @@ def _lags(scene: TabulatedScene, path: Path, eps, gamma, folds: WiggleFolds):
     drags = np.concatenate([drag, SETTINGS.slower * drag])
     both = steady_lags(scene.potential, np.tile(eps, 2), twice, drags)
     lags, slower = (
-        SteadyLags(*part) for part in zip(*(np.split(b, 2, axis=1) for b in both), strict=True)
+        SteadyLags(*part)
+        for part in zip(*(np.split(b, 2, axis=1) for b in both), strict=True)
     )
     powers = np.log(lags.force / slower.force) / -np.log(SETTINGS.slower)
     return lags, np.where(powers > SETTINGS.square, 2.0, np.maximum(powers, 1.0))

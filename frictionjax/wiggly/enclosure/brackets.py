@@ -47,9 +47,9 @@ class BracketPlan(NamedTuple):
 
     `behind`, `ahead` (S,): segment of each stop in either lane, -1 where the second does
     not run. `meet_behind`, `meet_ahead` (W,): segments that end where the brackets begin.
-    `known_start`, `from_slide`, `pace` (W,): as in `Starts`. `brief` (J,): jobs on a fast slide
-    that go through a few wells; `forgetful` (J,): in a part of a slide where few wells are
-    remembered.
+    `known_start`, `from_slide`, `pace` (W,): as in `Starts`. `brief` (J,): jobs on a fast
+    slide that go through a few wells; `forgetful` (J,): in a part of a slide where few
+    wells are remembered.
     """
 
     jobs: Lanes
