@@ -15,8 +15,9 @@ class Requirements(NamedTuple):
     to where the slide before is forgotten. `tile`: between two cuts of the chain, infinite
     where it is not cut. `share` (cells, pieces): of these three that a piece needs, whose
     slide may remember less than others. `samples`: periods measured in a slide, 0 for all.
-    `lattice_offset` (cells, pieces): from the start of a slide to its first lattice point, which is half a
-    period from the slips of a slow slide: what is measured should not begin in a slip.
+    `lattice_offset` (cells, pieces): from the start of a slide to its first lattice point,
+    which is half a period from the slips of a slow slide: what is measured should not begin
+    in a slip.
     `restarts` (cells, pieces): where the chain is cut however long its tiles are, at a
     piece's end.
     """
