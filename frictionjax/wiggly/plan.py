@@ -10,14 +10,14 @@ from .._compile import Program, in_chunks
 from ..model import AbstractPotential, TabulatedScene
 from ..tables import bent_part
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
-from .enclosure import CellBounds, Requirements, wells_of
+from .enclosure import CellBounds, Requirements, forgotten_after, resting_after, wells_of
 from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps
 from .equation import StepPlan as StepPlan
 from .lanes import LaneScene
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, slow_ends
 from .settings import SETTINGS
-from .slip_map import lag_forces, none_known
+from .slip_map import SteadyLags, none_known, steady_lags
 from .ways import Way, by_brackets, ends_before_tips_follow, ways_of
 
 
@@ -55,14 +55,17 @@ def ground_of(
     """What brackets need to know of each cell; `start`: well and tip of its z0."""
     lags, powers = _lags(scene, path, eps, gamma, folds)
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
+    memories = lags.power * lags.force / path.stiffness
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
     return CellBounds(
         eps,
         folds,
-        lag_plus=lags[0] / path.stiffness,
-        lag_minus=lags[1] / path.stiffness,
+        lag_plus=lags.force[0] / path.stiffness,
+        lag_minus=lags.force[1] / path.stiffness,
         power_plus=powers[0],
         power_minus=powers[1],
+        memory_plus=memories[0],
+        memory_minus=memories[1],
         shift_plus=shifts[0],
         shift_minus=shifts[1],
         start_well=start[0],
@@ -74,7 +77,7 @@ def ground_of(
 
 
 def _lags(scene: TabulatedScene, path: Path, eps, gamma, folds: WiggleFolds):
-    """Lags of the fastest slide in N, to the right and left, and powers of the speed.
+    """Lags of the fastest slide, and powers of the speed that bound those of slower ones.
 
     2 where folds have a curvature and tips nearly rest, p/(p - 1) where W' falls off like
     the power p, 1 where flanks are straight or lags larger than the well's forces.
@@ -83,9 +86,12 @@ def _lags(scene: TabulatedScene, path: Path, eps, gamma, folds: WiggleFolds):
     # Both speeds at once: the way through a well, which takes longest, is found once.
     twice = jax.tree_util.tree_map(lambda each: np.tile(each, 2), folds)
     drags = np.concatenate([drag, SETTINGS.slower * drag])
-    both = np.stack(lag_forces(scene.potential, np.tile(eps, 2), twice, drags))
-    lags, slower = np.split(both, 2, axis=1)
-    powers = np.log(lags / slower) / -np.log(SETTINGS.slower)
+    both = steady_lags(scene.potential, np.tile(eps, 2), twice, drags)
+    lags, slower = (
+        SteadyLags(*part)
+        for part in zip(*(np.split(b, 2, axis=1) for b in both), strict=True)
+    )
+    powers = np.log(lags.force / slower.force) / -np.log(SETTINGS.slower)
     return lags, np.where(powers > SETTINGS.square, 2.0, np.maximum(powers, 1.0))
 
 
@@ -102,40 +108,66 @@ def lane_scene(scene: TabulatedScene) -> LaneScene:
     return LaneScene(scene.lane_potential, scene.support, bent_part(scene.load), *rho)
 
 
-def _needs(ground: CellBounds, path: Path, accuracy: float) -> Requirements:
+def _needs(
+    scene: TabulatedScene, path: Path, ground: CellBounds, accuracy: float
+) -> Requirements:
     """How far back brackets start: until one as wide as the lag has closed.
 
-    Slides remember twice the wells that they lag by. (The closed form of step control is
-    that for one fold far below the others: on the angular scene of the benchmarks, gamma =
-    1/2, it was a third of it at eps = 1e-3, and 119 of 354 brackets stayed open.)
+    (The closed form of step control is that for one fold far below the others: on the
+    angular scene of the benchmarks, gamma = 1/2, memory was a third of it at eps = 1e-3,
+    and 119 of 354 brackets stayed open.)
     """
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
-    forgets = 2 * lag * np.log((lag + 2) / (0.1 * accuracy))
-    slow = np.ceil(ENCLOSURE_SETTINGS.margin + forgets)
-    run_up = np.minimum(slow, _resting(ground, lag, forgets))
+    shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
+    forgets, slow = forgotten_after(lag, ground.longest_memory, accuracy)
+    run_up = np.minimum(slow, resting_after(lag, shift, forgets))
     offset = _lattice_offsets(ground, path)
     return Requirements(
         run_up=run_up,
         transient=np.ceil(lag + run_up + 2),
         tile=SETTINGS.tile * slow,
+        share=_shares(scene, path, ground, run_up),
         samples=np.zeros(lag.size),
         lattice_offset=offset,
         restarts=np.zeros(offset.shape, dtype=bool),
     )
 
 
-def _resting(ground: CellBounds, lag: np.ndarray, forgets: np.ndarray) -> np.ndarray:
-    """Wells back to a start between slips, from which a bracket closes at rest.
+def _shares(
+    scene: TabulatedScene, path: Path, ground: CellBounds, run_up: np.ndarray
+) -> np.ndarray:
+    """Of what the slides need that remember longest, for each piece, (cells, pieces).
 
-    Windows begin half a period behind slips. Where tips lag by less than that, both lanes
-    of a bracket that sets off a little after a slip come to rest in one well; `forgets`
-    wells more pass where the rest of half a period is too short. Infinite where tips lag
-    further: their lanes have to catch up with each other.
+    Slides one way may remember less than those the other way, unless the one before ends
+    so fast that it is remembered. Where little is remembered all pieces are alike.
     """
-    shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
-    rest = 0.5 - SETTINGS.after_slip - lag - shift
-    wells = rest + np.ceil(np.maximum(SETTINGS.slips_forget * forgets - rest, 0.0))
-    return np.where(rest > SETTINGS.short_rest, wells, np.inf)
+    share = np.ones((run_up.size, path.direction.size))
+    some = np.flatnonzero(run_up > ENCLOSURE_SETTINGS.some_memory)
+    if some.size == 0:
+        return share
+    slow = _slow_ends(scene, path, ground, some)
+    own = ground.memory(some[:, None], path.direction[None, :])
+    own = own / np.maximum(ground.longest_memory[some, None], 1e-300)
+    before = np.zeros(some.size)
+    for piece in np.flatnonzero(path.direction):
+        share[some, piece] = np.maximum(own[:, piece], before)
+        before = np.where(slow[:, piece], 0.0, own[:, piece])
+    margin = ENCLOSURE_SETTINGS.margin / run_up[some, None]
+    share[some] = margin + (1 - margin) * share[some]
+    return share
+
+
+def _slow_ends(
+    scene: TabulatedScene, path: Path, ground: CellBounds, some: np.ndarray
+) -> np.ndarray:
+    """Whether pieces should end slow in some cells, (some, pieces).
+
+    Slides remember twice the wells that they lag by, at most.
+    """
+    cell, direction = some[:, None], path.direction[None, :]
+    lag = np.where(direction > 0, ground.lag_plus[cell], ground.lag_minus[cell])
+    eps, power = ground.eps[some], ground.power(cell, direction)
+    return slow_ends(scene, path, eps, 2 * lag / eps[:, None], power)
 
 
 def _lattice_offsets(ground: CellBounds, path: Path) -> np.ndarray:
@@ -171,9 +203,8 @@ def _along(
     alone, by_map = way == Way.ONE_LANE, way == Way.SLIP_MAP
     if not np.any(alone | by_map):
         return needs
-    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     late = ends_before_tips_follow(path, ground.eps, follows)
-    restarts = slow_ends(scene, path, ground.eps, lag)
+    restarts = _slow_ends(scene, path, ground, np.arange(ground.eps.size))
     return needs._replace(
         samples=np.where(alone, 0, needs.samples),
         tile=np.where(alone, np.inf, needs.tile),
@@ -233,7 +264,7 @@ def planned(
     """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
     control, start = _controls(scene, path, eps, gamma, accuracy)
     ground = ground_of(scene, path, eps, gamma, control.folds, start)
-    needs = _needs(ground, path, accuracy)
+    needs = _needs(scene, path, ground, accuracy)
     brackets = by_brackets(path, eps, needs, times, method)
     needs = _with_brackets(path, eps, needs, brackets)
     follows = viscosity_of(eps, gamma) / path.stiffness

@@ -57,11 +57,14 @@ def workload(
     steps = _steps_a_well(control, lag, _drag_of(path, eps, gamma))
     total = steps * cost_of(path, eps, needs, times)
     chain = steps * longest_lane(path, eps, needs)
+    wells = path.travel[-1] / eps / np.maximum(np.count_nonzero(path.direction), 1)
+    orders = np.log10(np.maximum(wells, SETTINGS.long_slide))
     growth = (path.travel[-1] / eps / 1e3) ** SETTINGS.map_growth
     slides = slides_of(path, eps) & by_map[:, None]
     maps, rounds = np.count_nonzero(slides, axis=1), _longest_chains(slides, needs.restarts)
-    run_ups = maps * np.minimum(needs.run_up, SETTINGS.run_up)
-    total = np.where(by_map, SETTINGS.map_steps * run_ups * steps * growth, total)
+    each = SETTINGS.map_steps * orders**SETTINGS.map_orders
+    each *= accuracy**-SETTINGS.map_accuracy
+    total = np.where(by_map, maps * each, total)
     chain = np.where(by_map, SETTINGS.map_chain * rounds * steps * growth, chain)
     jobs, segments = _rows(path, eps, needs, times)
     return Workload(total, chain, jobs, segments, maps, rounds, _weight_of(tables))
@@ -89,7 +92,7 @@ def _drag_of(path: Path, eps: np.ndarray, gamma: np.ndarray) -> np.ndarray:
 
 
 def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
-    smooth = -np.log10(drag)
+    smooth = np.minimum(-np.log10(drag), SETTINGS.smoothest)
     return np.exp(
         SETTINGS.constant
         - SETTINGS.by_tolerance * np.log10(control.tolerance)

@@ -23,12 +23,6 @@ class Settings(NamedTuple):
     bristles: int = 4096  # of an array at once: 31 times take 0.2 GB
     slower: float = 0.1  # of the largest speed: there lags are compared with those at it
     square: float = 1.8  # powers of the speed that count as its square
-    after_slip: float = 0.05  # at which lanes may set off
-    short_rest: float = 0.2  # the shortest that is worth it
-    # Lanes set off in the middle of a slip or two, and forget less in their first wells.
-    # (1: brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the
-    # first.)
-    slips_forget: float = 1.5
     # Of the memory: shorter tiles repeat more, longer ones leave lanes idle. (gamma = 1/2,
     # 16 eps to 1e-4, seconds at 1, 1.5, 2, 3 and 5: vertical 0.74, 0.57, 0.62, 0.52, 0.45,
     # angular 2.1, 2.0, 1.9, 1.4, 1.6.)
@@ -40,6 +34,10 @@ class Settings(NamedTuple):
 
     # Ways (`ways.py`).
     long_slide: float = 60.0  # worth a slip map, where windows set off far back
+    # Windows that set off further back go by slip maps. (gamma = 0.6, eps = 1e-5, a sine:
+    # 2.0e6 steps at 50 and 100, 2.6e5 at 25; gamma = 0.65: 3.8e5 at 25, and at 12 4.1e5 in
+    # 1.5 times the time.)
+    far_back: float = 25.0
     # That one lane from z0 goes through in about the time of the slip map of a slide, three
     # times these at least, for a sine. (16 eps to 1e-4, gamma = 1/2, seconds with maps from
     # 1100, 1800, 2500 and 4000 on: 0.35, 0.26, 0.25, 0.39. Whatever the number of slides:
@@ -70,13 +68,19 @@ class Settings(NamedTuple):
     by_drag: float = -0.131  # an order of magnitude, downward
     above_tenth: float = 0.505  # more, at drags above 0.1
     above_one: float = 1.466  # more, at drags above 1
-    # Slip maps, in the same cells: steps of a slide over those of one run-up. Both these
-    # and the chain are for a thousand wells. Steps are twice as many as measured on the
-    # vertical scene, half on the angular one. (1 to 100 periods, 3 to 201 slides.)
-    map_steps: float = 4.0 / 3
+    # Smaller drags change nothing. (Without, 2 and 5 times too few steps were foretold at
+    # eps = 1e-8 for gamma = 1 and 2, and 14 times for the sawtooth.)
+    smoothest: float = 2.0
+    # Slip maps: steps of a slide, from the orders of magnitude of its wells and of the
+    # accuracy. 96 cells of four scenes (vertical, angular, sawtooth, quartic, gamma 0.4 to
+    # 0.9, eps 1e-2 to 1e-8, accuracy 1e-3 and 1e-5) lie within a factor of 1.7 of it (rms),
+    # 90% within 2; where slides turn out to be too slow for maps, up to 9 times as many.
+    map_steps: float = 919.0
+    map_orders: float = 1.85
+    map_accuracy: float = 0.247
+    # The chain is for a thousand wells.
     map_chain: float = 4e2  # wells that lanes, one after the other, wait for each other
     map_growth: float = 0.05  # power of thousands of wells that both grow with
-    run_up: float = 2500.0  # of a slip map, at most
     # Drag of tips that are still on their way when a slide is over, and a rest begins.
     behind: float = 0.1
     # What a step costs more: for each harmonic after the first (1.3 at 4, 2.0 at 16, 3.7 at

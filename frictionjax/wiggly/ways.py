@@ -77,7 +77,7 @@ def _costs_less_sampled(path: Path, eps, needs: Requirements, times: int) -> np.
 
 def _remembers_long(needs: Requirements) -> np.ndarray:
     """Whether brackets would set off from many slips back."""
-    return needs.run_up > ENCLOSURE_SETTINGS.long_memory
+    return needs.run_up > SETTINGS.far_back
 
 
 def _has_mappable_slides(path: Path, eps: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
+from flat_folds import SCENES
 
 import frictionjax as fx
 from frictionjax._checks.grids import cells_of
@@ -64,6 +65,15 @@ def test_the_work_is_foreseen(eps, gamma, accuracy, method):
     data = fx.sweep(scene_of(), *cell, TIMES, accuracy, method)
     ratio = float(data.steps.squeeze()) / float(work.steps[0])
     assert 0.5 < ratio < 2, ratio  # 0.57 to 1.4
+
+
+@pytest.mark.parametrize(("gamma", "eps"), [(0.5, 1e-4), (1.0, 1e-6), (2.0, 1e-7)])
+def test_the_work_on_straight_flanks_is_foreseen(gamma, eps):
+    """Eleven times too much and ten times too little was said."""
+    cell = np.array([eps]), np.array([gamma])
+    work = workload(SCENES["sawtooth"], *cell, TIMES.size, 1e-3, "auto")
+    data = fx.sweep(SCENES["sawtooth"], *cell, TIMES)
+    assert 0.5 < data.steps.item() / float(work.steps[0]) < 2
 
 
 _STEPPED = fx.loads.PiecewiseLinear(

@@ -2,14 +2,15 @@
 
 import numpy as np
 import pytest
-from flat_folds import SCENES
+from flat_folds import SCENES, VERTICAL, scene_of
 from paths import path_of
 
+import frictionjax as fx
 from frictionjax._checks import viscosity_of
 from frictionjax.model import tabulated_scene
 from frictionjax.wiggly.enclosure import SETTINGS
 from frictionjax.wiggly.plan import planned
-from frictionjax.wiggly.slip_map import lag_forces
+from frictionjax.wiggly.slip_map import steady_lags
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -21,9 +22,37 @@ def test_lags_of_slower_slides_are_bounded(name):
     plan = planned(scene, path, eps, gamma, 3, 1e-3, "auto")
     ground, drag = plan.ground, path.speed * viscosity_of(eps, gamma)
     for share in (0.5, 0.2, 0.1, 0.05):
-        slower = lag_forces(scene.potential, eps, plan.control.folds, share * drag)
-        for side, direction in zip(slower, (1, -1), strict=True):
+        slower = steady_lags(scene.potential, eps, plan.control.folds, share * drag)
+        for side, direction in zip(slower.force, (1, -1), strict=True):
             power = ground.power(np.arange(3), np.full(3, direction))
             fastest = ground.lag_plus if direction > 0 else ground.lag_minus
             bound = SETTINGS.faster * share**power * fastest
             assert np.all(side / path.stiffness <= bound), (share, direction)
+
+
+def test_memory_is_lag_times_its_power_of_the_speed():
+    """Twice the lag at a fold with a curvature, once where flanks are straight."""
+    for name, times in (("sawtooth", 1.02), ("quartic", 4 / 3)):
+        eps, gamma = np.array([1e-6]), np.array([0.75])
+        scene, path = tabulated_scene(SCENES[name], eps), path_of(SCENES[name])
+        ground = planned(scene, path, eps, gamma, 3, 1e-3, "auto").ground
+        assert ground.memory_plus / ground.lag_plus == pytest.approx(times, rel=0.02)
+    sine = scene_of(fx.profiles.Sine(0.1), VERTICAL)
+    scene, path = tabulated_scene(sine, eps), path_of(sine)
+    ground = planned(scene, path, eps, gamma, 3, 1e-3, "auto").ground
+    assert ground.memory_minus / ground.lag_minus == pytest.approx(2.0, rel=0.01)
+
+
+def test_pieces_need_what_their_direction_does():
+    """Sawtooth: a hundred times less to the left, and as much where lags go on."""
+    eps, gamma = np.array([1e-8]), np.array([0.75])
+    scene, path = tabulated_scene(SCENES["sawtooth"], eps), path_of(SCENES["sawtooth"])
+    needs = planned(scene, path, eps, gamma, 3, 1e-3, "auto").needs
+    assert needs.share[0, 0] == needs.share[0, 2] == 1.0
+    assert needs.share[0, 1] < 0.02
+    saw = SCENES["sawtooth"]
+    triangle = fx.loads.Triangle(1.0, 3.0)  # turns at full speed
+    abrupt = fx.Scene(saw.profile, saw.bristle, saw.support, triangle, 3.0)
+    scene, path = tabulated_scene(abrupt, eps), path_of(abrupt)
+    needs = planned(scene, path, eps, gamma, 3, 1e-3, "auto").needs
+    assert np.all(needs.share == 1.0)

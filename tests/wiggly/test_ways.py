@@ -24,6 +24,7 @@ def needs_of(path, run_up):
         run_up=run_up * one,
         transient=(run_up + 3) * one,
         tile=3 * run_up * one,
+        share=np.ones(pieces),
         samples=0 * one,
         lattice_offset=np.zeros(pieces),
         restarts=np.zeros(pieces, dtype=bool),

@@ -12,7 +12,9 @@ from .marching import Report as Report
 from .marching import no_effort as no_effort
 from .requirements import Requirements as Requirements
 from .requirements import cost_of as cost_of
+from .requirements import forgotten_after as forgotten_after
 from .requirements import longest_lane as longest_lane
+from .requirements import resting_after as resting_after
 from .requirements import wells_a_leg as wells_a_leg
 from .requirements import wells_of as wells_of
 from .settings import SETTINGS as SETTINGS

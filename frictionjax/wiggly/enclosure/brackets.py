@@ -47,9 +47,9 @@ class BracketPlan(NamedTuple):
 
     `behind`, `ahead` (S,): segment of each stop in either lane, -1 where the second does
     not run. `meet_behind`, `meet_ahead` (W,): segments that end where the brackets begin.
-    `known_start`, `from_slide` (W,): as in `Starts`. `brief` (J,): jobs on a fast slide
-    that go through a few wells; `forgetful` (J,): in a part of a slide where few wells are
-    remembered.
+    `known_start`, `from_slide`, `pace` (W,): as in `Starts`. `brief` (J,): jobs on a fast
+    slide that go through a few wells; `forgetful` (J,): in a part of a slide where few
+    wells are remembered.
     """
 
     jobs: Lanes
@@ -60,6 +60,7 @@ class BracketPlan(NamedTuple):
     meet_ahead: np.ndarray
     known_start: np.ndarray
     from_slide: np.ndarray
+    pace: np.ndarray
     brief: np.ndarray
     forgetful: np.ndarray
 
@@ -177,6 +178,7 @@ def plan_brackets(
         meet_ahead=meet_ahead,
         known_start=starts.known_start,
         from_slide=starts.from_slide,
+        pace=starts.pace,
         brief=brief,
         forgetful=_forgetful(path, ground, jobs, segments),
     )
@@ -197,8 +199,9 @@ def _forgetful(
     speed = np.maximum(np.abs(segments.slope0), np.abs(segments.slope1))
     start = np.abs(segments.slope0[first])
     slower = np.maximum.reduceat(speed, first) <= start
-    lag = np.maximum(ground.lag_plus, ground.lag_minus)[jobs.cell] / ground.eps[jobs.cell]
-    memory = 2 * SETTINGS.faster * lag * (start / (path.speed or 1.0)) ** 2
+    direction = path.direction[piece]
+    share = (start / (path.speed or 1.0)) ** ground.power(jobs.cell, direction)
+    memory = SETTINGS.faster * share * ground.memory(jobs.cell, direction)
     return has[jobs.cell] & inside & slower & (memory <= 0.5 * SETTINGS.brief)
 
 

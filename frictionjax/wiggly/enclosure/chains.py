@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .bracket_rows import BracketRows
-from .requirements import wells_a_leg
+from .requirements import tiles_at, wells_a_leg
 from .sampled_parts import CellSlides, Parts, uneven_pieces
 from .segment_ends import Cut, follow_path, stretches_of
 from .settings import SETTINGS
@@ -57,10 +57,11 @@ def chains_of(
     chain = [np.zeros(0, dtype=int)] * eps.size
     for k, (cell, (opening, stops)) in enumerate(zip(chained, cuts, strict=True)):
         stretch = stretches_of(opening, stops)
-        since = (ways[2 * k + 1] - ways[2 * k][stretch]) / eps[cell]
-        tile = np.floor(since / needs.tile[cell] - 1e-9) + _on_slides(
-            fast_slides[cell], stops
+        opened, passed = (
+            tiles_at(path, needs, at, cell) / eps[cell] for at in ways[2 * k : 2 * k + 2]
         )
+        tile = np.floor(passed - opened[stretch] - 1e-9)
+        tile += _on_slides(fast_slides[cell], stops)
         tile += np.searchsorted(path.edges[1:][needs.restarts[cell]], stops)
         begins = stops > opening[stretch]
         stops, stretch, tile = stops[begins], stretch[begins], tile[begins]

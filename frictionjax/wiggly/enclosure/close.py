@@ -9,9 +9,9 @@ from .brackets import Brackets
 from .closeness import gaps_of, shifts_of
 from .layout import Layout
 from .marching import BracketContext
-from .requirements import Requirements
+from .requirements import Requirements, forgotten_after, resting_after
 from .settings import SETTINGS
-from .starts import slow_share, starts_of
+from .starts import CellBounds, lag_share, slow_share, starts_of
 
 
 def close_brackets(
@@ -34,7 +34,8 @@ def close_brackets(
         rounds = rounds._replace(effort=effort)
         speed = rounds.path.speed
         gaps = gaps_of(ends, plan.segments, plan.behind, plan.ahead, speed)
-        meets = gaps_of(ends, plan.segments, plan.meet_behind, plan.meet_ahead, speed)
+        where = plan.segments, plan.meet_behind, plan.meet_ahead, speed, plan.pace
+        meets = gaps_of(ends, *where)
         # Stops that one lane alone has reached count as closed as their bracket's begin.
         alone = plan.ahead < 0
         gaps = np.where(alone, meets[open_brackets.owner], gaps)
@@ -49,7 +50,7 @@ def close_brackets(
         # close by have had steps of their own, which part them further: they go back once,
         # and so do those that set off from a fast slide where their bracket begins.
         far = (wells[open_] > SETTINGS.margin) & ~(plan.from_slide & (back[open_] < 1))
-        shifts = shifts_of(ends, plan.segments, plan.meet_behind, plan.meet_ahead, speed)
+        shifts = shifts_of(ends, *where)
         met = np.maximum(meets, shifts)
         met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
         worst = np.minimum(worst, met)
@@ -72,14 +73,14 @@ def close_brackets(
 def run_ups(rounds: BracketContext, brackets: Brackets, needed: np.ndarray) -> np.ndarray:
     """Wells that each bracket starts earlier: fewer where its slide is slow, (W,).
 
-    As with the square of the speed: where folds are flat slides remember longer, and their
-    brackets set off again if need be. (By the power of their lags: looks after turns at
-    gamma = 1/4, eps = 1e-8 went on for minutes, for 1 s.) In the direction of smaller lags
-    fewer. (Sawtooth, gamma = 3/4, eps = 1e-8: 2.8e6 steps for 1.4e8.)
+    Lags and memory are those of its direction at its speed, by the power of their lags;
+    long ones as with the square of the speed: where folds are flat slides remember longer,
+    and their brackets set off again if need be. (By that power too: looks after turns at
+    gamma = 1/4, eps = 1e-8 went on for minutes, for 1 s.)
     """
     wells = needed[brackets.cell].astype(float)
-    long = (wells > SETTINGS.long_memory) & np.isfinite(wells)
-    if not long.any():
+    some = (wells > SETTINGS.some_memory) & np.isfinite(wells)
+    if not some.any():
         return wells
     near = np.full(wells.size, SETTINGS.margin + 1.0)
     scene, path = rounds.scene, rounds.path
@@ -94,11 +95,26 @@ def run_ups(rounds: BracketContext, brackets: Brackets, needed: np.ndarray) -> n
         measured=False,
     )
     states = states_at(scene, path, starts.time)
-    cell, direction = brackets.cell, path.direction[path.piece_of(starts.time)]
-    share = slow_share(scene, path, starts.time, states, np.full(cell.size, 2.0))
-    share *= rounds.ground.lag_share(cell, direction)
-    share = np.where(starts.from_slide | starts.lagging, 1.0, share)
+    own, ground = brackets.cell, rounds.ground
+    direction = path.direction[path.piece_of(starts.time)]
+    power = np.where(wells > SETTINGS.long_memory, 2.0, ground.power(own, direction))
+    share = slow_share(scene, path, starts.time, states, power)
+    slow = _slow_run_ups(ground, own, direction, share, rounds.accuracy)
+    fast = starts.from_slide | starts.lagging
     # Others keep theirs: what they find must not depend on their neighbours.
-    return np.where(
-        long, np.ceil(SETTINGS.margin + share * (wells - SETTINGS.margin)), wells
-    )
+    return np.where(some & ~fast, np.minimum(slow, wells), wells)
+
+
+def _slow_run_ups(
+    ground: CellBounds, cell: np.ndarray, direction: np.ndarray, share, accuracy: float
+) -> np.ndarray:
+    """Wells where there is this `share` of the lag and memory of a direction, (W,)."""
+
+    def own(plus, minus) -> np.ndarray:
+        return np.where(direction > 0, plus[cell], minus[cell]) / ground.eps[cell]
+
+    lag = lag_share(ground, cell, share) * own(ground.lag_plus, ground.lag_minus)
+    memory = share * ground.memory(cell, direction)
+    forgets, slow = forgotten_after(lag, memory, accuracy)
+    shift = own(ground.shift_plus, ground.shift_minus)
+    return np.minimum(slow, resting_after(lag, shift, forgets))

@@ -12,13 +12,17 @@ def gaps_of(
     behind: np.ndarray,
     ahead: np.ndarray,
     speed: float,
+    pace: float | np.ndarray = np.inf,
 ) -> np.ndarray:
     """How closely brackets have closed at stops, in units of eps; 0 from a known start.
 
     At a stop inside a slip (ten times faster than the path) it is the shift in time that
-    counts, not the way that it makes. `speed`: the path's largest, m/s.
+    counts, not the way that it makes. `speed`: the path's largest, m/s. `pace`: of fast
+    slides, m/s, where tips are slower than the path, and their slips too. (Seen as no slip,
+    in the first wells of a slide that lags by 4331, the sawtooth at gamma = 1/2, eps =
+    1e-7, 3e-5 of a period made a bracket of 6e-4, which stayed open.)
     """
-    wells, _, fastest = _apart(ends, segments, behind, ahead, speed)
+    wells, _, fastest = _apart(ends, segments, behind, ahead, speed, pace)
     return wells * SETTINGS.slip / np.maximum(fastest, SETTINGS.slip)
 
 
@@ -28,13 +32,14 @@ def shifts_of(
     behind: np.ndarray,
     ahead: np.ndarray,
     speed: float,
+    pace: float | np.ndarray = np.inf,
 ) -> np.ndarray:
     """How far brackets are apart in time at stops, in slip periods; as `gaps_of`.
 
     A tip that creeps past a fold takes long over a small way: lanes that are 4e-4 eps apart
     there were 4e-2 eps apart in the slip that followed (gamma = 0.65, eps = 6e-4).
     """
-    wells, slowest, _ = _apart(ends, segments, behind, ahead, speed)
+    wells, slowest, _ = _apart(ends, segments, behind, ahead, speed, pace)
     return wells / np.maximum(slowest, SETTINGS.creep)
 
 
@@ -46,7 +51,9 @@ def wells_between(well0, tip0, well1, tip1) -> np.ndarray:
     return (well1 - well0) + (tip1 - tip0)
 
 
-def _apart(ends: SegmentEnds, segments: Segments, behind, ahead, speed: float) -> tuple:
+def _apart(
+    ends: SegmentEnds, segments: Segments, behind, ahead, speed: float, pace
+) -> tuple:
     """Wells between both lanes, and speeds of the slower and faster over the path's."""
     both = ahead >= 0
     a, b = np.where(both, ahead, 0), np.where(both, behind, 0)
@@ -55,6 +62,7 @@ def _apart(ends: SegmentEnds, segments: Segments, behind, ahead, speed: float) -
     usual = np.maximum(
         np.abs(segments.slope1[b]), SETTINGS.slow_slip * speed if speed > 0 else np.inf
     )
+    usual = np.minimum(usual, pace)
     paces = np.abs(np.stack([ends.speed[a], ends.speed[b]])) / usual
     # One lane alone is no bracket, and may have failed.
     wells, paces = np.where(both, np.abs(wells), 0.0), np.where(both, paces, 1.0)

@@ -104,22 +104,51 @@ def _seen(
     paired, one = np.ones(count, dtype=bool), np.arange(count)
     begins = np.minimum(wanted.begins, wanted.stops)
     brackets = Brackets(wanted.cells, begins, paired, one, wanted.stops)
-    wells, back = run_ups(looks, brackets, needs.run_up), np.ones(count)
-    found, open_ = FoundTips._make(np.empty((3, count))), one
+    found, open_ = FoundTips._make(np.full((3, count), np.inf)), one
+    if wanted.tips is not None:
+        told = np.flatnonzero(wanted.tips.gap <= SETTINGS.set_off * rounds.accuracy)
+        starts = _from_tips(begins[told], wanted.tips.well[told], wanted.tips.tip[told])
+        plan, arrived, effort = looks.march_from(brackets.chosen(told), starts)
+        looks = looks._replace(effort=effort)
+        well, tip, gap = _at_stops(looks, plan, arrived)
+        gap = np.maximum(gap, wanted.tips.gap[told])
+        for column, part in zip(found, (well, tip, gap), strict=True):
+            column[told] = part
+        open_ = one[~(found.gap <= SETTINGS.set_off * rounds.accuracy)]
+    # They have to close to less than others.
+    wells = np.maximum(run_ups(looks, brackets, needs.run_up), SETTINGS.margin + 1)
+    back = np.ones(count)
     for _ in range(SETTINGS.rounds):
+        if open_.size == 0:
+            break
         open_brackets = brackets.chosen(open_)
         plan, arrived, effort = looks.run(open_brackets, wells[open_], back[open_])
         looks = looks._replace(effort=effort)
         for column, part in zip(found, _at_stops(looks, plan, arrived), strict=True):
             column[open_] = part
-        open_ = np.flatnonzero(~(found.gap <= SETTINGS.set_off * rounds.accuracy))
-        if open_.size == 0:
-            break
+        open_ = one[~(found.gap <= SETTINGS.set_off * rounds.accuracy)]
         wells[open_], back[open_] = (
             wells[open_] * SETTINGS.earlier,
             back[open_] * SETTINGS.earlier,
         )
     return found, looks.effort
+
+
+def _from_tips(begin: np.ndarray, well: np.ndarray, tip: np.ndarray) -> Starts:
+    """Starts of one lane alone from each known tip."""
+    every, count = np.ones(tip.size, dtype=bool), tip.size
+    return Starts(
+        time=begin,
+        known_start=every,
+        from_slide=~every,
+        lagging=every,
+        until=np.full(count, -np.inf),
+        pace=np.full(count, np.inf),
+        behind_well=well,
+        behind_tip=tip,
+        ahead_well=well,
+        ahead_tip=tip,
+    )
 
 
 def _at_stops(rounds: BracketContext, plan: BracketPlan, ends: SegmentEnds):
@@ -163,17 +192,7 @@ def _measuring(
     sign, first, tip = np.array([(s.sign, s.well, s.tip) for s in slides])[who].T
     well, aim = first + sign * number, first + sign * (number + count)
     whose, every = np.array(cells)[who], np.ones(tip.size, dtype=bool)
-    starts = Starts(
-        time=begin,
-        known_start=every,
-        from_slide=~every,
-        lagging=every,
-        until=np.full(tip.size, -np.inf),
-        behind_well=well,
-        behind_tip=tip,
-        ahead_well=well,
-        ahead_tip=tip,
-    )
+    starts = _from_tips(begin, well, tip)
     exact = _exact(rounds, known_slides)
     brackets = Brackets(whose, begin, every, np.arange(tip.size), stop)
     # Planned here: two threads that plan wait for each other.

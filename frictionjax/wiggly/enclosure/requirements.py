@@ -9,13 +9,15 @@ from .settings import SETTINGS
 
 
 class Requirements(NamedTuple):
-    """What a cell's brackets need, in wells, shape (cells,).
+    """What a cell's brackets need, in wells, shape (cells,), where slides remember longest.
 
     `run_up`: from a start to where it is forgotten. `transient`: from the start of a slide
     to where the slide before is forgotten. `tile`: between two cuts of the chain, infinite
-    where it is not cut. `samples`: periods measured in a slide, 0 for all. `lattice_offset`
-    (cells, pieces): from the start of a slide to its first lattice point, which is half a
-    period from the slips of a slow slide: what is measured should not begin in a slip.
+    where it is not cut. `share` (cells, pieces): of these three that a piece needs, whose
+    slide may remember less than others. `samples`: periods measured in a slide, 0 for all.
+    `lattice_offset` (cells, pieces): from the start of a slide to its first lattice point,
+    which is half a period from the slips of a slow slide: what is measured should not begin
+    in a slip.
     `restarts` (cells, pieces): where the chain is cut however long its tiles are, at a
     piece's end.
     """
@@ -23,9 +25,32 @@ class Requirements(NamedTuple):
     run_up: np.ndarray
     transient: np.ndarray
     tile: np.ndarray
+    share: np.ndarray
     samples: np.ndarray
     lattice_offset: np.ndarray
     restarts: np.ndarray
+
+
+def forgotten_after(lag, memory, accuracy: float):
+    """Wells in which a bracket closes that is as wide as the lag, and those of a run-up.
+
+    `lag`, `memory`: wells, of one shape.
+    """
+    forgets = memory * np.log((lag + 2) / (SETTINGS.forgotten * accuracy))
+    return forgets, np.ceil(SETTINGS.margin + forgets)
+
+
+def resting_after(lag, shift, forgets):
+    """Wells back to a start between slips, from which a bracket closes at rest.
+
+    Windows begin half a period behind slips. Where tips lag by less than that, both lanes
+    of a bracket that sets off a little after a slip come to rest in one well; `forgets`
+    wells more pass where the rest of half a period is too short. Infinite where tips lag
+    further: their lanes have to catch up with each other. `shift`: of folds, wells.
+    """
+    rest = 0.5 - SETTINGS.after_slip - lag - shift
+    wells = rest + np.ceil(np.maximum(SETTINGS.slips_forget * forgets - rest, 0.0))
+    return np.where(rest > SETTINGS.short_rest, wells, np.inf)
 
 
 def wells_of(
@@ -39,14 +64,16 @@ def wells_of(
 
 def cost_of(path: Path, eps: np.ndarray, needs: Requirements, times: int) -> np.ndarray:
     """Wells that lanes pass through in each cell, about."""
-    outer, inner = wells_of(path, eps, needs)
-    slides = np.sum(inner_wells(np.abs(np.diff(path.states)) / eps[:, None], needs) > 0, 1)
-    shown = times * inner / np.maximum(inner + outer, 1e-9)
-    tiles = outer / needs.tile
-    brackets = slides * needs.samples + shown
+    ways = np.abs(np.diff(path.states)) / eps[:, None]
+    inside = inner_wells(ways, needs)
+    outer, inner = np.sum(ways - inside, axis=1), np.sum(inside, axis=1)
+    shown = times * inside / np.maximum(inner + outer, 1e-9)[:, None]
+    tiles = np.sum((ways - inside) / needs.share, axis=1) / needs.tile
+    brackets = (inside > 0) * needs.samples[:, None] + shown
     # The first tile sets off from the known z0.
     run_ups = 2 * needs.run_up * np.maximum(tiles - 1, 0.0)
-    return outer + run_ups + 2 * (needs.run_up + 2) * brackets
+    sampled = np.sum((needs.share * needs.run_up[:, None] + 2) * brackets, axis=1)
+    return outer + run_ups + 2 * sampled
 
 
 def longest_lane(path: Path, eps: np.ndarray, needs: Requirements) -> np.ndarray:
@@ -63,8 +90,24 @@ def wells_a_leg(path: Path, eps: np.ndarray) -> np.ndarray:
     return np.clip(np.floor(SETTINGS.leg * span / eps), 1, SETTINGS.most_wells_a_leg)
 
 
+def transients(needs: Requirements) -> np.ndarray:
+    """Wells of each slide until the one before is forgotten, (cells, pieces)."""
+    return np.ceil(needs.share * needs.transient[:, None])
+
+
+def tiles_at(path: Path, needs: Requirements, ways: np.ndarray, cell: int) -> np.ndarray:
+    """Tiles of a cell on the way from 0 to `ways`, in units of eps."""
+    each = np.diff(path.travel) / (needs.share[cell] * needs.tile[cell])
+    return np.interp(ways, path.travel, np.append(0.0, np.cumsum(each)))
+
+
 def inner_wells(ways: np.ndarray, needs: Requirements) -> np.ndarray:
-    """Wells of each slide of which only some are measured, (cells, pieces)."""
-    inner = np.floor(ways) - np.ceil(needs.transient)[:, None] - SETTINGS.tail - 1
-    samples = needs.samples[:, None]
-    return np.where((samples > 0) & (inner > 2 * samples), inner, 0.0)
+    """Wells of each slide of which only some are measured, (cells, pieces).
+
+    None where lanes that remember long would go through more wells for these than there
+    are. (Angular, gamma = 3/4, eps = 2e-3: 4.5e5 steps for 2.7e5.)
+    """
+    inner = np.floor(ways) - transients(needs) - SETTINGS.tail - 1
+    samples, run_up = needs.samples[:, None], needs.run_up[:, None]
+    each = np.where(run_up > SETTINGS.some_memory, needs.share * run_up, 1.0)
+    return np.where((samples > 0) & (inner > 2 * samples * each), inner, 0.0)

@@ -18,7 +18,7 @@ from ..limit_path import (
     times_at,
     unseen_of,
 )
-from .requirements import Requirements, inner_wells
+from .requirements import Requirements, inner_wells, transients
 from .settings import SETTINGS
 
 
@@ -85,7 +85,7 @@ def _path_parts(slides: CellSlides) -> Parts:
     for c in range(slides.eps.size):
         inner[c, [slide.piece for slide in slides.fast_slides[c]]] = 0.0
     cell, piece = np.nonzero(inner)
-    first = np.ceil(needs.transient)[cell]
+    first = transients(needs)[cell, piece]
     last = first + inner[cell, piece]
     return _WellRange(cell, piece, first, last, needs.samples[cell]).timed(slides)
 

@@ -11,7 +11,8 @@ class Settings(NamedTuple):
     rounds: int = 3
     earlier: int = 4  # times as far back in each round
     margin: int = 3  # one to fall behind, one to catch up, one to forget
-    # Windows that set off further back look at how fast slides are.
+    # Windows that set off further back look at how fast slides are, and which way they go.
+    some_memory: float = 15.0
     long_memory: float = 100.0
     fast: float = 0.35  # steps a well where tips do not rest, of those elsewhere
     longest_job: float = 1.5  # times what its longest job takes: the shortest batch
@@ -39,6 +40,13 @@ class Settings(NamedTuple):
     creep: float = 1e-2
 
     # Requirements (`requirements.py`).
+    forgotten: float = 0.1  # of the accuracy: what run-ups leave of a bracket
+    after_slip: float = 0.05  # at which lanes may set off
+    short_rest: float = 0.2  # the shortest that is worth it
+    # Lanes set off in the middle of a slip or two, and forget less in their first wells.
+    # (1: brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the
+    # first.)
+    slips_forget: float = 1.5
     most_wells_a_leg: int = 16
     leg: float = 0.02  # of the whole way: the guide is a cubic on each leg
     affordable: float = 2e5  # for one lane alone, at most: a minute or two

@@ -16,7 +16,8 @@ class CellBounds(NamedTuple):
     """What brackets need to know of each cell, shape (cells,) each.
 
     `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
-    most. `power_plus`, `power_minus`: of the speed that lags grow with. `shift_plus`,
+    most. `power_plus`, `power_minus`: of the speed that lags grow with. `memory_plus`,
+    `memory_minus`: way in m in which it forgets all but 1/e. `shift_plus`,
     `shift_minus`: by how much in m folds at this eps differ from rho.
     `phase`: how far ahead on the surface the bristle stands, in periods: its wells have
     numbers less by that.
@@ -30,6 +31,8 @@ class CellBounds(NamedTuple):
     lag_minus: np.ndarray
     power_plus: np.ndarray
     power_minus: np.ndarray
+    memory_plus: np.ndarray
+    memory_minus: np.ndarray
     shift_plus: np.ndarray
     shift_minus: np.ndarray
     start_well: np.ndarray
@@ -42,19 +45,23 @@ class CellBounds(NamedTuple):
         """Of slides of cells in a direction."""
         return np.where(direction > 0, self.power_plus[cell], self.power_minus[cell])
 
-    def lag_share(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
-        """Of slides of cells in a direction: their lag over the larger of both."""
-        lags = self.lag_plus[cell], self.lag_minus[cell]
-        own = np.where(direction > 0, *lags)
-        return own / np.maximum(np.maximum(*lags), 1e-300)
+    def memory(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
+        """Of the fastest slides of cells in a direction, in wells."""
+        own = np.where(direction > 0, self.memory_plus[cell], self.memory_minus[cell])
+        return own / self.eps[cell]
+
+    @property
+    def longest_memory(self) -> np.ndarray:
+        """Of both directions, in wells, (cells,)."""
+        return np.maximum(self.memory_plus, self.memory_minus) / self.eps
 
 
 class Starts(NamedTuple):
     """Where lanes of brackets set off, shape (W,).
 
     `time` in s. `known_start`: from the known z0; `from_slide`: from a fast slide, as
-    closely as its error says, which ends at `until` (s); `lagging`: behind one, with the
-    largest lag there is.
+    closely as its error says, which ends at `until` (s) and has the speed `pace` (m/s)
+    where the bracket begins; `lagging`: behind one, with the largest lag there is.
     `behind_*` and `ahead_*`: well and tip of the two lanes of the bracket.
     """
 
@@ -63,6 +70,7 @@ class Starts(NamedTuple):
     from_slide: np.ndarray
     lagging: np.ndarray
     until: np.ndarray
+    pace: np.ndarray
     behind_well: np.ndarray
     behind_tip: np.ndarray
     ahead_well: np.ndarray
@@ -132,7 +140,7 @@ def starts_of(
     share = np.ones(begin.size)
     power = ground.power(cell[slide], direction[slide])
     share[slide] = slow_share(scene, path, time[slide], level[slide], power)
-    share = np.where(lag > SETTINGS.long_lag * eps, share, 1.0)
+    share = lag_share(ground, cell, share)
     slides, which = last_begun(ground.fast_slides, cell, begin)
     lagging = _still_lagging(path, slides, which, time)
     share = np.where(lagging, 1.0, share)
@@ -143,6 +151,7 @@ def starts_of(
         from_slide=np.zeros(begin.size, dtype=bool),
         lagging=lagging,
         until=np.full(begin.size, -np.inf),
+        pace=np.full(begin.size, np.inf),
         behind_well=behind,
         behind_tip=tip,
         ahead_well=ahead,
@@ -156,6 +165,7 @@ def starts_of(
     near, inside = _on_slides(
         slides, which[after_slide], begin[after_slide], back[after_slide], measured
     )
+    near = near._replace(pace=np.where(inside, near.pace * eps[after_slide], np.inf))
     late, early = np.split(way_at(scene, path, np.append(begin[after_slide], near.time)), 2)
     nearer = known[after_slide] | inside | (late - early <= reach[after_slide])
     return _replaced(plain, after_slide[nearer], rows_of(near, nearer))
@@ -189,8 +199,8 @@ def _replaced(starts: Starts, which: np.ndarray, others: Starts) -> Starts:
 
 
 def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured: bool):
-    """Starts at lattice points of fast slides, their errors behind and ahead; and which
-    hold `begin`."""
+    """Starts at lattice points of fast slides, their errors behind and ahead, with the
+    pace in wells a second; and which hold `begin`."""
     curves = ManyTransitTimes([slide.curve for slide in slides])
     rows = [(r.sign, r.well, r.tip, r.curve.edges[0], r.end) for r in slides]
     sign, well, tip, first, end = np.array(rows)[which].T
@@ -198,6 +208,7 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
         np.floor(curves.number_at(which, np.minimum(begin, end)) + SETTINGS.whole) - back
     )
     number = np.maximum(number, first)
+    period = curves.time_of(which, number + 1) - curves.time_of(which, number)
     error = np.zeros(which.size)
     if measured:
         errors = np.concatenate([slide.error for slide in slides])
@@ -209,6 +220,7 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
         from_slide=~none,
         lagging=none,
         until=end,
+        pace=1 / np.maximum(period, 1e-300),
         behind_well=well,
         behind_tip=tip - error,
         ahead_well=well,
@@ -236,6 +248,12 @@ def slow_share(
     # Nothing slides at 0.
     share = np.maximum(*np.split(speeds, 2)) / (path.speed or 1.0)
     return np.minimum(SETTINGS.faster * share**power, 1.0)
+
+
+def lag_share(ground: CellBounds, cell: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Share of the largest lag that brackets count with, where slides have that share."""
+    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
+    return np.where(lag[cell] > SETTINGS.long_lag, share, 1.0)
 
 
 def _bracket(ground: CellBounds, cell, direction, level, known, share):

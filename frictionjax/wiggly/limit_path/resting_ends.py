@@ -12,13 +12,13 @@ def slow_ends(
     scene: TabulatedScene,
     path: Path,
     eps: Float[np.ndarray, " cells"],
-    lag: Float[np.ndarray, " cells"],
+    memory: Float[np.ndarray, "cells pieces"],
+    power: Float[np.ndarray, "cells pieces"],
 ) -> Bool[np.ndarray, "cells pieces"]:
     """Whether each piece should end slow, (cells, pieces); rests of the path do not.
 
-    `eps` in m and `lag`, wells that the fastest slide stays behind, shape (cells,). Slides
-    lag, and remember twice as many wells, in proportion to the square of their speed,
-    about.
+    `eps` in m, shape (cells,). `memory`: wells that the fastest slide in the direction of
+    each piece remembers, about; slower ones in proportion to a `power` of their speed.
     """
     slides = np.flatnonzero(path.direction)
     slow = np.zeros((eps.size, path.direction.size), dtype=bool)
@@ -29,6 +29,7 @@ def slow_ends(
     state = path.states[slides] + path.direction[slides] * level
     times = times_at(scene, path, np.tile(slides, eps.size), state.ravel())
     speed = slopes_at(scene, path, times, state.ravel()).reshape(state.shape)
-    memory = 2 * lag[:, None] * (speed / (path.speed or 1.0)) ** 2  # nothing slides at 0
-    slow[:, slides] = memory * -np.log(SETTINGS.rests) < 1
+    share = np.abs(speed) / (path.speed or 1.0)  # nothing slides at 0
+    left = memory[:, slides] * share ** power[:, slides]
+    slow[:, slides] = left * -np.log(SETTINGS.rests) < 1
     return slow

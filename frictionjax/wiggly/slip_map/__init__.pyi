@@ -1,4 +1,5 @@
-from .contraction import lag_forces as lag_forces
+from .contraction import SteadyLags as SteadyLags
+from .contraction import steady_lags as steady_lags
 from .fast_slides import FastSlide as FastSlide
 from .fast_slides import FastSlideFinder as FastSlideFinder
 from .fast_slides import FoundTips as FoundTips

@@ -84,13 +84,24 @@ def from_fold_to_fold(
     return in_chunks(_wells, SETTINGS.wells_together, (potential,), columns)
 
 
-def lag_forces(
-    potential: AbstractPotential, eps: np.ndarray, folds: WiggleFolds, drag: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Force in N beyond the fold that a steady slide needs, at most: right and left.
+class SteadyLags(NamedTuple):
+    """Steady slides of cells, to the right (row 0) and to the left (1), shape (2, cells).
 
-    All of shape (cells,). `drag`: eps^gamma times the speed of the slide, in N. From the
-    slow equation averaged over a well, `v = eps^-gamma / int_0^1 dY/(f + rho - W')`.
+    `force`: in N beyond the fold, at most. `power`: of the speed that it grows with, at
+    this speed: slides remember so many times the wells that they lag by.
+    """
+
+    force: np.ndarray
+    power: np.ndarray
+
+
+def steady_lags(
+    potential: AbstractPotential, eps: np.ndarray, folds: WiggleFolds, drag: np.ndarray
+) -> SteadyLags:
+    """What steady slides need; `drag`: eps^gamma times their speed, in N, (cells,).
+
+    From the slow equation averaged over a well,
+    `v = eps^-gamma / int_0^1 dY/(f + rho - W')`.
     """
     # Once for each eps; of the largest for all, cells would depend on their neighbours.
     own, first, which = np.unique(eps, return_index=True, return_inverse=True)
@@ -99,12 +110,14 @@ def lag_forces(
     wells = from_fold_to_fold(potential, np.tile(own, 2), np.concatenate(places), sides)
     both = np.concatenate([which, which + own.size])
     cells = rows_of(wells, both)
-    needed = _needed(cells, np.log(np.maximum(np.tile(drag, 2), 1e-300)))
-    return needed[: eps.size], needed[eps.size :]
+    logs = np.log(np.maximum(np.tile(drag, 2), 1e-300))
+    return SteadyLags._make(each.reshape(2, -1) for each in _needed(cells, logs))
 
 
-def _needed(wells: Wells, wanted: np.ndarray) -> np.ndarray:
+def _needed(wells: Wells, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The force at which each speed, a logarithm, is reached: between two of `LAG_FORCES`.
+
+    And the power of the speed that it grows with there.
 
     By halving on a thinned grid, then by steps on the whole one: 2 to 4 integrals where
     halving alone took 9, and the whole table has 85.
@@ -117,9 +130,9 @@ def _needed(wells: Wells, wanted: np.ndarray) -> np.ndarray:
         if not shift.any():
             break
         low = low + shift
-    share = np.clip((wanted - slow) / np.maximum(fast - slow, 1e-300), 0.0, 1.0)
-    logs = np.log(LAG_FORCES)
-    return np.exp(logs[low] + share * (logs[low + 1] - logs[low]))
+    logs, rise = np.log(LAG_FORCES), np.maximum(fast - slow, 1e-300)
+    share, step = np.clip((wanted - slow) / rise, 0.0, 1.0), logs[low + 1] - logs[low]
+    return np.exp(logs[low] + share * step), step / rise
 
 
 def _speeds(wells: Wells, index: np.ndarray) -> np.ndarray:

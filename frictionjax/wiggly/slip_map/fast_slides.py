@@ -92,6 +92,10 @@ class FoundTips(NamedTuple):
     tip: np.ndarray
     gap: np.ndarray
 
+    def chosen(self, which: np.ndarray) -> "FoundTips":
+        """Some of them."""
+        return rows_of(self, which)
+
 
 class Candidates(NamedTuple):
     """Slides that may be fast, shape (n,): at `time` (s) the tip is at `tip` in `well`.

@@ -22,13 +22,15 @@ class LookAt(NamedTuple):
     """Asks for the tips of `cells` at `stops` in s, shape (n,); the answer: `FoundTips`.
 
     By lanes to brackets that begin at `begins`, which may set off from slides in `known`
-    (cells of the sweep,), tuples of `FastSlide`.
+    (cells of the sweep,), tuples of `FastSlide`; or from the `tips` that were found
+    there (n,).
     """
 
     known: np.ndarray
     cells: np.ndarray
     begins: np.ndarray
     stops: np.ndarray
+    tips: FoundTips | None = None
 
 
 class Measure(NamedTuple):
@@ -48,8 +50,10 @@ Waiting = list[Callable[[], np.ndarray]]
 Asking = Generator[LookAt | Measure, Any, _T]
 
 
-def _look(known: np.ndarray, cells, begins, stops) -> Asking[FoundTips]:
-    seen: FoundTips = yield LookAt(known, cells, begins, stops)
+def _look(
+    known: np.ndarray, cells, begins, stops, tips: FoundTips | None = None
+) -> Asking[FoundTips]:
+    seen: FoundTips = yield LookAt(known, cells, begins, stops, tips)
     return seen
 
 
@@ -80,18 +84,19 @@ def _set_off(finder: FastSlideFinder, cell: np.ndarray, piece: np.ndarray) -> np
 
 def _touches(
     finder: FastSlideFinder, known: np.ndarray, cell: np.ndarray, piece: np.ndarray
-) -> Asking[np.ndarray]:
+) -> Asking[tuple[np.ndarray, FoundTips]]:
     """When the pull reaches the fold where each tip rests before the slide of a piece, s.
 
     The path's own touch comes earlier where the slide before has lagged: the tip then
-    rests short of where the path does.
+    rests short of where the path does. And the tips at the path's touch.
     """
     touch = finder.path.touch[piece]
     seen = yield from _look(known, cell, touch, touch)
     # Lanes that failed stay candidates no longer than their gap is looked at.
     states = finder.states(cell, np.nan_to_num(seen.well), np.nan_to_num(seen.tip))
     _, force = finder.fold(cell, finder.path.direction[piece])
-    return arrivals_at(finder.scene, states, force, touch, finder.path.edges[piece + 1])
+    late = finder.path.edges[piece + 1]
+    return arrivals_at(finder.scene, states, force, touch, late), seen
 
 
 def _starting(
@@ -109,14 +114,20 @@ def _starting(
     wait = _set_off(finder, cell, piece)
     touch, late = path.touch[piece].copy(), path.edges[piece + 1]
     lags = lags & (touch + wait < late)
+    # A second look goes on where the first one has come to.
+    begin, tips = touch.copy(), None
     if lags.any():
-        touch[lags] = yield from _touches(finder, known, cell[lags], piece[lags])
+        touch[lags], seen = yield from _touches(finder, known, cell[lags], piece[lags])
+        nowhere = np.full((3, cell.size), np.nan)
+        nowhere[:, lags] = seen
+        tips = FoundTips(*nowhere)
     able = np.flatnonzero(touch + wait < late)
     if able.size == 0:
         return None, able
     cell, piece, late = cell[able], piece[able], late[able]
     stops = (touch + wait)[able]
-    seen = yield from _look(known, cell, touch[able], stops)
+    tips = None if tips is None else tips.chosen(able)
+    seen = yield from _look(known, cell, begin[able], stops, tips)
     candidates = Candidates(
         cell=cell,
         sign=path.direction[piece],

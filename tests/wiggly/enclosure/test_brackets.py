@@ -14,7 +14,9 @@ from frictionjax.model import tabulated_scene
 from frictionjax.numerics import rows_of
 from frictionjax.wiggly import batch as engine
 from frictionjax.wiggly import plan as planning
+from frictionjax.wiggly import ways
 from frictionjax.wiggly.enclosure import close as rounds
+from frictionjax.wiggly.enclosure import requirements
 from frictionjax.wiggly.enclosure.brackets import Brackets, _lane_segments
 from frictionjax.wiggly.enclosure.starts import starts_of
 from frictionjax.wiggly.limit_path.path import states_at, times_at
@@ -161,8 +163,8 @@ def test_lanes_that_set_off_at_rest_find_the_same_in_fewer_steps(gamma, monkeypa
     scene, eps = scene_of(), [1e-3, 7e-4]
     gammas = [gamma] * 2
     near = cells(scene, eps, gammas, "windowed")
-    none = planning.SETTINGS._replace(short_rest=np.inf)
-    monkeypatch.setattr(planning, "SETTINGS", none)
+    none = requirements.SETTINGS._replace(short_rest=np.inf)
+    monkeypatch.setattr(requirements, "SETTINGS", none)
     far = cells(scene, eps, gammas, "windowed")
     assert near.steps.sum() < 0.6 * far.steps.sum()
     for i, e in enumerate(eps):
@@ -274,11 +276,13 @@ def test_legs_end_at_kinks_after_their_bracket_has_begun_too():
     assert mark.tolist() == [-2, -1, -2, 0, 1, -1, -2, 2]
 
 
-def test_memory_is_that_of_the_flatter_fold():
+def test_memory_is_that_of_the_flatter_fold(monkeypatch):
     # From the sharper one, brackets of this slide stayed open and 1.3e6 steps were taken.
     waves = fx.profiles.Fourier([0.004, -0.002, 0.0, 0.0005], [0.008, 0.003, -0.001, 0.0])
     rod, base = fx.bristles.AngularSpring(1.0, 1.5, 1.0, 0.2), scene_of()
     scene = fx.Scene(waves, rod, base.support, base.load, 3.0)
+    never = ways.SETTINGS._replace(far_back=np.inf)  # brackets, not slip maps
+    monkeypatch.setattr(ways, "SETTINGS", never)
     data = fx.sweep(scene, 5.6e-4, 0.75, TIMES).squeeze()
     assert int(data.status) == 0
     assert float(data.steps) < 6e5

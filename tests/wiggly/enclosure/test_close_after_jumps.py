@@ -60,7 +60,9 @@ def test_cells_wait_for_lanes_that_go_astray_so_long_only():
     segments = segments._replace(guide1=np.array([0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]))
     cell, known = np.array([0, 1, 2, 0, 1, 2]), np.array([True, False, True])
     jobs = Lanes(cell, none, none, none, np.arange(6), np.arange(1, 7))
-    plan = BracketPlan(jobs, segments, none, none, none, none, known, known, none, none)
+    plan = BracketPlan(
+        jobs, segments, none, none, none, none, known, known, none, none, none
+    )
     able, some = rounds._within_patience(plan)
     assert able.all()
     beyond = some.segments.budget - SETTINGS.patience

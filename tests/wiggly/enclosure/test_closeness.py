@@ -11,14 +11,19 @@ from frictionjax.wiggly.enclosure.closeness import (
 from frictionjax.wiggly.lanes.queue import SegmentEnds, Segments
 
 
-def measured(measure, wells=0.1, paces=(1.0, 1.0), path=1.0, ahead=1, fastest=1.0):
-    """Two lanes at a stop, `wells` apart, that move at `paces` where the path does at 1."""
+def measured(
+    measure, wells=0.1, paces=(1.0, 1.0), path=1.0, ahead=1, fastest=1.0, pace=np.inf
+):
+    """Two lanes at a stop, `wells` apart, that move at `paces` where the path does at 1.
+
+    `pace`: of the fast slide they are on.
+    """
     none = np.zeros(2)
     place, speed = np.array([0.0, wells]), np.array(paces)
     ends = SegmentEnds(np.array([3.0, 3.0]), place, speed, *[none] * 11)
     slope = np.full(2, path)
     segments = Segments(none, none, none, none, slope, slope, none, none)
-    return measure(ends, segments, np.array([0]), np.array([ahead]), fastest)[0]
+    return measure(ends, segments, np.array([0]), np.array([ahead]), fastest, pace)[0]
 
 
 def test_the_way_counts_where_the_tip_moves_as_the_path_does():
@@ -28,6 +33,14 @@ def test_the_way_counts_where_the_tip_moves_as_the_path_does():
 
 def test_in_a_slip_the_time_counts():
     assert measured(gaps_of, paces=(1000.0, 1.0)) == pytest.approx(1e-3)
+
+
+def test_slips_of_a_fast_slide_are_those_at_its_own_pace():
+    """Its first wells take longer than the path's: three times the path is a slip there."""
+    assert measured(gaps_of, paces=(3.0, 3.0)) == pytest.approx(0.1)
+    assert measured(gaps_of, paces=(3.0, 3.0), pace=0.1) == pytest.approx(0.1 / 3)
+    assert measured(gaps_of, paces=(3.0, 3.0), pace=10.0) == pytest.approx(0.1)
+    assert measured(shifts_of, paces=(0.2, 0.2), pace=0.1) == pytest.approx(0.05)
 
 
 def test_near_a_fold_the_time_counts_as_a_shift():
