@@ -1,7 +1,8 @@
 """What the engine takes for scenes of every kind, beside another checkout of this library.
 
 `python benchmarks/engine.py --before PATH` runs the same in both, turn by turn, and prints
-a table. (First calls: first_calls.py.) CPU seconds, the least of a few runs, of
+a table; first calls are in first_calls.py, flat folds in straight_flanks.py. CPU seconds,
+the least of a few runs, of
 
     solve     a warm `solve` of few wells, eps = 0.02, gamma = 1, the median of scenes
     step      a step of one lane of a sweep, whole: planning and results included, on a
@@ -9,7 +10,6 @@ a table. (First calls: first_calls.py.) CPU seconds, the least of a few runs, of
     rows      rows of a measured map (`--map`, or series by chance) x 16 eps from 0.05 to
               1e-5, energies and suprema, a row: in one sweep, or one each
     scenes    sines by chance x 8 eps from 0.1 to 1e-3, values alone, a scene: the same
-    flat      cells of surfaces with straight flanks and with flat extremes over a sine's
     gradient  of a steady slide and of a value of a trajectory, for the first time in a
               process: without a cache, then with every program kept
     times     a `solve` with another number of times than before
@@ -129,37 +129,6 @@ def scenes(fx, options):
     return {f"a scene of a sine x 8 eps, {how}, ms": s for how, s in found.items()}
 
 
-def flat(fx, options):
-    n = np.arange(1, 65)
-    slopes = (0.05 / 0.8 + 0.05 / 0.2) / (2j * np.pi * n) * (1 - np.exp(-1.6j * np.pi * n))
-    waves = slopes / (2j * np.pi * n) * np.exp(-2 * (np.pi * n * 0.02) ** 2)
-    flat = 0.12 / (2 * np.pi) * np.array([9 / 8, 0.0, -1 / 24])
-    kinds = {
-        "a sine": fx.profiles.Sine(0.1),
-        "straight flanks": fx.profiles.Fourier(2 * waves.real, -2 * waves.imag),
-        "flat extremes": fx.profiles.Fourier(np.zeros(3), flat),
-    }
-    figures, of_sine = {}, {}
-    for name, profile in kinds.items():
-        scene = scene_of(fx, profile, pull=1.0)
-        for gamma in (0.5, 0.75, 1.0, 2.0):
-            for eps in (1e-4, 1e-6, 1e-8):
-                if options.quick and eps < 1e-4:
-                    continue
-                begin = time.process_time()
-                found = fx.sweep(scene, [eps], [gamma])
-                begin, early = time.process_time(), time.process_time() - begin
-                if early < 20:
-                    found = fx.sweep(scene, [eps], [gamma])
-                    early = time.process_time() - begin
-                of_sine.setdefault((gamma, eps), early)
-                cell = f"{name}, gamma = {gamma:g}, eps = {eps:g}"
-                figures[f"{cell}: s"] = early
-                figures[f"{cell}: over a sine's"] = early / of_sine[gamma, eps]
-                figures[f"{cell}: status"] = int(found.status.values.ravel()[0])
-    return figures
-
-
 def gradient(fx, options):
     import jax
 
@@ -189,7 +158,7 @@ def times(fx, options):
     return {"a solve with another number of times, s": max(taken)}
 
 
-PARTS = {f.__name__: f for f in (solve, step, rows, scenes, flat, gradient, times)}
+PARTS = {f.__name__: f for f in (solve, step, rows, scenes, gradient, times)}
 
 
 def measured(checkout, parts, arguments):
@@ -213,7 +182,6 @@ def main():
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS))
     parser.add_argument("--count", type=int, default=24, help="rows, and scenes")
     parser.add_argument("--map", type=Path, help="heights of a measured map, rows of text")
-    parser.add_argument("--quick", action="store_true", help="no cells below eps = 1e-4")
     parser.add_argument("--worker", choices=PARTS, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.worker:
@@ -222,7 +190,6 @@ def main():
     passed = ["--count", str(options.count)]
     if options.map:
         passed += ["--map", str(options.map.resolve())]
-    passed += ["--quick"] * options.quick
     checkouts = [HERE.parents[1]]
     if options.before:
         checkouts.insert(0, options.before.resolve())
