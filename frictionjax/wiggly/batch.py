@@ -1,18 +1,16 @@
 """All cells of a sweep through lanes: rounds of brackets until every bracket has closed."""
 
-import threading
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from .._checks import quiet_where_extreme, viscosity_of
-from .._compile import WORKERS, crew
+from .._compile import WORKERS
 from ..model import Scene, SummedPotential, tabulated_scene
 from ..numerics import rows_of
-from .attempts import AttemptContext, Cellwise, SoFar, merged
+from .attempts import AttemptContext, Cellwise, SoFar, with_rows
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
-from .enclosure import Report, find_fast_slides
+from .enclosure import BracketContext, Report, find_fast_slides, no_effort
 from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
@@ -118,22 +116,26 @@ def _integrated(
     )
     if phase is not None:
         plan = in_phases(tables, path, rows_of(plan, whose), phase)
-    sweep = AttemptContext(
+    every = _cells_of(plan, eps, gamma)
+    rounds = BracketContext(
         scene=tables,
-        path=path,
         lanes=lanes,
+        path=path,
+        ground=every.ground,
+        cells=every.cells,
         tableau=tableau,
-        ts=ts,
+        summed=any(wanted),
         accuracy=accuracy,
-        wanted=wanted,
-        every_slip=method == "resolved",
         report=report,
+        effort=no_effort(eps.size),
+        brief=every.brief,
     )
-    so_far = _first_attempt(sweep, _cells_of(plan, eps, gamma), plan.way == Way.SLIP_MAP)
+    sweep = AttemptContext(rounds, ts, wanted, every_slip=method == "resolved")
+    so_far = _first_attempt(sweep, every, plan.way == Way.SLIP_MAP)
     answers = so_far.answers._replace(tolerance=np.asarray(plan.control.tolerance))
     so_far = so_far._replace(answers=answers)
     for _ in range(SETTINGS.surveys):
-        rough = np.flatnonzero(sweep.is_rough(so_far.answers, eps) & ~so_far.open_)
+        rough = np.flatnonzero(sweep.is_rough(so_far) & ~so_far.open_)
         if rough.size == 0:
             break
         so_far = _surveyed_again(sweep, so_far, rough)
@@ -145,7 +147,6 @@ def _cells_of(plan: Planned, eps: np.ndarray, gamma: np.ndarray) -> Cellwise:
     """What the first attempt needs of each cell."""
     steps = plan.control
     return Cellwise(
-        eps=eps,
         ground=plan.ground,
         cells=LaneCells(
             eps=eps,
@@ -161,12 +162,12 @@ def _surveyed_again(sweep: AttemptContext, so_far: SoFar, rough: np.ndarray) -> 
     """Twice as many slips of the `rough` cells, at last all."""
     some = rows_of(so_far.cells, rough)
     samples = some.needs.samples * 2 * (some.needs.samples < SETTINGS.most_nodes)
-    can = _affordable(sweep.path, some) | (samples > 0)
+    can = _affordable(sweep.rounds.path, some) | (samples > 0)
     so_far = so_far.with_status(rough[~can], Status.ROUGH_SURVEY)
     again = rough[can]
     if again.size == 0:
         return so_far
-    wells = sweep.path.travel[-1] / some.eps
+    wells = sweep.rounds.path.travel[-1] / some.ground.eps
     longer = np.maximum(some.needs.tile, wells / SETTINGS.tiles)
     tile = np.where(samples > 0, some.needs.tile, longer)
     some = some._replace(needs=some.needs._replace(samples=samples, tile=tile))
@@ -179,11 +180,11 @@ def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
 
     At gamma = 0.75, eps = 1e-4, accuracy 1e-6: 1.5 s, where one lane takes 30.
     """
-    chosen = np.flatnonzero(so_far.open_ & _affordable(sweep.path, so_far.cells))
+    chosen = np.flatnonzero(so_far.open_ & _affordable(sweep.rounds.path, so_far.cells))
     if chosen.size == 0:
         return so_far
     some = rows_of(so_far.cells, chosen)
-    wells = sweep.path.travel[-1] / some.eps
+    wells = sweep.rounds.path.travel[-1] / some.ground.eps
     tile = np.maximum(4 * some.needs.tile, wells / SETTINGS.tiles)
     none = np.zeros(chosen.size, dtype=int)
     some = some._replace(needs=some.needs._replace(samples=none, tile=tile))
@@ -191,50 +192,25 @@ def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
 
 
 def _first_attempt(sweep: AttemptContext, every: Cellwise, by_map: np.ndarray) -> SoFar:
-    """Answers of all cells: those without slip maps aside.
-
-    Their lanes run while fast slides are found, which is mostly NumPy on one core.
-    """
-    some, others = np.flatnonzero(by_map), np.flatnonzero(~by_map)
+    """Answers of all cells; the fast slides of those `by_map` are found before."""
+    some = np.flatnonzero(by_map)
     if some.size == 0:
         return sweep.attempt(every)
-    if others.size == 0:
-        return _by_slip_maps(sweep, every)
-    # Beside the first lanes that look for slides: with both planning at once, and two lanes
-    # waiting for one core, a sweep took a tenth longer.
-    lanes_run = threading.Event()
-
-    def aside() -> SoFar:
-        lanes_run.wait()
-        # With both cores lanes would hold up every small program of the other thread.
-        return sweep._replace(workers=1).attempt(rows_of(every, others))
-
-    beside = crew("cells", 1).submit(aside)
-    try:
-        found = _by_slip_maps(sweep, rows_of(every, some), lanes_run.set)
-    finally:
-        lanes_run.set()
-        rest = beside.result()
-    return merged(every, (others, rest), (some, found))
-
-
-def _by_slip_maps(
-    sweep: AttemptContext, some: Cellwise, lanes_run: Callable[[], None] = lambda: None
-) -> SoFar:
-    """An attempt at cells whose fast slides are found first, and stay known."""
-    rounds = sweep.rounds(some)._replace(lanes_run=lanes_run)
-    found = find_fast_slides(rounds, some.needs)
+    needs = rows_of(every.needs, some)
+    found = find_fast_slides(sweep.rounds_of(rows_of(every, some)), needs)
     has = np.array([len(own) > 0 for own in found.slides])
-    some = some._replace(
-        ground=some.ground._replace(fast_slides=found.slides),
-        needs=some.needs._replace(
-            samples=np.where(has, PATH_SETTINGS.nodes, some.needs.samples)
-        ),
+    samples = np.where(has, PATH_SETTINGS.nodes, needs.samples)
+    slides = with_rows(every.ground.fast_slides, some, found.slides)
+    every = every._replace(
+        ground=every.ground._replace(fast_slides=slides),
+        needs=every.needs._replace(samples=with_rows(every.needs.samples, some, samples)),
     )
-    so_far = sweep.attempt(some)
+    so_far = sweep.attempt(every)
     steps, rejected, _ = found.effort()
-    answers = so_far.answers._replace(
-        steps=so_far.answers.steps + steps, rejected=so_far.answers.rejected + rejected
+    answers = so_far.answers
+    answers = answers._replace(
+        steps=with_rows(answers.steps, some, answers.steps[some] + steps),
+        rejected=with_rows(answers.rejected, some, answers.rejected[some] + rejected),
     )
     return so_far._replace(answers=answers)
 
@@ -266,12 +242,12 @@ def _prepare(
 
 
 def _affordable(path: Path, cells: Cellwise) -> np.ndarray:
-    return path.travel[-1] / cells.eps <= ENCLOSURE_SETTINGS.affordable
+    return path.travel[-1] / cells.ground.eps <= ENCLOSURE_SETTINGS.affordable
 
 
 def _from_the_start(sweep: AttemptContext, so_far: SoFar) -> SoFar:
     """One lane from z0 through everything, for cells whose brackets stay open."""
-    can = _affordable(sweep.path, so_far.cells)
+    can = _affordable(sweep.rounds.path, so_far.cells)
     chosen, never = np.flatnonzero(so_far.open_ & can), so_far.open_ & ~can
     answers = so_far.answers._replace(
         z=np.where(never[:, None], np.nan, so_far.answers.z),
@@ -299,5 +275,5 @@ def _from_the_start(sweep: AttemptContext, so_far: SoFar) -> SoFar:
 
 
 def _without_slides(some: Cellwise) -> Cellwise:
-    ground = some.ground._replace(fast_slides=none_known(some.eps.size))
+    ground = some.ground._replace(fast_slides=none_known(some.ground.eps.size))
     return some._replace(ground=ground)
