@@ -28,16 +28,11 @@ class Program:
         self._known: dict[Any, Callable] = {}
 
     def __call__(self, *args: Any) -> Any:
-        leaves, structure = flattened(args)
-        numbers = [leaf for leaf in leaves if isinstance(leaf, ARRAYS)]
-        rest: tuple = ()
-        if len(numbers) < len(leaves):
-            rest = tuple((i, x) for i, x in enumerate(leaves) if not isinstance(x, ARRAYS))
-        key = structure, rest
+        numbers, key = taken_apart(args)
         program = self._known.get(key)
         if program is None:
             whole = jax.tree_util.tree_structure(args)
-            program = self._compiled(whole, rest)
+            program = self._compiled(whole, key[1])
             if len(self._known) >= _MOST:
                 self._known.clear()
             self._known[key] = program
@@ -48,11 +43,8 @@ class Program:
     def _compiled(self, structure: Any, rest: tuple) -> Callable:
         fn = self._fn
 
-        def run(numbers: tuple) -> Any:
-            leaves = list(numbers)
-            for index, leaf in rest:
-                leaves.insert(index, leaf)
-            return fn(*jax.tree_util.tree_unflatten(structure, leaves))
+        def run(numbers: list) -> Any:
+            return fn(*put_together(numbers, structure, rest))
 
         run.__name__ = run.__qualname__ = fn.__name__
         return kept(fn, run, structure, rest)
@@ -102,6 +94,24 @@ def flattened(args: tuple) -> tuple[list, tuple]:
         leaves += own
         structures.append(structure)
     return leaves, tuple(structures)
+
+
+def taken_apart(args: tuple) -> tuple[list, tuple]:
+    """Arrays of some arguments, and what else there is: structures, other leaves."""
+    leaves, structure = flattened(args)
+    numbers = [leaf for leaf in leaves if isinstance(leaf, ARRAYS)]
+    rest: tuple = ()
+    if len(numbers) < len(leaves):
+        rest = tuple((i, x) for i, x in enumerate(leaves) if not isinstance(x, ARRAYS))
+    return numbers, (structure, rest)
+
+
+def put_together(numbers: list, structure: Any, rest: tuple) -> Any:
+    """The arguments again, of the tree `structure`."""
+    leaves = list(numbers)
+    for index, leaf in rest:
+        leaves.insert(index, leaf)
+    return jax.tree_util.tree_unflatten(structure, leaves)
 
 
 def in_chunks(
