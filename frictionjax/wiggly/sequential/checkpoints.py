@@ -227,11 +227,3 @@ def _tip_norm(scaled: PyTree) -> Real:
 def _code(result: diffrax.RESULTS) -> Array:
     spent = result == diffrax.RESULTS.max_steps_reached
     return jnp.where(spent, int(Status.MAX_STEPS), code_of(result))
-
-
-def first_of(codes: list[tuple[Any, Status]], otherwise: Any) -> Array:
-    """The first status whose condition holds."""
-    status = otherwise
-    for bad, code in reversed(codes):
-        status = jnp.where(bad, int(code), status)
-    return status
