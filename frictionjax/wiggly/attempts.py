@@ -2,8 +2,10 @@
 
 from typing import Any, NamedTuple
 
+import jax
 import numpy as np
 
+from ..numerics import rows_of
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import (
     BracketContext,
@@ -50,29 +52,18 @@ class SoFar(NamedTuple):
         return self._replace(answers=self.answers._replace(status=changed))
 
     def with_attempt(self, part: "SoFar", chosen: np.ndarray) -> "SoFar":
-        """The answers of another attempt; its steps are on top of those before."""
-        whole, new = self.answers, part.answers
-        columns = {
-            name: with_rows(column, chosen, getattr(new, name))
-            for name, column in whole._asdict().items()
-        }
-        columns |= {
-            "steps": with_rows(whole.steps, chosen, new.steps + whole.steps[chosen]),
-            "rejected": with_rows(
-                whole.rejected, chosen, new.rejected + whole.rejected[chosen]
-            ),
-            "tolerance": whole.tolerance,
-        }
-        open_ = with_rows(self.open_, chosen, part.open_)
-        return self._replace(answers=CellResults(**columns), open_=open_)
-
-    def with_cells(self, some: Cellwise, chosen: np.ndarray) -> "SoFar":
-        """Other needs of some cells, for later attempts too."""
-        needs = Requirements._make(
-            with_rows(old, chosen, new)
-            for old, new in zip(self.cells.needs, some.needs, strict=True)
+        """What another attempt has found; its steps are on top of those before."""
+        before, new = rows_of(self.answers, chosen), part.answers
+        answers = new._replace(
+            steps=new.steps + before.steps,
+            rejected=new.rejected + before.rejected,
+            tolerance=before.tolerance,
         )
-        return self._replace(cells=self.cells._replace(needs=needs))
+        return jax.tree_util.tree_map(
+            lambda column, rows: with_rows(column, chosen, rows),
+            self,
+            part._replace(answers=answers),
+        )
 
 
 class AttemptContext(NamedTuple):

@@ -1,13 +1,11 @@
 """All cells of a sweep through lanes: rounds of brackets until every bracket has closed."""
 
-from typing import Any
-
 import numpy as np
 
 from .._checks import quiet_where_extreme, viscosity_of
 from .._compile import WORKERS
 from ..model import Scene, SummedPotential, tabulated_scene
-from ..numerics import rows_of
+from ..numerics import concatenated, rows_of
 from .attempts import AttemptContext, Cellwise, SoFar, with_rows
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import BracketContext, Report, find_fast_slides, no_effort
@@ -15,8 +13,7 @@ from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, known_path
-from .plan import Planned, in_phases, lane_scene
-from .plans_ahead import plan_of_cells
+from .plan import Planned, in_phases, lane_scene, planned
 from .rosenbrock import Tableau
 from .settings import SETTINGS
 from .slip_map import none_known
@@ -52,33 +49,28 @@ def integrate_cells(
     than the scene has room for.
     """
 
-    def cells(chosen: Any) -> CellResults | None:
-        return _integrated(
+    # A sum is a surface of its own at every eps.
+    summed = isinstance(scene.potential, SummedPotential)
+    one = [np.arange(eps.size)]
+    groups = [np.flatnonzero(eps == e) for e in np.unique(eps)] if summed else one
+    parts = []
+    for group in groups:
+        part = _integrated(
             scene=scene,
-            eps=eps[chosen],
-            gamma=gamma[chosen],
-            phase=None if phase is None else phase[chosen],
+            eps=eps[group],
+            gamma=gamma[group],
+            phase=None if phase is None else phase[group],
             ts=ts,
             accuracy=accuracy,
             method=method,
-            wanted=_sums(balanced, suprema),
+            wanted=Sums(energies=balanced, extremes=balanced or suprema),
             report=report,
             tableau=tableau,
         )
-
-    if not isinstance(scene.potential, SummedPotential):
-        return cells(slice(None))
-    # A sum is a surface of its own at every eps.
-    found: dict[str, np.ndarray] = {}
-    for size in np.unique(eps):
-        those = np.flatnonzero(eps == size)
-        part = cells(those)
         if part is None:
             return None
-        for name, values in part._asdict().items():
-            found.setdefault(name, np.empty((eps.size, *values.shape[1:]), values.dtype))
-            found[name][those] = values
-    return CellResults(**found)
+        parts.append(part)
+    return rows_of(concatenated(parts), np.argsort(np.concatenate(groups)))
 
 
 def _integrated(
@@ -104,9 +96,8 @@ def _integrated(
     own = whose = np.arange(eps.size)
     if phase is not None:
         _, own, whose = np.unique(eps + 1j * gamma, return_index=True, return_inverse=True)
-    plan = plan_of_cells(
-        scene=scene,
-        tables=tables,
+    plan = planned(
+        scene=tables,
         path=path,
         eps=eps[own],
         gamma=gamma[own],
@@ -171,8 +162,7 @@ def _surveyed_again(sweep: AttemptContext, so_far: SoFar, rough: np.ndarray) -> 
     longer = np.maximum(some.needs.tile, wells / SETTINGS.tiles)
     tile = np.where(samples > 0, some.needs.tile, longer)
     some = some._replace(needs=some.needs._replace(samples=samples, tile=tile))
-    so_far = so_far.with_cells(rows_of(some, can), again)
-    return so_far.with_attempt(sweep.attempt(rows_of(so_far.cells, again)), again)
+    return so_far.with_attempt(sweep.attempt(rows_of(some, can)), again)
 
 
 def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
@@ -221,10 +211,6 @@ def prepare_cells(scene: Scene, eps: np.ndarray, times: int) -> None:
     _prepare(lanes, eps.size, times, summed=True)
 
 
-def _sums(balanced: bool, suprema: bool) -> Sums:
-    return Sums(energies=balanced, extremes=balanced or suprema)
-
-
 def _prepare(
     lanes: LaneScene,
     cells: int,
@@ -259,7 +245,7 @@ def _from_the_start(sweep: AttemptContext, so_far: SoFar) -> SoFar:
         return so_far
     # From a fast slide it would set off as far from the tip as the brackets that stayed
     # open.
-    some = _without_slides(rows_of(so_far.cells, chosen))
+    some = rows_of(so_far.cells, chosen)
     forever, none = np.full(chosen.size, np.inf), np.zeros(chosen.size)
     needs = some.needs._replace(
         run_up=forever,
@@ -268,12 +254,8 @@ def _from_the_start(sweep: AttemptContext, so_far: SoFar) -> SoFar:
         samples=none,
         restarts=np.zeros_like(some.needs.restarts),
     )
-    part = sweep.attempt(some._replace(needs=needs))
+    ground = some.ground._replace(fast_slides=none_known(chosen.size))
+    part = sweep.attempt(some._replace(ground=ground, needs=needs))
     # Lanes that failed say why.
     left = np.flatnonzero(part.open_ & (part.answers.status == int(Status.OK)))
     return so_far.with_attempt(part.with_status(left, Status.OPEN_BRACKET), chosen)
-
-
-def _without_slides(some: Cellwise) -> Cellwise:
-    ground = some.ground._replace(fast_slides=none_known(some.ground.eps.size))
-    return some._replace(ground=ground)
