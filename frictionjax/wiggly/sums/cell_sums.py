@@ -43,29 +43,6 @@ def way_of(
     return CellWay(chain, slides, surveys, totals, before)
 
 
-class _Outputs(NamedTuple):
-    """Where in a cell's chain or in which surveyed slide each requested time is."""
-
-    stop: np.ndarray
-    place: np.ndarray
-    survey: np.ndarray
-    begin: np.ndarray
-
-
-def _outputs(
-    cell: CellWay, stops: StopValues, layout: Layout, output: np.ndarray
-) -> _Outputs:
-    place = np.full(stops.time.size + 1, -1)
-    place[cell.chain] = np.arange(cell.chain.size)
-    lows = np.array([survey.low for survey in cell.surveys])
-    owner = layout.brackets.owner
-    # Where its bracket begins: times of one bracket may be in surveys further on.
-    first = np.searchsorted(owner, owner[output])
-    survey = np.searchsorted(lows, stops.time[first], side="right") - 1
-    begin = layout.brackets.begin[owner[output]]
-    return _Outputs(output, place[output], survey, begin)
-
-
 def _since_begin(brackets: Brackets, stops: StopValues, chosen: np.ndarray) -> np.ndarray:
     """Integrals in J over the brackets of the chosen stops, up to these, (3, n).
 
@@ -84,15 +61,26 @@ def _since_begin(brackets: Brackets, stops: StopValues, chosen: np.ndarray) -> n
 
 
 def _running(
-    cell: CellWay, stops: StopValues, brackets: Brackets, outputs: _Outputs
+    cell: CellWay, stops: StopValues, brackets: Brackets, output: np.ndarray
 ) -> np.ndarray:
-    """Integrals in J from 0 to each requested time, (3, n)."""
-    in_chain = (outputs.place >= 0) & (outputs.stop >= 0)
-    found = np.where(in_chain, cell.totals[:, np.maximum(outputs.place, 0)], 0.0)
+    """Integrals in J from 0 to each requested time, (3, n).
+
+    At a stop of the cell's chain, or in a bracket of its own, in a surveyed slide.
+    """
+    place = np.full(stops.time.size + 1, -1)
+    place[cell.chain] = np.arange(cell.chain.size)
+    place, known = place[output], output >= 0
+    in_chain = (place >= 0) & known
+    found = np.where(in_chain, cell.totals[:, np.maximum(place, 0)], 0.0)
+    lows = np.array([survey.low for survey in cell.surveys])
+    # Where its bracket begins: times of one bracket may be in surveys further on.
+    first = np.searchsorted(brackets.owner, brackets.owner[output])
+    which = np.searchsorted(lows, stops.time[first], side="right") - 1
+    begin = brackets.begin[brackets.owner[output]]
     for k, survey in enumerate(cell.surveys):
-        mine = np.flatnonzero(~in_chain & (outputs.stop >= 0) & (outputs.survey == k))
-        done = survey.integrals(outputs.begin[mine])
-        since_begin = _since_begin(brackets, stops, outputs.stop[mine])
+        mine = np.flatnonzero(~in_chain & known & (which == k))
+        done = survey.integrals(begin[mine])
+        since_begin = _since_begin(brackets, stops, output[mine])
         found[:, mine] = cell.before[k][:, None] + done + since_begin
     return found
 
@@ -115,8 +103,7 @@ def energetics(
     z - path add to it; the direct sum is an independent second value. `unit`: the accuracy
     in m.
     """
-    outputs = _outputs(cell, stops, layout, output)
-    running = _running(cell, stops, layout.brackets, outputs)
+    running = _running(cell, stops, layout.brackets, output)
     beyond = energy0 - stops.energy[cell.chain] - cell.totals[WORK]
     errors = _errors(cell, stops, path, unit)
     if _is_summed(cell, errors, path, eps):

@@ -110,7 +110,9 @@ def evaluate(
                 eps=eps[c],
             )
         off = deviations(cell, stops) if wanted.extremes else NO_DEVIATIONS
-        used = np.concatenate([cell.chain, output[output >= 0], *_periods(cell)])
+        used = np.concatenate(
+            [cell.chain, output[output >= 0], *(slide.stops for slide in cell.slides)]
+        )
         unbalanced = wanted.energies and not _is_balanced(cell, eps[c] * path.width)
         row: Any = {
             "z": np.where(output >= 0, stops.z[output], z_start[c]),
@@ -129,11 +131,6 @@ def evaluate(
 def _share(cell: CellWay, path: Path, whole: float) -> float:
     covered = sum(abs(s.way) for s in cell.slides)
     return float(covered / whole) if whole > 0 else 0.0
-
-
-def _periods(cell: CellWay) -> list[np.ndarray]:
-    """Stops at which the periods end that are measured inside slides."""
-    return [slide.stops for slide in cell.slides]
 
 
 def _is_balanced(cell: CellWay, slip: float) -> bool:

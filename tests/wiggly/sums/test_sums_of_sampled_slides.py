@@ -27,7 +27,7 @@ from frictionjax.wiggly.sums.cell_sums import (
     CellWay,
     _errors,
     _is_summed,
-    _outputs,
+    _running,
     _since_begin,
     deviations,
     energetics,
@@ -204,15 +204,17 @@ def test_times_in_a_rest_of_the_path_share_a_window():
 
 def test_times_of_a_window_count_from_the_survey_in_which_it_begins():
     """Taken beyond its ends a survey gave 6e7 times what is dissipated (gamma = 0.1)."""
-    surveys = [SimpleNamespace(low=0.0), SimpleNamespace(low=1.0)]
-    cell = SimpleNamespace(chain=np.zeros(0, dtype=int), surveys=surveys)
-    stops = SimpleNamespace(time=np.array([0.5, 0.9, 1.4, 1.6]))
+    same = {"integrals": lambda times: np.stack([times] * 3)}
+    surveys = [SimpleNamespace(low=low, **same) for low in (0.0, 1.0)]
+    before, totals = np.array([[0.0] * 3, [10.0] * 3]), np.zeros((3, 1))
+    of = {"surveys": surveys, "before": before, "totals": totals}
+    cell = SimpleNamespace(chain=np.zeros(0, dtype=int), **of)
+    stops = SimpleNamespace(time=np.array([0.5, 0.9, 1.4, 1.6]), sums=np.zeros((3, 4)))
     brackets = SimpleNamespace(
         owner=np.array([0, 1, 1, 2]), begin=np.array([0.4, 0.8, 1.5])
     )
-    found = _outputs(cell, stops, SimpleNamespace(brackets=brackets), np.arange(4))
-    assert found.survey.tolist() == [0, 0, 0, 1]
-    assert found.begin.tolist() == [0.4, 0.8, 0.8, 1.5]
+    found = _running(cell, stops, brackets, np.arange(4))
+    assert found.tolist() == [[0.4, 0.8, 0.8, 11.5]] * 3
 
 
 class Bursts(eqx.Module):
