@@ -213,7 +213,7 @@ def _solved(
         front,
         t=jnp.where(unfinished, reached, stop),
         y=y,
-        code=_code(found.result),
+        code=code_of(found.result),
         steps=front.steps + found.stats["num_steps"],
         rejected=found.stats["num_rejected_steps"],
     )
@@ -222,8 +222,3 @@ def _solved(
 def _tip_norm(scaled: PyTree) -> Real:
     """Step control looks at the tip alone; the running integrals follow it."""
     return jnp.abs(jax.tree_util.tree_leaves(scaled)[0])
-
-
-def _code(result: diffrax.RESULTS) -> Array:
-    spent = result == diffrax.RESULTS.max_steps_reached
-    return jnp.where(spent, int(Status.MAX_STEPS), code_of(result))
