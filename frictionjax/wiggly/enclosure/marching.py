@@ -104,6 +104,10 @@ class BracketContext(NamedTuple):
             wells=wells,
             back=back,
         )
+        return self.march_from(brackets, starts)
+
+    def march_from(self, brackets: Brackets, starts: Starts) -> BracketRound:
+        """March all brackets from their starts."""
         return self.through(self.planned(brackets, starts))
 
     def planned(self, brackets: Brackets, starts: Starts) -> BracketPlan:
