@@ -74,7 +74,6 @@ def _sin_cos_jvp(
     return (sine, cosine), (cosine * turn, -sine * turn)
 
 
-@jax.custom_jvp
 def fourier_sum(
     cos: Float[Array, " harmonics"],
     sin: Float[Array, " harmonics"],
@@ -85,16 +84,19 @@ def fourier_sum(
     `cos`, `sin`: shape (harmonics,); `y`: any shape. Horner's rule in powers of
     `e^(2 pi i y)`, the same ones for the sum and all its derivatives.
     """
-    return _add_up(cos, sin, y)
+    y = jnp.asarray(y, dtype=float)
+    turn = _evaluate(jax.lax.stop_gradient(y))
+    return _sum_at(cos, sin, turn, y)
+
+
+@jax.custom_jvp
+def _sum_at(cos: Array, sin: Array, turn: tuple, y: Array) -> Array:
+    """The sum from `turn`, sine and cosine at y: `y` itself is there for derivatives."""
+    return _add_up(cos, sin, turn)
 
 
 @partial(jax.jit, inline=True)
-def _add_up(
-    cos: Float[Array, " harmonics"],
-    sin: Float[Array, " harmonics"],
-    y: Float[Array, "*shape"],
-) -> Float[Array, "*shape"]:
-    turn = _evaluate(y)
+def _add_up(cos: Array, sin: Array, turn: tuple) -> Array:
     powers = [turn]
     for n in range(2, min(cos.shape[0], _GROUP) + 1):
         powers.append(_times(powers[n // 2 - 1], powers[n - n // 2 - 1]))
@@ -110,7 +112,7 @@ def _add_up(
         def block(total: tuple, coefficients: list) -> tuple[tuple, None]:
             return _plus(_times(total, whole), _groups(powers, *coefficients)), None
 
-        none = jnp.zeros_like(y), jnp.zeros_like(y)
+        none = jnp.zeros_like(turn[0]), jnp.zeros_like(turn[0])
         total, _ = jax.lax.scan(block, none, blocks, reverse=True)
     return _times(total, turn)[1]
 
@@ -142,17 +144,17 @@ def _groups(
     return total
 
 
-def _fourier_sum_jvp(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
-    cos, sin, y = primals
-    cos_dot, sin_dot, y_dot = tangents
-    total = fourier_sum(cos, sin, y)
+def _sum_at_jvp(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
+    cos, sin, turn, y = primals
+    cos_dot, sin_dot, _, y_dot = tangents
+    total = _sum_at(cos, sin, turn, y)
     change = jnp.zeros_like(total)
     # Zero tangents leave no trace: without this, programs triple with every derivative.
     if not is_zero(y_dot):
         turns = 2 * jnp.pi * jnp.arange(1, cos.shape[0] + 1)
-        change = fourier_sum(turns * sin, -turns * cos, y) * y_dot
+        change = _sum_at(turns * sin, -turns * cos, turn, y) * y_dot
     if not (is_zero(cos_dot) and is_zero(sin_dot)):
-        change = change + fourier_sum(_filled(cos_dot), _filled(sin_dot), y)
+        change = change + _sum_at(_filled(cos_dot), _filled(sin_dot), turn, y)
     return total, change
 
 
@@ -160,4 +162,4 @@ def _filled(tangent: Any) -> Array:
     return jnp.zeros(tangent.shape) if is_zero(tangent) else tangent
 
 
-fourier_sum.defjvp(_fourier_sum_jvp, symbolic_zeros=True)
+_sum_at.defjvp(_sum_at_jvp, symbolic_zeros=True)

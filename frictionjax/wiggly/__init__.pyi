@@ -22,9 +22,8 @@ from .rosenbrock import RODAS4P2 as RODAS4P2
 from .rosenbrock import RODAS5P as RODAS5P
 from .rosenbrock import Linearised as Linearised
 from .rosenbrock import Tableau as Tableau
-from .rosenbrock import combine as combine
 from .rosenbrock import dense_output as dense_output
-from .rosenbrock import rolled_step as rolled_step
+from .rosenbrock import rosenbrock_step as rosenbrock_step
 from .sequential import MAX_STEPS as MAX_STEPS
 from .sequential import OURS as OURS
 from .sequential import AbstractObserver as AbstractObserver

@@ -153,7 +153,7 @@ import os, sys
 import jax
 jax.config.update("jax_enable_x64", True)
 import frictionjax as fx
-from frictionjax import surroundings, friction
+from frictionjax import friction
 child = os.fork()
 if child == 0:
     friction(fx.profiles.Sine(0.1), fx.bristles.Homothetic(1.0))

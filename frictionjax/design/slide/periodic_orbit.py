@@ -31,7 +31,7 @@ from ...wiggly import (
     Linearised,
     dense_output,
     judge,
-    rolled_step,
+    rosenbrock_step,
     step_of,
 )
 from .settings import SETTINGS
@@ -120,7 +120,7 @@ def survey_ground(slide: SlideScene) -> tuple[Real, Real, Real]:
     return grid[jnp.argmax(force)], jnp.max(climb), jnp.min(stretch)
 
 
-def slide_step(slide: SlideScene, x: Real, step: Real, level: Real) -> tuple[Real, Array]:
+def slide_step(slide: SlideScene, x: Real, step: Real, level: Real) -> tuple[Real, tuple]:
     """One Rosenbrock step and its stages."""
 
     def slope(x: Real, level: Real) -> Real:
@@ -132,7 +132,7 @@ def slide_step(slide: SlideScene, x: Real, step: Real, level: Real) -> tuple[Rea
     by_state = -drive * (2 * first - slide.give * stretch - climb)
     by_way = slide.slope(level, *bends)  # linear in both
     start = Linearised(drive * (first - slide.give * stretch - climb), by_state, by_way)
-    return rolled_step(_TABLEAU, slope, start, x, step, level)
+    return rosenbrock_step(_TABLEAU, slope, start, x, step, level)
 
 
 def _once(slide: SlideScene, start: Real, level: Real):

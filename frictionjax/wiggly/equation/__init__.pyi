@@ -5,7 +5,6 @@ from .energy_balance import arrival as arrival
 from .energy_balance import at_rest as at_rest
 from .energy_balance import dissipated as dissipated
 from .energy_balance import errors_of_sums as errors_of_sums
-from .energy_balance import in_a_loop as in_a_loop
 from .energy_balance import slopes_between as slopes_between
 from .field import Point as Point
 from .field import TipField as TipField

@@ -93,18 +93,6 @@ def _at_zero(t: Real) -> Real:
     return jnp.zeros_like(t)
 
 
-def _one_by_one(at_node: Callable, total: tuple) -> tuple:
-    for s in _NODES:
-        total = tuple(a + b for a, b in zip(total, at_node(s), strict=True))
-    return total
-
-
-def in_a_loop(at_node: Callable, total: tuple) -> tuple:
-    """`total` and the sum over the nodes: half the program, for derivatives."""
-    values = jax.lax.map(at_node, jnp.array(_NODES))
-    return tuple(a + jnp.sum(b) for a, b in zip(total, values, strict=True))
-
-
 def advance(
     field: TipField,
     balance: Balance,
@@ -115,12 +103,11 @@ def advance(
     start: Point,
     end: Point,
     reference: Callable[[Real], Real] = _at_zero,
-    sum_of: Callable[[Callable, tuple], tuple] = _one_by_one,
 ) -> Balance:
     """The integrals after the step from (t0, y0) to y1, along a cubic between.
 
     `reference`: any curve in m, from which the work is counted. `end`: see `arrival`.
-    `sum_of`: how the nodes are added up.
+    The nodes in a loop: half the program.
     """
     viscosity = field.viscosity
     slope0, slope1, rest = slopes_between(start, end, step, y1 - y0)
@@ -129,20 +116,20 @@ def advance(
     along = (left1 - left0) / step  # the branch, at both nodes, instead of the cubic
     ends = y0, y1, slope0, slope1
 
-    def at_node(s: Any) -> tuple[Real, Real, Real]:
+    def add(total: tuple, s: Real) -> tuple[tuple[Real, Real, Real], None]:
         y, velocity = _cubic(s, step, *ends)
         t = t0 + s * step
         force, stretch = field.driving_force(t, y)
         drawn, speed = (field.eps * stretch * v for v in (velocity, velocity + along))
-        return (
-            0.5 * step * field.load_slope(t) * (field.state(y) - reference(t)),
-            0.5 * step * viscosity * speed**2,
-            0.25 * step * (viscosity * drawn - force) ** 2 / viscosity,
-        )
+        work, viscous, defect = total
+        work += 0.5 * step * field.load_slope(t) * (field.state(y) - reference(t))
+        viscous += 0.5 * step * viscosity * speed**2
+        defect += 0.25 * step * (viscosity * drawn - force) ** 2 / viscosity
+        return (work, viscous, defect), None
 
     none = jnp.zeros_like(y0)
     total = none, viscosity * field.eps**2 * falls, none
-    work, viscous, defect = sum_of(at_node, total)
+    (work, viscous, defect), _ = jax.lax.scan(add, total, jnp.array(_NODES))
     # On a rest the cubic is good to the tolerance but not to the relaxation time: the
     # defect is taken at the step's end, where the solver put the solution.
     drag = viscosity * field.eps * end.stretch

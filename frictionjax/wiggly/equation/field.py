@@ -69,8 +69,14 @@ class TipField(eqx.Module):
     def point(self, t: Real, y: Real) -> Point:
         """The field and its derivatives at one point."""
         one = jnp.ones_like(y)
-        velocity, by_state = jax.jvp(lambda s: self.velocity(t, s), (y,), (one,))
-        _, stretch = self.potential.tip_force(y, self.eps)
+
+        def velocity_and_stretch(s: Real) -> tuple[Real, Real]:
+            force, stretch = self.driving_force(t, s)
+            return force / (self.viscosity * self.eps * stretch), stretch
+
+        velocity, by_state, stretch = jax.jvp(
+            velocity_and_stretch, (y,), (one,), has_aux=True
+        )
         by_time = self.load_slope(t) / (self.viscosity * self.eps * stretch)
         load = self.load(self.origin + t)
         return Point(velocity, by_state, by_time, self.state(y), stretch, load)

@@ -4,5 +4,4 @@ from .step import Linearised as Linearised
 from .step import Tableau as Tableau
 from .step import combine as combine
 from .step import dense_output as dense_output
-from .step import rolled_step as rolled_step
 from .step import rosenbrock_step as rosenbrock_step

@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
 
 from ..._checks import Real
 
@@ -36,7 +35,32 @@ class Linearised(NamedTuple):
     by_time: Real
 
 
-def combine(weights: tuple[float, ...], values: Sequence[Any] | Array) -> Real | float:
+class _Row(NamedTuple):
+    """What belongs to one stage; `a`, `c`: weights of as many stages before it as there
+    are in all, 0 for those that it has not."""
+
+    a: Any
+    c: Any
+    time: Any
+    time_derivative: Any
+
+
+def _later_rows(tableau: Tableau) -> _Row:
+    """Of all stages but the first, which has nothing to go by but the start."""
+    a, c = (
+        np.array([(0.0,) * (len(rows) - len(row)) + row for row in rows[1:]])
+        for rows in (tableau.a, tableau.c)
+    )
+    times, by_time = (np.array(x[1:]) for x in (tableau.times, tableau.time_derivative))
+    return _Row(a, c, times, by_time)
+
+
+def _weighted(weights: Any, stages: tuple[Real, ...]) -> Real:
+    terms = [weights[j] * stage for j, stage in enumerate(stages)]
+    return sum(terms[1:], terms[0])
+
+
+def combine(weights: tuple[float, ...], values: Sequence[Any]) -> Real | float:
     """Weighted sum that leaves zero weights out of the program."""
     terms = [w * v for w, v in zip(weights, values, strict=True) if w != 0]
     return sum(terms[1:], terms[0]) if terms else 0.0
@@ -49,65 +73,31 @@ def rosenbrock_step(
     t: Real,
     step: Real,
     y: Real,
-) -> tuple[Real, list]:
+) -> tuple[Real, tuple[Real, ...]]:
     """State after one step, and the stages; the last one is the error estimate.
 
     Elementwise: arrays of lanes are as good as scalars. One division a stage, no linear
-    algebra and no Newton iteration.
+    algebra and no Newton iteration. In a loop over the stages: one copy of the field for
+    eight, half the program to trace and to compile, and no more time to run.
     """
     inverse = 1 / (1 / (step * tableau.gamma) - start.by_state)
     per_step = 1 / step
-    stages: list = []
-    rows = zip(tableau.a, tableau.c, tableau.times, tableau.time_derivative, strict=True)
-    for a, c, time, by_time in rows:
-        inside = y + combine(a, stages)
-        fresh = any(a) or time != 0
-        slope = velocity(t + time * step, inside) if fresh else start.velocity
-        forcing = step * by_time * start.by_time if by_time else 0.0
-        stages.append((slope + combine(c, stages) * per_step + forcing) * inverse)
+
+    def stage(carry: tuple, row: _Row) -> tuple[tuple, None]:
+        before, _ = carry
+        inside = y + _weighted(row.a, before)
+        push = velocity(t + row.time * step, inside) + _weighted(row.c, before) * per_step
+        push = (push + step * row.time_derivative * start.by_time) * inverse
+        return ((*before[1:], push), inside), None
+
+    first = (start.velocity + step * tableau.time_derivative[0] * start.by_time) * inverse
+    none = (jnp.zeros_like(first),) * (len(tableau.times) - 1)
+    (stages, inside), _ = jax.lax.scan(stage, ((*none, first), y), _later_rows(tableau))
     return inside + stages[-1], stages
 
 
-def rolled_step(
-    tableau: Tableau,
-    velocity: Callable[[Real, Real], Real],
-    start: Linearised,
-    t: Real,
-    step: Real,
-    y: Real,
-) -> tuple[Real, Array]:
-    """`rosenbrock_step` of one lane as a loop over the stages, stages in an array.
-
-    One copy of the field for eight: derivatives of a step take a quarter of the time to
-    trace and to compile, and as long to run.
-    """
-    count = len(tableau.times)
-    a, c = (
-        np.array([row + (0.0,) * (count - len(row)) for row in rows])
-        for rows in (tableau.a, tableau.c)
-    )
-    rows = (
-        np.arange(count),
-        np.array(tableau.times),
-        np.array(tableau.time_derivative),
-        a,
-        c,
-    )
-    inverse = 1 / (1 / (step * tableau.gamma) - start.by_state)
-
-    def stage(stages: Array, row: tuple) -> tuple[Array, Real]:
-        index, time, by_time, a, c = row
-        inside = y + jnp.sum(a * stages)
-        push = velocity(t + time * step, inside) + jnp.sum(c * stages) / step
-        push = (push + step * by_time * start.by_time) * inverse
-        return stages.at[index].set(push), inside
-
-    stages, inside = jax.lax.scan(stage, jnp.zeros(count), rows)
-    return inside[-1] + stages[-1], stages
-
-
 def dense_output(
-    tableau: Tableau, y0: Real, y1: Real, stages: list | Array, share: Real
+    tableau: Tableau, y0: Real, y1: Real, stages: Sequence[Real], share: Real
 ) -> Real:
     """The interpolant at a share of the step, of order `order - 1`."""
     bends = [combine(row, stages) for row in tableau.dense]

@@ -17,7 +17,6 @@ from ..equation import (
     arrival,
     at_rest,
     dissipated,
-    in_a_loop,
 )
 
 
@@ -66,7 +65,6 @@ class Recorder(eqx.Module):
                 y1,
                 start,
                 arrival(self.field, t0, step, end),
-                sum_of=in_a_loop,
             )
             after.append(balance)
         if self.watch is not None:

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from equinox import AbstractClassVar
 
 from ..._checks import Real, require
-from ..rosenbrock import RODAS4P2, RODAS5P, Linearised, Tableau, rolled_step
+from ..rosenbrock import RODAS4P2, RODAS5P, Linearised, Tableau, rosenbrock_step
 
 
 class AbstractRosenbrock(diffrax.AbstractAdaptiveSolver):
@@ -49,7 +49,7 @@ class AbstractRosenbrock(diffrax.AbstractAdaptiveSolver):
         velocity, by_state = jax.jvp(lambda y: field(t0, y), (y0,), (jnp.ones_like(y0),))
         _, by_time = jax.jvp(lambda t: field(t, y0), (t0,), (jnp.ones_like(t0),))
         start = Linearised(velocity, by_state, by_time)
-        y1, stages = rolled_step(self.tableau, field, start, t0, t1 - t0, y0)
+        y1, stages = rosenbrock_step(self.tableau, field, start, t0, t1 - t0, y0)
         return y1, stages[-1], {"y0": y0, "y1": y1}, None, diffrax.RESULTS.successful
 
 

@@ -21,7 +21,7 @@ from ..equation import (
     dissipated,
     slopes_between,
 )
-from ..rosenbrock import Linearised, rolled_step
+from ..rosenbrock import Linearised, rosenbrock_step
 from ..stepping import Control, ControlState, judge, step_of
 from .settings import SETTINGS
 
@@ -248,10 +248,10 @@ def _noted(
     )
 
 
-def _step(field: TipField, march: _March, length: Real) -> tuple[Real, Array]:
+def _step(field: TipField, march: _March, length: Real) -> tuple[Real, tuple]:
     start = Linearised(*march.point[:3])
     args = start, march.time, length, march.place
-    return rolled_step(SETTINGS.tableau, field.velocity, *args)
+    return rosenbrock_step(SETTINGS.tableau, field.velocity, *args)
 
 
 def _out(ends: RangeEnds, before: Real, after: Real) -> Real:

@@ -369,7 +369,8 @@ def test_a_free_angle_is_followed_to_the_least_bending():
     """315 steps: the energy is 0.627 where 200 of them end."""
     part = fx.bristles.SlantedSpring(1.594244841476, 1.897988490612, 1.0, 1.044173817091)
     target = fx.Target(part, 0.0081320531849, -0.1367262558056)
-    fit = fx.fit_profile(target, free="angle", bounds={"angle": (-1.031499433886, 1.0454)})
+    bounds = {"angle": (-1.031499433886, 1.0454)}
+    fit = fx.fit_profile(target, free="angle", bounds=bounds, pulling=True)
     assert fit.success
     assert fit.status == ProfileStatus.MET
     assert fit.bending_energy == pytest.approx(0.427, rel=2e-3)

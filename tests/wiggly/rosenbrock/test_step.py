@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from frictionjax.wiggly.rosenbrock import RODAS5P, Linearised, dense_output, rolled_step
+from frictionjax.wiggly.rosenbrock import RODAS5P, Linearised, dense_output, rosenbrock_step
 
 SHARES = jnp.linspace(0.0, 1.0, 8)[1:]
 
@@ -22,7 +22,7 @@ def curve(step, count, y):
         t = index * step
         velocity, by_state = jax.value_and_grad(field, 1)(t, y)
         start = Linearised(velocity, by_state, jax.grad(field)(t, y))
-        after, stages = rolled_step(RODAS5P, field, start, t, step, y)
+        after, stages = rosenbrock_step(RODAS5P, field, start, t, step, y)
         inside = jax.vmap(lambda s: dense_output(RODAS5P, y, after, stages, s))(SHARES)
         return after, jnp.where(index < count, inside, jnp.nan)
 
