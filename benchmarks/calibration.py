@@ -24,7 +24,7 @@ import taylor_truth
 
 import frictionjax as fx
 from frictionjax.cost.instants import Instants, instants
-from frictionjax.wiggly.equation.status import status_of
+from frictionjax.wiggly import Status
 
 fx.use_fast_cpu()
 jax.config.update("jax_enable_x64", True)
@@ -188,7 +188,7 @@ def main() -> None:
                     rows.append(row)
                     if row.status or not row.ratio < 1:
                         cell = f"{name} {load} eps={eps:.2g} gamma={row.gamma:g}"
-                        word = status_of(int(row.status)).name
+                        word = Status.of(row.status).name
                         print(
                             f"{cell} accuracy={row.accuracy:.0e}: {row.ratio:.3g} of it, "
                             f"truth {row.known:.1g} {word}",

@@ -20,7 +20,7 @@ from scenes import AMPLITUDE, PERIOD, scene
 from truth import ACCURACY, error_of, own
 
 import frictionjax as fx
-from frictionjax.wiggly.equation.status import status_of
+from frictionjax.wiggly import Status
 
 LOADS = {
     "sine": fx.loads.Sine(AMPLITUDE, PERIOD),
@@ -40,7 +40,7 @@ def row(load: str, gamma: float, eps: float, with_error: bool) -> tuple[float, f
     open_ = np.sum(~(gap <= 0.5 * ACCURACY))
     texts = [load, f"{gamma:g}", f"{eps:g}", f"{best:.3f}", f"{found.steps[0]:.0f}"]
     texts += [f"{error:.1e}", f"{open_}", f"{gap.max():.1e}", f"{np.sum(how == 0)}"]
-    print(f"| {' | '.join([*texts, status_of(int(found.status[0])).name])} |", flush=True)
+    print(f"| {' | '.join([*texts, Status.of(found.status[0]).name])} |", flush=True)
     return best, float(found.steps[0])
 
 

@@ -22,7 +22,7 @@ from peers import lsoda_states
 from scenes import AMPLITUDE, FASTEST, PERIOD, SLOPE, scene
 from truth import ACCURACY
 
-from frictionjax.wiggly.equation.status import status_of
+from frictionjax.wiggly import Status
 
 _A_SLIP = 16  # times
 _COLUMNS = "gamma | eps | windows | s | gap/eps | status | every slip | s | apart"
@@ -49,7 +49,7 @@ def row(gamma: float, eps: float, whole: bool) -> None:
     """Prints a cell."""
     one = scene("vertical")
     found, best, *_ = timed(lambda: solve(one, eps, gamma, ACCURACY, "windowed", True))
-    ours, status = float(found.sup_error[0]), status_of(int(found.status[0])).name
+    ours, status = float(found.sup_error[0]), Status.of(found.status[0]).name
     texts = [f"{gamma:g}", f"{eps:g}", f"{ours:.6e}", f"{best:.2f}"]
     texts += [f"{found.gap.max():.1e}", status]
     if whole:

@@ -22,7 +22,7 @@ from peers import COMPILED, PEERS, installed
 from scenes import NAMES, scene
 from truth import ACCURACY, error_of, own
 
-from frictionjax.wiggly.equation.status import status_of
+from frictionjax.wiggly import Status
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10)
 _A_WELL = 0.5  # eps: an error that means another well
@@ -70,7 +70,7 @@ def report(run: Timed, eps: np.ndarray, gamma: np.ndarray, truths, method: str):
     found, best, worst, first, cpu = run
     cells = zip(found.z, truths, eps, strict=True)
     errors = np.array([error_of(z, truth, e) for z, truth, e in cells])
-    bad = {status_of(int(s)).name for s in found.status if s != 0}
+    bad = {Status.of(s).name for s in found.status if s != 0}
     gammas = ", ".join(f"{g:g}" for g in np.unique(gamma))
     print(
         f"ours, {method}, gamma {gammas}: {best:.3f} s for {eps.size} cells "

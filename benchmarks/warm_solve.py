@@ -25,7 +25,7 @@ RNG = np.random.default_rng(5)
 STEPS = {
     "tables": (batch, "tabulated_scene"),
     "path": (batch, "known_path"),
-    "plan": (batch, "plan_of_cells"),
+    "plan": (batch, "planned"),
     "layout": (attempts, "lay_out"),
     "starts": (marching, "starts_of"),
     "brackets": (marching, "plan_brackets"),

@@ -45,7 +45,7 @@ FLOORS = {
         {"enclosure"},
         {"sums", "ways"},
         {"plan"},
-        {"plans_ahead", "attempts"},
+        {"attempts"},
         {"predicted_work"},
         {"batch"},
         {"arrays", "differentiable"},

@@ -32,12 +32,6 @@ class ByIdentity:
         known, note = self._notes.get(id(thing), (None, None))
         return note if known is not None and known() is thing else None
 
-    def take(self, thing: Any) -> Any:
-        """The note on a thing, which is then gone; None without one."""
-        note = self.get(thing)
-        self._notes.pop(id(thing), None)
-        return note
-
     def put(self, thing: Any, note: Any) -> None:
         """Keep a note that does not refer to the thing itself."""
         key = id(thing)

@@ -8,20 +8,10 @@ import numpy as np
 from jax.extend.core import Literal
 
 from .numpy_rules import RULES
-from .programs import ARRAYS, flattened
+from .programs import put_together, taken_apart
 
 _MOST = 256  # programs kept of one function
-_CALLS = {
-    "jit": "jaxpr",
-    "pjit": "jaxpr",
-    "closed_call": "call_jaxpr",
-    "core_call": "call_jaxpr",
-    "remat": "jaxpr",
-    "checkpoint": "jaxpr",
-    "custom_jvp_call": "call_jaxpr",
-    "custom_vjp_call": "call_jaxpr",
-    "custom_vjp_call_jaxpr": "fun_jaxpr",
-}
+_CALLED = "jaxpr", "call_jaxpr", "fun_jaxpr"  # what a step that only calls has
 
 
 class Interpreted:
@@ -38,14 +28,13 @@ class Interpreted:
         self._known: dict[Any, tuple[Any, Any]] = {}
 
     def __call__(self, *args: Any) -> Any:
-        leaves, structure = flattened(args)
-        arrays = [np.asarray(leaf) for leaf in leaves if isinstance(leaf, ARRAYS)]
-        rest = tuple((i, x) for i, x in enumerate(leaves) if not isinstance(x, ARRAYS))
-        key = structure, rest, tuple([(a.shape, a.dtype) for a in arrays])
+        numbers, what = taken_apart(args)
+        arrays = [np.asarray(number) for number in numbers]
+        key = what, tuple([(a.shape, a.dtype) for a in arrays])
         found = self._known.get(key)
         if found is None:
             whole = jax.tree_util.tree_structure(args)
-            found = _traced(self._fn, whole, rest, arrays)
+            found = _traced(self._fn, whole, what[1], arrays)
             if len(self._known) >= _MOST:
                 self._known.clear()
             self._known[key] = found
@@ -57,10 +46,7 @@ class Interpreted:
 
 def _traced(fn: Callable, structure: Any, rest: tuple, arrays: list) -> tuple[Any, Any]:
     def flat(numbers: list) -> Any:
-        leaves = list(numbers)
-        for index, leaf in rest:
-            leaves.insert(index, leaf)
-        return fn(*jax.tree_util.tree_unflatten(structure, leaves))
+        return fn(*put_together(numbers, structure, rest))
 
     with jax.ensure_compile_time_eval():
         closed, shapes = jax.make_jaxpr(flat, return_shape=True)(arrays)
@@ -82,8 +68,9 @@ def _run(jaxpr: Any, constants: Any, arguments: list) -> list:
 
 def _results(eqn: Any, operands: list) -> list:
     name, params = eqn.primitive.name, eqn.params
-    if name in _CALLS:
-        return _call(params[_CALLS[name]], operands)
+    called = next((params[key] for key in _CALLED if key in params), None)
+    if called is not None and name != "scan":
+        return _call(called, operands)
     if name == "cond":
         which = int(np.clip(operands[0], 0, len(params["branches"]) - 1))
         return _call(params["branches"][which], operands[1:])

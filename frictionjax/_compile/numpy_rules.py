@@ -43,42 +43,30 @@ def _slice(params: dict, x: Any) -> Any:
     return x[tuple(map(slice, starts, limits, steps))]
 
 
-_TERMWISE: dict[str, Callable] = {
+# Steps that NumPy calls as JAX does.
+_ALIKE = (
+    *("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "exp2", "expm1", "log", "log1p"),
+    *("sqrt", "cbrt", "square", "abs", "sign", "floor", "ceil"),
+)
+
+_TERMWISE: dict[str, Callable] = {name: getattr(np, name) for name in _ALIKE} | {
     "add": np.add,
     "add_any": np.add,
     "sub": np.subtract,
     "mul": np.multiply,
     "neg": np.negative,
-    "sin": np.sin,
-    "cos": np.cos,
-    "tan": np.tan,
     "asin": np.arcsin,
     "acos": np.arccos,
     "atan": np.arctan,
     "atan2": np.arctan2,
-    "sinh": np.sinh,
-    "cosh": np.cosh,
-    "tanh": np.tanh,
     "asinh": np.arcsinh,
     "acosh": np.arccosh,
     "atanh": np.arctanh,
-    "exp": np.exp,
-    "exp2": np.exp2,
-    "expm1": np.expm1,
-    "log": np.log,
-    "log1p": np.log1p,
-    "sqrt": np.sqrt,
     "rsqrt": lambda x: 1 / np.sqrt(x),
-    "cbrt": np.cbrt,
     "logistic": lambda x: 1 / (1 + np.exp(-x)),
     "erf": np.vectorize(math.erf, otypes=[float]),
     "erfc": np.vectorize(math.erfc, otypes=[float]),
     "pow": np.power,
-    "square": np.square,
-    "abs": np.abs,
-    "sign": np.sign,
-    "floor": np.floor,
-    "ceil": np.ceil,
     "max": np.maximum,
     "min": np.minimum,
     "eq": np.equal,

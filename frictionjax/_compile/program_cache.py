@@ -61,16 +61,14 @@ def _listen() -> None:
     jax.monitoring.register_event_listener(_FETCHED.note)
 
 
-def keep_in(folder: Path | None) -> Path | None:
-    """Keep the programs that are compiled from now on in a folder; None: keep none.
+def keep_in(folder: Path) -> Path | None:
+    """Keep the programs that are compiled from now on in a folder.
 
     Returns where in it, which is a place of its own for each version of the library; None
     where it cannot be written: what is in it is used, and one warning says so.
     """
     global _place, _writes
-    _place, _writes = None if folder is None else folder / _stamp(), True
-    if _place is None:
-        return None
+    _place, _writes = folder / _stamp(), True
     _listen()
     _try_to_write(_place / f"probe-{os.getpid()}", bytes(_PROBE))
     with contextlib.suppress(OSError):

@@ -29,16 +29,11 @@ class Program:
         self._known: dict[Any, Callable] = {}
 
     def __call__(self, *args: Any) -> Any:
-        leaves, structure = flattened(args)
-        numbers = [leaf for leaf in leaves if isinstance(leaf, ARRAYS)]
-        rest: tuple = ()
-        if len(numbers) < len(leaves):
-            rest = tuple((i, x) for i, x in enumerate(leaves) if not isinstance(x, ARRAYS))
-        key = structure, rest
+        numbers, key = taken_apart(args)
         program = self._known.get(key)
         if program is None:
             whole = jax.tree_util.tree_structure(args)
-            program = self._compiled(whole, rest)
+            program = self._compiled(whole, key[1])
             if len(self._known) >= _MOST:
                 self._known.clear()
             self._known[key] = program
@@ -49,11 +44,8 @@ class Program:
     def _compiled(self, structure: Any, rest: tuple) -> Callable:
         fn = self._fn
 
-        def run(numbers: tuple) -> Any:
-            leaves = list(numbers)
-            for index, leaf in rest:
-                leaves.insert(index, leaf)
-            return fn(*jax.tree_util.tree_unflatten(structure, leaves))
+        def run(numbers: list) -> Any:
+            return fn(*put_together(numbers, structure, rest))
 
         run.__name__ = run.__qualname__ = fn.__name__
         return kept(fn, run, structure, rest)
@@ -115,6 +107,24 @@ def strong_arrays(tree: Any) -> Any:
         return jnp.asarray(leaf, dtype=float) if eqx.is_inexact_array(leaf) else leaf
 
     return jax.tree_util.tree_map(strong, tree)
+
+
+def taken_apart(args: tuple) -> tuple[list, tuple]:
+    """Arrays of some arguments, and what else there is: structures, other leaves."""
+    leaves, structure = flattened(args)
+    numbers = [leaf for leaf in leaves if isinstance(leaf, ARRAYS)]
+    rest: tuple = ()
+    if len(numbers) < len(leaves):
+        rest = tuple((i, x) for i, x in enumerate(leaves) if not isinstance(x, ARRAYS))
+    return numbers, (structure, rest)
+
+
+def put_together(numbers: list, structure: Any, rest: tuple) -> Any:
+    """The arguments again, of the tree `structure`."""
+    leaves = list(numbers)
+    for index, leaf in rest:
+        leaves.insert(index, leaf)
+    return jax.tree_util.tree_unflatten(structure, leaves)
 
 
 def in_chunks(

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from .._text import ResultTable
 from ..model import friction
 from ..studies import flag_names
-from ..wiggly import Status, status_of
+from ..wiggly import Status
 from .job import Job, ReportRequest
 from .page import (
     Captioned,
@@ -258,7 +258,7 @@ def _failed_rows(data: xr.Dataset) -> list[tuple[str, ...]]:
             continue
         gamma, eps, solver, accuracy = run.run.item()
         status = "wrong" if wrong else names[code]
-        why = _WRONG if wrong else status_of(code).message
+        why = _WRONG if wrong else Status.of(code).message
         method = f"{gamma:.4g}", f"{eps:.4g}", str(solver)
         asked = f"{accuracy:.0e}"
         if rows and (*rows[-1][:3], *rows[-1][4:]) == (*method, status, why):

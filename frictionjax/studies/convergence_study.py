@@ -20,7 +20,7 @@ from ..convergence import (
 )
 from ..slide_laws import NO_LAW, Prediction, SlideData, predict_errors
 from ..sweeps import one_scene, whole_grid
-from ..wiggly import Status, status_of, warn_of_failed
+from ..wiggly import Status, warn_of_failed
 from .scene_spread import spread_over_scenes
 from .study_result import Study
 
@@ -317,8 +317,8 @@ def _failed(dataset: xr.Dataset) -> list[dict[str, Any]]:
         {
             "gamma": float(dataset.gamma[i]),
             "eps": float(dataset.eps[j]),
-            "status": status_of(int(codes[i, j])).name.lower(),
-            "message": status_of(int(codes[i, j])).message,
+            "status": Status.of(codes[i, j]).name.lower(),
+            "message": Status.of(codes[i, j]).message,
         }
         for i, j in np.argwhere(codes != int(Status.OK))
     ]

@@ -11,7 +11,7 @@ from .._checks import Real
 from ..coefficients import Coefficients
 from ..limit import play_step, strip
 from ..model import Scene, coefficients, dissipation_potential
-from ..wiggly import AbstractObserver, Status, integrate, plan_steps, pull_of
+from ..wiggly import AbstractObserver, Status, integrate, plan_steps
 
 
 class Deviation(NamedTuple):
@@ -74,7 +74,7 @@ class Cell(NamedTuple):
 
 def _cell(scene: Scene, eps: Real, gamma: Real, ts, accuracy, solver, balanced) -> Cell:
     limit = coefficients(scene.potential)
-    plan = plan_steps(scene, eps, gamma, accuracy, pull_of(scene, limit))
+    plan = plan_steps(scene, eps, gamma, accuracy)
     found = integrate(
         scene,
         eps,

@@ -6,11 +6,9 @@ from functools import lru_cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from .._checks import exact_text
 from ..model import Scene
-from ..wiggly import FLAGS
+from ..wiggly import Status
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -84,9 +82,7 @@ def set_meanings(data: "xr.Dataset", meanings: dict[str, tuple[str | None, str]]
         variable.attrs["long_name"] = meaning
         if units is not None:
             variable.attrs["units"] = units
-    status = data.variables["status"].attrs
-    status["flag_values"] = np.array(FLAGS["flag_values"], dtype=np.int8)
-    status["flag_meanings"] = FLAGS["flag_meanings"]
+    data.variables["status"].attrs.update(Status.flags())
 
 
 def origin(title: str, scene: Scene | str, **facts: Any) -> dict[str, Any]:

@@ -74,7 +74,9 @@ def scene_columns(
         values, apart = _with_noise(scene, noise, request, report)
     elif request.solver is None:
         if turning is not None:
-            values = _with_turning(scene, turning, request, report)
+            from .turning_columns import turning_values  # nothing else needs it
+
+            values = turning_values(scene, turning, request, report)
         elif inertia is not None:
             values = _with_mass(scene, inertia, request, report)
         else:
@@ -175,18 +177,6 @@ def _with_mass(
     if not request.balanced:
         return {k: v for k, v in values.items() if not k.startswith("dissipation")}
     return values | {"residual": left, "dissipation_gap": left}
-
-
-def _with_turning(
-    scene: Scene,
-    effect: NapFlip,
-    request: SweepRequest,
-    report: Callable[[float], None],
-) -> dict[str, np.ndarray]:
-    """Values of all cells with a rod that turns over, by name."""
-    from .turning_columns import turning_values  # nothing else needs it
-
-    return turning_values(scene, effect, request, report)
 
 
 def _with_noise(

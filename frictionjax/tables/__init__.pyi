@@ -1,7 +1,6 @@
 from .bristles import SeriesBristle as SeriesBristle
 from .bristles import bristle_at_rest as bristle_at_rest
 from .bristles import bristle_series as bristle_series
-from .bristles import with_terms as with_terms
 from .loads import SumOfLoads as SumOfLoads
 from .loads import bent_part as bent_part
 from .loads import load_table as load_table
@@ -12,4 +11,3 @@ from .profiles import profile_tables as profile_tables
 from .settings import SETTINGS as SETTINGS
 from .waves import SeriesProfile as SeriesProfile
 from .waves import Waves as Waves
-from .waves import with_harmonics as with_harmonics

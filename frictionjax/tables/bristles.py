@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -54,15 +53,6 @@ class SeriesBristle(AbstractBristle):
             return None
         x = eta * self.per_height
         return Rod(power_sum(self.rods[0], x), power_sum(self.rods[1], x))
-
-
-def with_terms(bristle: AbstractBristle, count: int) -> AbstractBristle:
-    """A series with `count` terms, the further ones 0; other bristles as they are."""
-    if not isinstance(bristle, SeriesBristle):
-        return bristle
-    room = (0, count - bristle.ahead.shape[0])
-    ahead, climb = (jnp.pad(terms, room) for terms in (bristle.ahead, bristle.climb))
-    return SeriesBristle(ahead, climb, bristle.per_height)
 
 
 @Interpreted

@@ -26,15 +26,6 @@ class SeriesProfile(AbstractProfile):
         return 64 * max(4, self.cos.shape[0])
 
 
-def with_harmonics(profile: AbstractProfile, count: int) -> AbstractProfile:
-    """A series with `count` harmonics, the further ones 0; other profiles as they are."""
-    if not isinstance(profile, SeriesProfile):
-        return profile
-    room = (0, count - profile.cos.shape[0])
-    cos, sin = (jnp.pad(c, room) for c in (profile.cos, profile.sin))
-    return type(profile)(profile.mean, cos, sin)
-
-
 class Waves(SeriesProfile):
     """The same with harmonics as an axis.
 

@@ -2,7 +2,6 @@ from .arrays import integrate_scene as integrate_scene
 from .batch import integrate_cells as integrate_cells
 from .batch import prepare_cells as prepare_cells
 from .equation import ENDED as ENDED
-from .equation import FLAGS as FLAGS
 from .equation import FailedCells as FailedCells
 from .equation import Status as Status
 from .equation import StepPlan as StepPlan
@@ -12,9 +11,7 @@ from .equation import advance as advance
 from .equation import arrival as arrival
 from .equation import at_rest as at_rest
 from .equation import plan_steps as plan_steps
-from .equation import pull_of as pull_of
 from .equation import require_accuracy as require_accuracy
-from .equation import status_of as status_of
 from .equation import warn_of_failed as warn_of_failed
 from .inertial import integrate_with_mass as integrate_with_mass
 from .limit_path import arrivals_at as arrivals_at

@@ -1,24 +1,19 @@
 """All cells of a sweep through lanes: rounds of brackets until every bracket has closed."""
 
-import threading
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
 from .._checks import quiet_where_extreme, viscosity_of
-from .._compile import WORKERS, crew
+from .._compile import WORKERS
 from ..model import Scene, SummedPotential, tabulated_scene
-from ..numerics import rows_of
-from .attempts import AttemptContext, Cellwise, SoFar, merged
+from ..numerics import concatenated, rows_of
+from .attempts import AttemptContext, Cellwise, SoFar, with_rows
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
-from .enclosure import Report, find_fast_slides
+from .enclosure import BracketContext, Report, find_fast_slides, no_effort
 from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, known_path
-from .plan import Planned, in_phases, lane_scene
-from .plans_ahead import plan_of_cells
+from .plan import Planned, in_phases, lane_scene, planned
 from .rosenbrock import Tableau
 from .settings import SETTINGS
 from .slip_map import none_known
@@ -54,33 +49,28 @@ def integrate_cells(
     than the scene has room for.
     """
 
-    def cells(chosen: Any) -> CellResults | None:
-        return _integrated(
+    # A sum is a surface of its own at every eps.
+    summed = isinstance(scene.potential, SummedPotential)
+    one = [np.arange(eps.size)]
+    groups = [np.flatnonzero(eps == e) for e in np.unique(eps)] if summed else one
+    parts = []
+    for group in groups:
+        part = _integrated(
             scene=scene,
-            eps=eps[chosen],
-            gamma=gamma[chosen],
-            phase=None if phase is None else phase[chosen],
+            eps=eps[group],
+            gamma=gamma[group],
+            phase=None if phase is None else phase[group],
             ts=ts,
             accuracy=accuracy,
             method=method,
-            wanted=_sums(balanced, suprema),
+            wanted=Sums(energies=balanced, extremes=balanced or suprema),
             report=report,
             tableau=tableau,
         )
-
-    if not isinstance(scene.potential, SummedPotential):
-        return cells(slice(None))
-    # A sum is a surface of its own at every eps.
-    found: dict[str, np.ndarray] = {}
-    for size in np.unique(eps):
-        those = np.flatnonzero(eps == size)
-        part = cells(those)
         if part is None:
             return None
-        for name, values in part._asdict().items():
-            found.setdefault(name, np.empty((eps.size, *values.shape[1:]), values.dtype))
-            found[name][those] = values
-    return CellResults(**found)
+        parts.append(part)
+    return rows_of(concatenated(parts), np.argsort(np.concatenate(groups)))
 
 
 def _integrated(
@@ -106,9 +96,8 @@ def _integrated(
     own = whose = np.arange(eps.size)
     if phase is not None:
         _, own, whose = np.unique(eps + 1j * gamma, return_index=True, return_inverse=True)
-    plan = plan_of_cells(
-        scene=scene,
-        tables=tables,
+    plan = planned(
+        scene=tables,
         path=path,
         eps=eps[own],
         gamma=gamma[own],
@@ -118,22 +107,26 @@ def _integrated(
     )
     if phase is not None:
         plan = in_phases(tables, path, rows_of(plan, whose), phase)
-    sweep = AttemptContext(
+    every = _cells_of(plan, eps, gamma)
+    rounds = BracketContext(
         scene=tables,
-        path=path,
         lanes=lanes,
+        path=path,
+        ground=every.ground,
+        cells=every.cells,
         tableau=tableau,
-        ts=ts,
+        summed=any(wanted),
         accuracy=accuracy,
-        wanted=wanted,
-        every_slip=method == "resolved",
         report=report,
+        effort=no_effort(eps.size),
+        brief=every.brief,
     )
-    so_far = _first_attempt(sweep, _cells_of(plan, eps, gamma), plan.way == Way.SLIP_MAP)
+    sweep = AttemptContext(rounds, ts, wanted, every_slip=method == "resolved")
+    so_far = _first_attempt(sweep, every, plan.way == Way.SLIP_MAP)
     answers = so_far.answers._replace(tolerance=np.asarray(plan.control.tolerance))
     so_far = so_far._replace(answers=answers)
     for _ in range(SETTINGS.surveys):
-        rough = np.flatnonzero(sweep.is_rough(so_far.answers, eps) & ~so_far.open_)
+        rough = np.flatnonzero(sweep.is_rough(so_far) & ~so_far.open_)
         if rough.size == 0:
             break
         so_far = _surveyed_again(sweep, so_far, rough)
@@ -145,7 +138,6 @@ def _cells_of(plan: Planned, eps: np.ndarray, gamma: np.ndarray) -> Cellwise:
     """What the first attempt needs of each cell."""
     steps = plan.control
     return Cellwise(
-        eps=eps,
         ground=plan.ground,
         cells=LaneCells(
             eps=eps,
@@ -161,17 +153,16 @@ def _surveyed_again(sweep: AttemptContext, so_far: SoFar, rough: np.ndarray) -> 
     """Twice as many slips of the `rough` cells, at last all."""
     some = rows_of(so_far.cells, rough)
     samples = some.needs.samples * 2 * (some.needs.samples < SETTINGS.most_nodes)
-    can = _affordable(sweep.path, some) | (samples > 0)
+    can = _affordable(sweep.rounds.path, some) | (samples > 0)
     so_far = so_far.with_status(rough[~can], Status.ROUGH_SURVEY)
     again = rough[can]
     if again.size == 0:
         return so_far
-    wells = sweep.path.travel[-1] / some.eps
+    wells = sweep.rounds.path.travel[-1] / some.ground.eps
     longer = np.maximum(some.needs.tile, wells / SETTINGS.tiles)
     tile = np.where(samples > 0, some.needs.tile, longer)
     some = some._replace(needs=some.needs._replace(samples=samples, tile=tile))
-    so_far = so_far.with_cells(rows_of(some, can), again)
-    return so_far.with_attempt(sweep.attempt(rows_of(so_far.cells, again)), again)
+    return so_far.with_attempt(sweep.attempt(rows_of(some, can)), again)
 
 
 def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
@@ -179,11 +170,11 @@ def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
 
     At gamma = 0.75, eps = 1e-4, accuracy 1e-6: 1.5 s, where one lane takes 30.
     """
-    chosen = np.flatnonzero(so_far.open_ & _affordable(sweep.path, so_far.cells))
+    chosen = np.flatnonzero(so_far.open_ & _affordable(sweep.rounds.path, so_far.cells))
     if chosen.size == 0:
         return so_far
     some = rows_of(so_far.cells, chosen)
-    wells = sweep.path.travel[-1] / some.eps
+    wells = sweep.rounds.path.travel[-1] / some.ground.eps
     tile = np.maximum(4 * some.needs.tile, wells / SETTINGS.tiles)
     none = np.zeros(chosen.size, dtype=int)
     some = some._replace(needs=some.needs._replace(samples=none, tile=tile))
@@ -191,50 +182,25 @@ def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
 
 
 def _first_attempt(sweep: AttemptContext, every: Cellwise, by_map: np.ndarray) -> SoFar:
-    """Answers of all cells: those without slip maps aside.
-
-    Their lanes run while fast slides are found, which is mostly NumPy on one core.
-    """
-    some, others = np.flatnonzero(by_map), np.flatnonzero(~by_map)
+    """Answers of all cells; the fast slides of those `by_map` are found before."""
+    some = np.flatnonzero(by_map)
     if some.size == 0:
         return sweep.attempt(every)
-    if others.size == 0:
-        return _by_slip_maps(sweep, every)
-    # Beside the first lanes that look for slides: with both planning at once, and two lanes
-    # waiting for one core, a sweep took a tenth longer.
-    lanes_run = threading.Event()
-
-    def aside() -> SoFar:
-        lanes_run.wait()
-        # With both cores lanes would hold up every small program of the other thread.
-        return sweep._replace(workers=1).attempt(rows_of(every, others))
-
-    beside = crew("cells", 1).submit(aside)
-    try:
-        found = _by_slip_maps(sweep, rows_of(every, some), lanes_run.set)
-    finally:
-        lanes_run.set()
-        rest = beside.result()
-    return merged(every, (others, rest), (some, found))
-
-
-def _by_slip_maps(
-    sweep: AttemptContext, some: Cellwise, lanes_run: Callable[[], None] = lambda: None
-) -> SoFar:
-    """An attempt at cells whose fast slides are found first, and stay known."""
-    rounds = sweep.rounds(some)._replace(lanes_run=lanes_run)
-    found = find_fast_slides(rounds, some.needs)
+    needs = rows_of(every.needs, some)
+    found = find_fast_slides(sweep.rounds_of(rows_of(every, some)), needs)
     has = np.array([len(own) > 0 for own in found.slides])
-    some = some._replace(
-        ground=some.ground._replace(fast_slides=found.slides),
-        needs=some.needs._replace(
-            samples=np.where(has, PATH_SETTINGS.nodes, some.needs.samples)
-        ),
+    samples = np.where(has, PATH_SETTINGS.nodes, needs.samples)
+    slides = with_rows(every.ground.fast_slides, some, found.slides)
+    every = every._replace(
+        ground=every.ground._replace(fast_slides=slides),
+        needs=every.needs._replace(samples=with_rows(every.needs.samples, some, samples)),
     )
-    so_far = sweep.attempt(some)
+    so_far = sweep.attempt(every)
     steps, rejected, _ = found.effort()
-    answers = so_far.answers._replace(
-        steps=so_far.answers.steps + steps, rejected=so_far.answers.rejected + rejected
+    answers = so_far.answers
+    answers = answers._replace(
+        steps=with_rows(answers.steps, some, answers.steps[some] + steps),
+        rejected=with_rows(answers.rejected, some, answers.rejected[some] + rejected),
     )
     return so_far._replace(answers=answers)
 
@@ -243,10 +209,6 @@ def prepare_cells(scene: Scene, eps: np.ndarray, times: int) -> None:
     """Have the loop for cells of these eps compiled, before `integrate_cells` asks."""
     lanes = lane_scene(tabulated_scene(scene, eps))
     _prepare(lanes, eps.size, times, summed=True)
-
-
-def _sums(balanced: bool, suprema: bool) -> Sums:
-    return Sums(energies=balanced, extremes=balanced or suprema)
 
 
 def _prepare(
@@ -266,12 +228,12 @@ def _prepare(
 
 
 def _affordable(path: Path, cells: Cellwise) -> np.ndarray:
-    return path.travel[-1] / cells.eps <= ENCLOSURE_SETTINGS.affordable
+    return path.travel[-1] / cells.ground.eps <= ENCLOSURE_SETTINGS.affordable
 
 
 def _from_the_start(sweep: AttemptContext, so_far: SoFar) -> SoFar:
     """One lane from z0 through everything, for cells whose brackets stay open."""
-    can = _affordable(sweep.path, so_far.cells)
+    can = _affordable(sweep.rounds.path, so_far.cells)
     chosen, never = np.flatnonzero(so_far.open_ & can), so_far.open_ & ~can
     answers = so_far.answers._replace(
         z=np.where(never[:, None], np.nan, so_far.answers.z),
@@ -283,7 +245,7 @@ def _from_the_start(sweep: AttemptContext, so_far: SoFar) -> SoFar:
         return so_far
     # From a fast slide it would set off as far from the tip as the brackets that stayed
     # open.
-    some = _without_slides(rows_of(so_far.cells, chosen))
+    some = rows_of(so_far.cells, chosen)
     forever, none = np.full(chosen.size, np.inf), np.zeros(chosen.size)
     needs = some.needs._replace(
         run_up=forever,
@@ -292,12 +254,8 @@ def _from_the_start(sweep: AttemptContext, so_far: SoFar) -> SoFar:
         samples=none,
         restarts=np.zeros_like(some.needs.restarts),
     )
-    part = sweep.attempt(some._replace(needs=needs))
+    ground = some.ground._replace(fast_slides=none_known(chosen.size))
+    part = sweep.attempt(some._replace(ground=ground, needs=needs))
     # Lanes that failed say why.
     left = np.flatnonzero(part.open_ & (part.answers.status == int(Status.OK)))
     return so_far.with_attempt(part.with_status(left, Status.OPEN_BRACKET), chosen)
-
-
-def _without_slides(some: Cellwise) -> Cellwise:
-    ground = some.ground._replace(fast_slides=none_known(some.eps.size))
-    return some._replace(ground=ground)

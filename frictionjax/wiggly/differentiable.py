@@ -34,14 +34,6 @@ class Options(NamedTuple):
     adjoint: Any
 
 
-class _Curve(NamedTuple):
-    """What of a `Solution` has derivatives."""
-
-    z: Array
-    dissipation: Array | None
-    residual: Array | None
-
-
 @Program
 def _planned(problem: Problem) -> StepPlan:
     scene, eps, gamma, _, accuracy = problem
@@ -71,7 +63,8 @@ def _answered(
         "tolerance": plan.tolerance,
         "dissipation_gap": found.dissipation_gap,
     }
-    curve = _Curve(found.z, found.dissipation, found.residual)
+    # What of a `Solution` has derivatives.
+    curve = found.z, found.dissipation, found.residual
     return curve, (found.status, counts), found.past
 
 
@@ -82,12 +75,12 @@ def _forth(problem: Problem, plan: StepPlan, options: Options) -> tuple:
 
 @Program
 def _back(
-    problem: Problem, plan: StepPlan, options: Options, past: Any, by: _Curve
+    problem: Problem, plan: StepPlan, options: Options, past: Any, by: tuple
 ) -> Problem:
     """Derivatives by the problem of what has those `by` the curve."""
     moving, still = eqx.partition(problem, eqx.is_inexact_array)
 
-    def curve(moving: Problem) -> _Curve:
+    def curve(moving: Problem) -> tuple:
         return _answered(eqx.combine(moving, still), plan, options, past)[0]
 
     return jax.vjp(curve, moving)[1](by)[0]

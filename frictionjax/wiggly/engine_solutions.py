@@ -6,57 +6,70 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from ..effects import Inertia, NapFlip, Noise
-from ..model import Scene, TabulatedScene, tabulated_scene
+from .._checks import as_real
+from ..effects import Noise
+from ..model import Scene, tabulated_scene
+from ..numerics import rows_of
 from .arrays import integrate_scene
 from .equation import Status
 from .solution import Solution
 
 
-def through_lanes(scene, eps, gamma, ts, accuracy, method, balanced) -> Solution | None:
+def _one_cell(eps: Any, gamma: Any, ts: Array, accuracy: Any) -> dict[str, Any]:
+    """Arguments of what integrates cells."""
+    return {
+        "eps": np.atleast_1d(float(eps)),
+        "gamma": np.atleast_1d(float(gamma)),
+        "ts": np.asarray(ts),
+        "accuracy": float(as_real(accuracy)),
+    }
+
+
+def _energies(
+    balanced: bool, dissipation: Any, residual: Any
+) -> tuple[Array | None, Array | None]:
+    """Both as arrays, or None where none were asked for."""
+    return (jnp.asarray(dissipation), jnp.asarray(residual)) if balanced else (None, None)
+
+
+def through_lanes(
+    scene: Scene,
+    eps: Any,
+    gamma: Any,
+    ts: Array,
+    accuracy: Any,
+    method: str,
+    balanced: bool,
+) -> Solution | None:
     """The solution by lanes; None where the scene has no room for the load's turns."""
-    found, apart = integrate_scene(
-        scene=scene,
-        eps=np.atleast_1d(float(eps)),
-        gamma=np.atleast_1d(float(gamma)),
-        ts=np.asarray(ts),
-        accuracy=accuracy,
-        method=method,
-        balanced=balanced,
-        suprema=False,
-    )
+    asked = _one_cell(eps, gamma, ts, accuracy) | {"method": method, "balanced": balanced}
+    found, apart = integrate_scene(scene=scene, suprema=False, **asked)
     if found is None:
         return None
-    dissipation = jnp.asarray(found.dissipation[0]) if balanced else None
-    residual = jnp.asarray(found.running_residual[0]) if balanced else None
+    one, sampled = rows_of(found, 0), float(found.sampled[0])
+    own = tabulated_scene(scene, eps).untabulated
     counts = {
-        "steps": int(found.steps[0]),
-        "rejected": int(found.rejected[0]),
-        "tolerance": float(found.tolerance[0]),
-        "dissipation_gap": float(found.dissipation_gap[0]) if balanced else None,
-        "how": found.how[0],
-        "bracket": found.gap[0],
-        "sampled": float(found.sampled[0]),
+        "steps": int(one.steps),
+        "rejected": int(one.rejected),
+        "tolerance": float(one.tolerance),
+        "dissipation_gap": float(one.dissipation_gap) if balanced else None,
+        "how": one.how,
+        "bracket": one.gap,
+        "sampled": sampled,
     }
     if apart is not None:
         counts["spread"] = apart[0]
     return Solution(
         ts,
-        jnp.asarray(found.z[0]),
-        dissipation,
-        residual,
-        jnp.asarray(found.status[0]),
+        jnp.asarray(one.z),
+        *_energies(balanced, one.dissipation, one.running_residual),
+        jnp.asarray(one.status),
         counts,
-        _in_words(found.how[0], float(found.sampled[0]), tabulated_scene(scene, eps)),
+        _in_words(one.how, sampled) + (f"; compiled for {own}" if own else ""),
     )
 
 
-def _in_words(how: np.ndarray, sampled: float, scene: TabulatedScene) -> str:
-    own = scene.untabulated
-    return _found_in_words(how, sampled) + (f"; compiled for {own}" if own else "")
-
-
-def _found_in_words(how: np.ndarray, sampled: float) -> str:
+def _in_words(how: np.ndarray, sampled: float) -> str:
     if not how.any():
         return "resolved, every slip since z0, by one lane"
     share = f"{np.mean(how > 0):.0%} of them from brackets that closed"
@@ -92,54 +105,44 @@ def along_one_path(
 
 def with_mass(
     scene: Scene,
-    inertia: Inertia,
     eps: Any,
     gamma: Any,
     ts: Array,
-    accuracy: float,
+    accuracy: Any,
+    effect: Any,
     balanced: bool,
     max_steps: int,
 ) -> Solution:
     from .inertial import integrate_with_mass  # nothing else needs it
 
-    found = integrate_with_mass(
-        scene,
-        np.atleast_1d(float(eps)),
-        np.atleast_1d(float(gamma)),
-        inertia=inertia,
-        ts=np.asarray(ts),
-        accuracy=accuracy,
-        suprema=False,
-        budget=max_steps,
-    )
+    asked = _one_cell(eps, gamma, ts, accuracy) | {"inertia": effect, "budget": max_steps}
+    found = rows_of(integrate_with_mass(scene, suprema=False, **asked), 0)
     counts = {
-        "steps": int(found.steps[0]),
-        "rejected": int(found.rejected[0]),
-        "tolerance": float(found.tolerance[0]),
-        "dissipation_gap": float(found.running_residual[0, -1]) if balanced else None,
-        "spread": found.spread[0],
-        "beta": float(found.beta[0]),
+        "steps": int(found.steps),
+        "rejected": int(found.rejected),
+        "tolerance": float(found.tolerance),
+        "dissipation_gap": float(found.running_residual[-1]) if balanced else None,
+        "spread": found.spread,
+        "beta": float(found.beta),
     }
     return Solution(
         ts,
-        jnp.asarray(found.z[0]),
-        jnp.asarray(found.dissipation[0]) if balanced else None,
-        jnp.asarray(found.running_residual[0]) if balanced else None,
-        jnp.asarray(found.status[0]),
+        jnp.asarray(found.z),
+        *_energies(balanced, found.dissipation, found.running_residual),
+        jnp.asarray(found.status),
         counts,
         "resolved, every slip since z0, with mass, at three tolerances",
-        jnp.asarray(found.velocity[0]),
+        jnp.asarray(found.velocity),
     )
 
 
 def with_turning(
     scene: Scene,
-    effect: NapFlip,
-    *,
     eps: Any,
     gamma: Any,
     ts: Array,
-    accuracy: float,
+    accuracy: Any,
+    effect: Any,
     balanced: bool,
     max_steps: int,
 ) -> Solution:
@@ -151,7 +154,7 @@ def with_turning(
         float(gamma),
         effect=effect,
         ts=np.asarray(ts),
-        accuracy=accuracy,
+        accuracy=float(as_real(accuracy)),
         budget=max_steps,
     )
     counts = {
@@ -161,13 +164,12 @@ def with_turning(
         "dissipation_gap": found.gap if balanced else None,
     }
     return Solution(
-        ts=ts,
-        z=jnp.asarray(found.z),
-        dissipation=jnp.asarray(found.dissipation) if balanced else None,
-        residual=jnp.asarray(found.residual) if balanced else None,
-        status_code=jnp.asarray(found.status),
-        counts=counts,
-        how="resolved, every slip, with a rod that turns over",
+        ts,
+        jnp.asarray(found.z),
+        *_energies(balanced, found.dissipation, found.residual),
+        jnp.asarray(found.status),
+        counts,
+        "resolved, every slip, with a rod that turns over",
         root=jnp.asarray(found.root),
         mode=jnp.asarray(found.mode),
         tip=jnp.asarray(found.tip),

@@ -10,7 +10,7 @@ from ..tables import SeriesBristle, SeriesProfile
 from .enclosure import Requirements, cost_of, longest_lane, wells_a_leg, wells_of
 from .equation import StepPlan as StepPlan
 from .limit_path import Path, known_path
-from .plans_ahead import plan_of_cells
+from .plan import planned
 from .settings import SETTINGS
 from .ways import Way, slides_of
 
@@ -48,9 +48,7 @@ def workload(
     if path is None:
         return None
     accuracy = min(accuracy, SETTINGS.loosest)
-    plan = plan_of_cells(
-        scene, tables, path, eps, gamma, times, accuracy, method, ahead=True
-    )
+    plan = planned(tables, path, eps, gamma, times, accuracy, method)
     control, ground, needs, way = plan
     by_map = way == Way.SLIP_MAP
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps

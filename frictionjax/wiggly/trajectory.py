@@ -18,6 +18,7 @@ from .._checks import (
 from .._compile import waiting
 from ..called_for import Simulated, simulated
 from ..effects import (
+    AbstractEffect,
     engine_of,
     inertia_among,
     nap_flip_among,
@@ -64,19 +65,20 @@ def _require_unasked(accuracy: Any, max_steps: int, adjoint: Any) -> None:
     require(adjoint is None, "adjoint", adjoint, told)
 
 
-def _require_known(numbers: tuple, adjoint: Any, who: str) -> None:
+def _require_known(known: bool, effect: AbstractEffect) -> None:
     """What has no derivatives needs known numbers."""
-    needs = f"known numbers and no adjoint: {who} no derivatives"
-    known = is_concrete(*numbers) and adjoint is None
+    who = f"effects.{type(effect).__name__}"
+    needs = f"known numbers and no adjoint: {who} has no derivatives"
     require(known, "scene", "traced, or with an adjoint", needs)
 
 
-def _called_for(found: Simulated, *numbers: Any, key: Any, **options: Any) -> Solution:
+def _called_for(found: Simulated, *numbers: Any, **options: Any) -> Solution:
     """The solution of what is left of a scene, which says what was left out."""
-    used = None if "Noise" in found.left_out else key  # of noise alone
+    if "Noise" in found.left_out:
+        options |= {"key": None}  # of noise alone
     if noise_among(found.scene.effects) is not None:
         options |= {"accuracy": _ACCURACY}  # what a path with noise does not read
-    solution = _solve(found.scene, *numbers, key=used, **options)
+    solution = _solve(found.scene, *numbers, **options)
     counts = solution.counts | {"left_out": found.left_out}
     how = solution.how + (f"; without {found.in_words}" if found.left_out else "")
     return dataclasses.replace(solution, counts=counts, how=how)
@@ -144,16 +146,22 @@ def solve(
     """
     require_flags(progress=progress)
     with waiting("solve", progress):
-        return _solve(
-            *(scene, eps, gamma, ts),
-            accuracy=accuracy,
-            method=method,
-            dissipation=dissipation,
-            max_steps=max_steps,
-            adjoint=adjoint,
-            key=key,
-            effects=effects,
-        )
+        require_numbers("eps", eps, "one number eps > 0", lambda e: (e > 0) & (e.ndim == 0))
+        allowed = "one number gamma > 0"
+        require_numbers("gamma", gamma, allowed, lambda g: (g > 0) & (g.ndim == 0))
+        require_accuracy(accuracy)
+        options: dict[str, Any] = {
+            "accuracy": accuracy,
+            "method": method,
+            "dissipation": dissipation,
+            "max_steps": max_steps,
+            "adjoint": adjoint,
+            "key": key,
+        }
+        if effects == "all":
+            return _solve(scene, eps, gamma, ts, **options)
+        found = simulated(scene, effects, eps, gamma, accuracy)
+        return _called_for(found, eps, gamma, ts, **options)
 
 
 def _solve(
@@ -168,23 +176,7 @@ def _solve(
     max_steps: int,
     adjoint: Any,
     key: Any,
-    effects: str = "all",
 ) -> Solution:
-    require_numbers("eps", eps, "one number eps > 0", lambda e: (e > 0) & (e.ndim == 0))
-    allowed = "one number gamma > 0"
-    require_numbers("gamma", gamma, allowed, lambda g: (g > 0) & (g.ndim == 0))
-    require_accuracy(accuracy)
-    if effects != "all":
-        return _called_for(
-            simulated(scene, effects, eps, gamma, accuracy),
-            *(eps, gamma, ts),
-            accuracy=accuracy,
-            method=method,
-            dissipation=dissipation,
-            max_steps=max_steps,
-            adjoint=adjoint,
-            key=key,
-        )
     scene = scene_for(engine_of(method), scene)
     require_flags(dissipation=dissipation)
     require_whole("max_steps", max_steps)
@@ -199,43 +191,18 @@ def _solve(
     eps, gamma = jnp.asarray(as_real(eps)), jnp.asarray(as_real(gamma))
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)
-    inertia = inertia_among(scene.effects)
-    if inertia is not None:
-        _require_known((scene, eps, gamma, ts, accuracy), adjoint, "effects.Inertia has")
-        return with_mass(
-            scene=scene,
-            inertia=inertia,
-            eps=eps,
-            gamma=gamma,
-            ts=ts,
-            accuracy=float(as_real(accuracy)),
-            balanced=bool(dissipation),
-            max_steps=int(max_steps),
-        )
-    turning = nap_flip_among(scene.effects)
-    if turning is not None:
-        _require_known((scene, eps, gamma, ts, accuracy), adjoint, "effects.NapFlip has")
-        return with_turning(
-            scene,
-            turning,
-            eps=eps,
-            gamma=gamma,
-            ts=ts,
-            accuracy=float(as_real(accuracy)),
-            balanced=bool(dissipation),
-            max_steps=int(max_steps),
-        )
+    known = is_concrete(scene, eps, gamma, ts, accuracy)
+    numbers = scene, eps, gamma, ts, accuracy
+    for effect, by in (
+        (inertia_among(scene.effects), with_mass),
+        (nap_flip_among(scene.effects), with_turning),
+    ):
+        if effect is not None:
+            _require_known(known and adjoint is None, effect)
+            return by(*numbers, effect, bool(dissipation), int(max_steps))
     plain = adjoint is None and max_steps == MAX_STEPS
-    if plain and is_ours(method) and is_concrete(scene, eps, gamma, ts, accuracy):
-        found = through_lanes(
-            scene=scene,
-            eps=eps,
-            gamma=gamma,
-            ts=ts,
-            accuracy=float(as_real(accuracy)),
-            method=str(method),
-            balanced=bool(dissipation),
-        )
+    if plain and is_ours(method) and known:
+        found = through_lanes(*numbers, str(method), bool(dissipation))
         if found is not None:
             return found
     from .differentiable import Options, Problem, solve_one_after_the_other

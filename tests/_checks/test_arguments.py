@@ -134,7 +134,7 @@ def test_eps_of_1e_minus_12():
 @pytest.mark.parametrize("gamma", [1.0, 2.0])
 def test_wrong_solutions_do_not_balance_at_the_smallest_eps(monkeypatch, gamma):
     """Steps that err by a hundredth of a well, by a third in slips."""
-    plans = engine.plan_of_cells
+    plans = engine.planned
 
     def carelessly(**parts):
         plan = plans(**parts)
@@ -143,7 +143,7 @@ def test_wrong_solutions_do_not_balance_at_the_smallest_eps(monkeypatch, gamma):
         control = {name: np.full(size, value) for name, value in loose.items()}
         return plan._replace(control=plan.control._replace(**control))
 
-    monkeypatch.setattr(engine, "plan_of_cells", carelessly)
+    monkeypatch.setattr(engine, "planned", carelessly)
     found = fx.solve(known(), 1e-12, gamma, [0.0, 1.0, 3.0])
     assert found.status is fx.Status.UNBALANCED
 

@@ -24,7 +24,7 @@ from ...effects import AbstractEffect, Engine, RigidArray
 from ...model import BristlePotential, friction, potential
 from ...profiles import AbstractProfile
 from ...supports import Spring
-from ...wiggly import FLAGS, Status
+from ...wiggly import Status
 from ..common import (
     QUANTITIES,
     FreeParameter,
@@ -279,7 +279,7 @@ def _slide_columns(
         "slide_std": ("force", blank if few else known.std(axis=0, ddof=1)),
         "slide_quantiles": (("quantile", "force"), np.asarray(cuts)),
         "slide_samples": (("sample", "force"), drawn[1:]),
-        "status": ("sample", slides.status[1:].astype(np.int8), dict(FLAGS)),
+        "status": ("sample", slides.status[1:].astype(np.int8), Status.flags()),
     }
 
 

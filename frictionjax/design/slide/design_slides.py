@@ -10,7 +10,7 @@ from ..._checks import as_real, require, require_real
 from ...effects import AbstractEffect, LeadingOrder
 from ...model import BristlePotential, with_effects
 from ...supports import Spring
-from ...wiggly import FLAGS, Status
+from ...wiggly import Status
 from .slide_friction import spring_of
 from .slide_rows import find_both_ways, slide_table
 
@@ -51,7 +51,7 @@ class DesignSlides(NamedTuple):
             attributes = {"units": "N", "long_name": MEANINGS[name]}
             found[name] = dims, values.reshape(shape), attributes
         codes = self.status.astype(np.int8).reshape(shape)
-        told: dict[str, Any] = {"long_name": "how the slides ended", **FLAGS}
+        told: dict[str, Any] = {"long_name": "how the slides ended", **Status.flags()}
         found["status"] = dims, codes, told
         return found
 

@@ -5,12 +5,13 @@ from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..._compile import ARRAYS, Program
 from ...model import AbstractPotential, BristlePotential, tabulated_potentials
-from ...tables import SeriesProfile, Waves, with_harmonics, with_terms
+from ...tables import SeriesBristle, SeriesProfile, Waves
 from .periodic_orbit import known_slide_forces, survey_ground
 from .settings import SETTINGS
 from .slide_sides import Sides, one_side, slide_scene
@@ -53,12 +54,21 @@ def slide_table(potential: AbstractPotential, highest: float) -> AbstractPotenti
     _, table = tabulated_potentials(potential, highest)
     if not isinstance(table, BristlePotential):
         return table
-    profile = table.profile
+    profile, bristle = table.profile, table.bristle
     if isinstance(profile, SeriesProfile):
-        least = profile.cos.size
-        waves = Waves(profile.mean, profile.cos, profile.sin)
-        profile = with_harmonics(waves, min(n for n in SETTINGS.harmonics if n >= least))
-    return BristlePotential(profile, with_terms(table.bristle, SETTINGS.terms))
+        size = min(n for n in SETTINGS.harmonics if n >= profile.cos.size)
+        profile = Waves(
+            profile.mean, *(_filled(c, size) for c in (profile.cos, profile.sin))
+        )
+    if isinstance(bristle, SeriesBristle):
+        ahead, climb = (_filled(c, SETTINGS.terms) for c in (bristle.ahead, bristle.climb))
+        bristle = SeriesBristle(ahead, climb, bristle.per_height)
+    return BristlePotential(profile, bristle)
+
+
+def _filled(terms: Any, count: int) -> Float[Array, " count"]:
+    """Terms of a series, the further ones 0."""
+    return jnp.pad(terms, (0, count - terms.shape[0]))
 
 
 def find_slides(tables: Sequence[AbstractPotential], rows: SlideRows) -> KnownSlides:

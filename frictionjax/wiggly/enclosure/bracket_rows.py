@@ -9,11 +9,7 @@ class BracketRows:
     """Brackets as they are added: cell, begin, paired and stops of each."""
 
     def __init__(self) -> None:
-        self._cells: list[np.ndarray] = []
-        self._begins: list[np.ndarray] = []
-        self._paired: list[np.ndarray] = []
-        self._sizes: list[np.ndarray] = []
-        self._stops: list[np.ndarray] = []
+        self._added: list[tuple[np.ndarray, ...]] = []
         self._count = 0
 
     def add(
@@ -28,22 +24,18 @@ class BracketRows:
 
         `cell`, `begin`, `sizes`: of each, so many of the stops as its size.
         """
-        self._cells.append(cell)
-        self._begins.append(begin)
-        self._paired.append(np.full(sizes.size, paired))
-        self._sizes.append(sizes)
-        self._stops.append(stops)
+        self._added.append((cell, begin, np.full(sizes.size, paired), sizes, stops))
         self._count += stops.size
         return np.arange(self._count - stops.size, self._count)
 
     def brackets(self) -> Brackets:
         """All of them."""
-        sizes = np.concatenate(self._sizes)
-        owner = np.repeat(np.arange(sizes.size), sizes)
+        columns = zip(*self._added, strict=True)
+        cell, begin, paired, sizes, stop = (np.concatenate(c) for c in columns)
         return Brackets(
-            cell=np.concatenate(self._cells),
-            begin=np.concatenate(self._begins),
-            paired=np.concatenate(self._paired),
-            owner=owner,
-            stop=np.concatenate(self._stops),
+            cell=cell,
+            begin=begin,
+            paired=paired,
+            owner=np.repeat(np.arange(sizes.size), sizes),
+            stop=stop,
         )

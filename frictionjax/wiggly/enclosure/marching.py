@@ -78,8 +78,7 @@ class BracketContext(NamedTuple):
     """What all rounds of one sweep share.
 
     `brief` (cells,): tolerances of lanes on fast slides through a few wells; None: those of
-    the others. `workers`: queues at once. `effort`: what lanes have taken before.
-    `lanes_run` is called as lanes set off.
+    the others. `effort`: what lanes have taken before.
     """
 
     scene: TabulatedScene
@@ -93,8 +92,6 @@ class BracketContext(NamedTuple):
     report: Report
     effort: Effort
     brief: np.ndarray | None
-    workers: int = WORKERS
-    lanes_run: Callable[[], None] = lambda: None
 
     def run(self, brackets: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
         """March all brackets, from `wells` of the path or `back` of a fast slide before."""
@@ -185,7 +182,7 @@ class BracketContext(NamedTuple):
         order = order[able[order]]
         # Where a narrow loop ends little later than its longest lane, one thread is enough.
         soon = work[able].max(initial=0.0) + LANE_SETTINGS.handed_over
-        workers = 1 if work[able].sum() <= LANE_SETTINGS.narrow * soon else self.workers
+        workers = 1 if work[able].sum() <= LANE_SETTINGS.narrow * soon else WORKERS
         batches = _batches(work[able], workers)
         ends = np.full((len(SegmentEnds._fields), segments.start.size), np.nan)
         # Overwritten by lanes that run.
@@ -210,16 +207,12 @@ class BracketContext(NamedTuple):
     def _through(
         self, cells: LaneCells, jobs: Lanes, segments: Segments, queues: list, work
     ):
-        """Segments of each queue and what is found there; the first is run by this thread.
-
-        Beside other cells' lanes two of the pool's would wait for each other.
-        """
+        """Segments of each queue and what is found there; this thread runs the first."""
 
         def run(chosen: np.ndarray) -> tuple[np.ndarray, SegmentEnds]:
             return self._queue(cells, jobs, segments, chosen, work)
 
         queues = [queue for queue in queues if queue.size]
-        self.lanes_run()
         beside = [crew("lanes").submit(run, queue) for queue in queues[1:]]
         done = [run(queue) for queue in queues[:1]]
         return done + [part.result() for part in beside]

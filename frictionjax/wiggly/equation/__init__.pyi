@@ -11,10 +11,8 @@ from .field import TipField as TipField
 from .landscape import WiggleFolds as WiggleFolds
 from .settings import SETTINGS as SETTINGS
 from .status import ENDED as ENDED
-from .status import FLAGS as FLAGS
 from .status import FailedCells as FailedCells
 from .status import Status as Status
-from .status import status_of as status_of
 from .status import warn_of_failed as warn_of_failed
 from .step_plan import PullRange as PullRange
 from .step_plan import SteppedParts as SteppedParts
@@ -22,5 +20,4 @@ from .step_plan import StepPlan as StepPlan
 from .step_plan import accuracies_of as accuracies_of
 from .step_plan import plan_steps as plan_steps
 from .step_plan import pull_between as pull_between
-from .step_plan import pull_of as pull_of
 from .step_plan import require_accuracy as require_accuracy

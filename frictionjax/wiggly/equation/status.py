@@ -37,13 +37,6 @@ class Status(Outcome):
 # How runs end that have come to their end.
 ENDED = (Status.OK, Status.UNBALANCED, Status.ROUGH_SURVEY)
 
-_BY_CODE = {int(status): status for status in Status}
-
-
-def status_of(code: int) -> Status:
-    """The status with this integer, as data sets hold it."""
-    return _BY_CODE[code]
-
 
 class FailedCells(UserWarning):
     """Some cells of a data set have numbers that cannot be trusted, or none."""
@@ -67,22 +60,15 @@ def warn_of_failed(
     named = []
     for *scene, i, j in failed[: SETTINGS.named]:
         of = f"scene {scenes[scene[0]]}, " if scene else ""
-        name = status_of(int(codes[(*scene, i, j)])).name
+        name = Status.of(codes[(*scene, i, j)]).name
         named.append(f"{of}gamma = {gamma[i]:.6g}, eps = {eps[j]:.6g}: {name}")
     more = (
         f" and {len(failed) - SETTINGS.named} more" if len(failed) > SETTINGS.named else ""
     )
-    message = status_of(int(codes[tuple(failed[0])])).message
+    message = Status.of(codes[tuple(failed[0])]).message
     warnings.warn(
         f"{len(failed)} of {codes.size} cells failed ({'; '.join(named)}{more}), the first "
         f"because {message}; see `status`",
         FailedCells,
         stacklevel=3 + frames,
     )
-
-
-FLAGS = {
-    "flag_values": [int(status) for status in Status],
-    "flag_meanings": " ".join(status.name.lower() for status in Status),
-}
-"""CF conventions for the integer status of a data set."""

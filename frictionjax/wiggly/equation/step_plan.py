@@ -9,7 +9,6 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..._checks import Real, known_numbers, require, require_real
-from ...coefficients import Coefficients
 from ...loads import AbstractPull, steep_times
 from ...model import AbstractPotential, Scene, coefficients
 from ...supports import AbstractSupport
@@ -82,8 +81,9 @@ class PullRange(NamedTuple):
     way: Real
 
 
-def pull_of(scene: Scene, found: Coefficients) -> PullRange:
+def _pull_of(scene: Scene) -> PullRange:
     """The same for all cells: sampled between turning points, and over reached states."""
+    found = coefficients(scene.potential)
     ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
     edges = jnp.sort(jnp.concatenate([ends, scene.turning_points()]))
     rho = found.rho_plus, found.rho_minus
@@ -205,7 +205,7 @@ def plan_steps(
     """
     if pull is None:
         assert isinstance(scene, Scene)
-        pull = pull_of(scene, coefficients(scene.potential))
+        pull = _pull_of(scene)
     ground = landscape(scene.potential, eps)
     memory = remembered_slips(ground, pull, eps, gamma)
     stretch = jnp.maximum(1.0, ground.stretch)

@@ -30,8 +30,8 @@ from ..stepping import (
     materialise,
     step_of,
 )
-from .fold_steps import Foothold, foothold, pause_of
-from .running_extrema import Extent, Guide, leave, spend, widen
+from .fold_steps import foothold, pause_of
+from .running_extrema import Extent, Guide, StepCurve, widened
 
 _LOWEST_LEVEL = SETTINGS.lowest_octave * SETTINGS.per_octave
 
@@ -127,32 +127,26 @@ def keep(condition: Bool[Array, "*lanes"], new: Any, old: Any) -> Any:
     return jax.tree_util.tree_map(lambda a, b: jnp.where(condition, a, b), new, old)
 
 
-class _Trial(NamedTuple):
-    """A step before it is accepted: where it ends, how it is judged, and whether a failure
-    or the stop has made nothing of it."""
-
-    step: Real
-    tip: Real
-    time: Real
-    unseen: Real
-    end: Point
-    judged: StepVerdict
-    live: Bool[Array, ""]
+def _is_live(task: LaneTask, motion: LaneState) -> Bool[Array, ""]:
+    """Whether neither the stop nor a failure has made an end of it."""
+    return (motion.time < task.stop) & (motion.code == 0)
 
 
 def _try_step(
     scene: LaneScene, tableau: Tableau, task: LaneTask, motion: LaneState
-) -> _Trial:
+) -> tuple[LaneState, Real, StepVerdict]:
+    """Where a step ends, sums and extremes left as they are, its length and its verdict."""
     field = field_of_lane(scene, task)
-    live = (motion.time < task.stop) & (motion.code == 0)
     full = step_of(motion.control.level, task.cell.first_step)
     pause = pause_of(motion.point, task.origin + motion.time, _drag(task, motion.point))
     waits = full < pause
     full = jnp.where(waits, pause, full)
     left = task.stop - motion.time - motion.unseen
     cut = full >= left
-    step = materialise(jnp.where(live, jnp.where(cut, left, full), 1.0), task.cell.eps)
-    place = _foothold(scene, task, motion, step)
+    step = jnp.where(_is_live(task, motion), jnp.where(cut, left, full), 1.0)
+    step = materialise(step, task.cell.eps)
+    point, width = motion.point, scene.rho_plus - scene.rho_minus
+    place = foothold(step, point, task.origin + motion.time, _drag(task, point), width)
     start = Linearised(place.velocity(), *motion.point[1:3])
     tip, stages = rosenbrock_step(
         tableau, field.velocity, start, motion.time, step, motion.tip
@@ -161,21 +155,20 @@ def _try_step(
     time, unseen = _later(motion, step)
     time = jnp.where(cut, task.stop, time)
     end = materialise(field.point(time, tip), task.cell.eps)
-    moved = jnp.abs(tip - motion.tip)
     error = jnp.where(waits, 0.0, place.beyond_rounding(jnp.abs(stages[-1]), end))
     judged = judge(
         tableau.order,
         task.cell.control,
         motion.control,
         step=step,
-        moved=moved,
+        moved=jnp.abs(tip - motion.tip),
         error=error,
         cut=cut,
         overgrown=place.overgrown(),
         shifts=place.resolves(end),
     )
     unseen = jnp.where(cut, 0.0, unseen)
-    return _Trial(step, tip, time, unseen, end, judged, live)
+    return motion._replace(tip=tip, time=time, unseen=unseen, point=end), step, judged
 
 
 def step_of_lane(
@@ -187,15 +180,15 @@ def step_of_lane(
     be a loop of their own to compile, for steps that are little shorter.)
     """
     field = field_of_lane(scene, task)
-    step, tip, time, unseen, end, judged, live = _try_step(scene, tableau, task, motion)
+    after, step, judged = _try_step(scene, tableau, task, motion)
+    live = _is_live(task, motion)
     accepted = judged.accepted & live
-    tip = jnp.where(accepted, tip, motion.tip)
-    sums, extent = motion.sums, motion.extent
     if summed:
-        arrived = arrival(field, motion.time, step, end)
+        tip = jnp.where(accepted, after.tip, motion.tip)
+        arrived = arrival(field, motion.time, step, after.point)
         sums = advance(
             field,
-            sums,
+            motion.sums,
             motion.time,
             step,
             motion.tip,
@@ -204,19 +197,8 @@ def step_of_lane(
             arrived,
             task.guide.__call__,
         )
-        extent = _extent(scene, task, motion, step, time, tip, arrived, sums)
-    after = LaneState(
-        tip=tip,
-        time=time,
-        unseen=unseen,
-        point=end,
-        control=judged.after,
-        sums=sums,
-        extent=extent,
-        steps=motion.steps,
-        rejected=motion.rejected,
-        code=motion.code,
-    )
+        extent = _extent(scene, task, motion, step, after.time, tip, arrived, sums)
+        after = after._replace(sums=sums, extent=extent)
     failure = jnp.where(judged.after.level < _LOWEST_LEVEL, float(Status.NOT_FINITE), 0.0)
     failure = jnp.where(motion.steps >= task.budget, float(Status.MAX_STEPS), failure)
     return keep(accepted, after, motion)._replace(
@@ -238,12 +220,6 @@ def _later(motion: LaneState, step: Real) -> tuple[Real, Real]:
     return time, gone - (time - motion.time)
 
 
-def _foothold(scene: LaneScene, task: LaneTask, motion: LaneState, step: Real) -> Foothold:
-    point, width = motion.point, scene.rho_plus - scene.rho_minus
-    since = task.origin + motion.time
-    return foothold(step, point, since, _drag(task, point), width)
-
-
 def _drag(task: LaneTask, point: Point) -> Real:
     """N over periods a second."""
     return task.cell.viscosity * task.cell.eps * point.stretch
@@ -259,27 +235,24 @@ def _extent(
     end: Point,
     sums: Balance,
 ) -> Extent:
-    guide, eps, start = task.guide, task.cell.eps, motion.point
-    slopes = slopes_between(start, end, step, tip - motion.tip)
-    speeds = eps * start.stretch * slopes[0], eps * end.stretch * slopes[1]
-    ahead = guide.slope(motion.time), guide.slope(time)
-    guides = guide(motion.time), guide(time)
-    gaps = start.state - guides[0], end.state - guides[1]
-    away = speeds[0] - ahead[0], speeds[1] - ahead[1]
-    extent = widen(motion.extent, step, gaps, away)
-    viscosity, friction = task.cell.viscosity, guide.friction
-    ends = (start, guides[0], speeds[0]), (end, guides[1], speeds[1])
-    left = [_outside(scene, task.cell, *values) for values in ends]
-    extent = leave(extent, step, *zip(*left, strict=True))
-    beyond = (
-        motion.sums.viscous - friction * guide.way(motion.time),
-        sums.viscous - friction * guide.way(time),
+    guide, cell = task.guide, task.cell
+    slopes = slopes_between(motion.point, end, step, tip - motion.tip)
+
+    def curves(t: Real, point: Point, slope: Real, spent: Real) -> tuple:
+        """Values and rates at one end of the step of what has extremes."""
+        place, pace = guide(t), guide.slope(t)
+        speed = cell.eps * point.stretch * slope
+        beyond = spent - guide.friction * guide.way(t)
+        rate = cell.viscosity * speed**2 - guide.friction * pace
+        outside = _outside(scene, cell, point, place, speed)
+        return (point.state - place, speed - pace), outside, (beyond, rate)
+
+    begun = curves(motion.time, motion.point, slopes[0], motion.sums.viscous)
+    ended = curves(time, end, slopes[1], sums.viscous)
+    courses = (
+        StepCurve(*zip(*both, strict=True)) for both in zip(begun, ended, strict=True)
     )
-    rates = (
-        viscosity * speeds[0] ** 2 - friction * ahead[0],
-        viscosity * speeds[1] ** 2 - friction * ahead[1],
-    )
-    return spend(extent, step, beyond, rates)
+    return widened(motion.extent, step, *courses)
 
 
 def _outside(

@@ -50,41 +50,32 @@ class Extent(NamedTuple):
     deficit: Real
 
 
-def widen(
-    extent: Extent, step: Real, gaps: tuple[Real, Real], slopes: tuple[Real, Real]
+class StepCurve(NamedTuple):
+    """Values of a curve at both ends of a step, and slopes (a second)."""
+
+    ends: tuple[Real, Real]
+    slopes: tuple[Real, Real]
+
+
+def widened(
+    extent: Extent, step: Real, apart: StepCurve, outside: StepCurve, beyond: StepCurve
 ) -> Extent:
-    """The extent after a step on which z - guide has these values and slopes at its ends.
+    """The extent after a step of z - guide, of the way from the strip and of the
+    dissipation beyond the guide's.
 
-    (Ends alone miss up to 0.005 eps where z turns between them.)
+    (Ends alone miss up to 0.005 eps where z turns between them, and 7e-4 of all that two
+    slips dissipate, after a short fast stretch of the load: at the top slips end while the
+    guide goes on.)
     """
-    low, high = _extremes(step, gaps, slopes)
-    return extent._replace(
-        ahead=jnp.maximum(extent.ahead, high), behind=jnp.minimum(extent.behind, low)
-    )
-
-
-def leave(
-    extent: Extent, step: Real, gaps: tuple[Real, Real], slopes: tuple[Real, Real]
-) -> Extent:
-    """The extent after a step at whose ends z is so far outside the strip (negative
-    inside) and goes away so fast.
-    """
-    _, high = _extremes(step, gaps, slopes)
-    return extent._replace(outside=jnp.maximum(extent.outside, high))
-
-
-def spend(
-    extent: Extent, step: Real, beyond: tuple[Real, Real], rates: tuple[Real, Real]
-) -> Extent:
-    """The extent after a step on which the dissipation beyond the guide's goes from one
-    value (J) to the other, at these rates (W) at its ends.
-
-    (Ends alone missed 7e-4 of all that two slips dissipate, after a short fast stretch of
-    the load: at the top slips end while the guide goes on.)
-    """
-    low, high = _extremes(step, beyond, rates)
-    return extent._replace(
-        surplus=jnp.maximum(extent.surplus, high), deficit=jnp.minimum(extent.deficit, low)
+    behind, ahead = _extremes(step, *apart)
+    _, farthest = _extremes(step, *outside)
+    deficit, surplus = _extremes(step, *beyond)
+    return Extent(
+        ahead=jnp.maximum(extent.ahead, ahead),
+        behind=jnp.minimum(extent.behind, behind),
+        outside=jnp.maximum(extent.outside, farthest),
+        surplus=jnp.maximum(extent.surplus, surplus),
+        deficit=jnp.minimum(extent.deficit, deficit),
     )
 
 

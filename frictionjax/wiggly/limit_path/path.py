@@ -206,9 +206,8 @@ def times_at(
     """When the path is at each state, on the slide of each piece."""
     if states.size == 0:
         return states
-    columns = states, path.rho[piece], path.touch[piece], path.edges[piece + 1]
-    (found,) = in_chunks(_times_at, SETTINGS.roots, (scene.load, scene.support), columns)
-    return np.clip(found, columns[2], columns[3])
+    early, late = path.touch[piece], path.edges[piece + 1]
+    return np.clip(arrivals_at(scene, states, path.rho[piece], early, late), early, late)
 
 
 def arrivals_at(

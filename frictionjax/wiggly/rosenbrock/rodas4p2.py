@@ -2,7 +2,7 @@
 
 from .step import Tableau
 
-# Six stages, order 4, stiffly accurate, L-stable; dense output of order 3.
+# Six stages, order 4, stiffly accurate, L-stable.
 # G. Steinebach, Improvement of Rosenbrock-Wanner method RODASP, in: Progress in
 # Differential-Algebraic Equations II, Springer (2020).
 _LAST = (7.089566927282776, 4.573591406461604, -8.423496976860259, -0.959280113459775)
@@ -39,22 +39,4 @@ RODAS4P2 = Tableau(
     ),
     times=(0.0, 0.75, 0.321448134013046, 0.519745732277726, 1.0, 1.0),
     time_derivative=(0.25, -0.5, -0.189532918363016, 0.085612108792769, 0.0, 0.0),
-    dense=(
-        (
-            -5.323528268423303,
-            -10.042123754867493,
-            17.175254928256965,
-            -5.079931171878093,
-            -0.016185991706112,
-            0.0,
-        ),
-        (
-            6.984505741529879,
-            6.914061169603662,
-            -0.849178943070653,
-            18.104410789349338,
-            -3.516963011559032,
-            0.0,
-        ),
-    ),
 )

@@ -14,8 +14,8 @@ class Tableau(NamedTuple):
     """Coefficients in the transformed variables of Hairer and Wanner, Section IV.7.
 
     `a`, `c`: rows of the strict lower triangles. `times`, `time_derivative`: of each stage.
-    `dense`: weights of the stages in the interpolant. The last stage is the error estimate
-    (stiffly accurate methods), of order `order - 1`.
+    `dense`: weights of the stages in the interpolant, of a scheme that has one. The last
+    stage is the error estimate (stiffly accurate methods), of order `order - 1`.
     """
 
     order: int
@@ -24,7 +24,7 @@ class Tableau(NamedTuple):
     c: tuple[tuple[float, ...], ...]
     times: tuple[float, ...]
     time_derivative: tuple[float, ...]
-    dense: tuple[tuple[float, ...], ...]
+    dense: tuple[tuple[float, ...], ...] = ()
 
 
 class Linearised(NamedTuple):

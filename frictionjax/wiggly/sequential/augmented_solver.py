@@ -1,7 +1,7 @@
 """A diffrax solver that carries running integrals beside the state."""
 
 import abc
-from typing import Any
+from typing import Any, ClassVar
 
 import diffrax
 import equinox as eqx
@@ -18,7 +18,6 @@ from ..equation import (
     at_rest,
     dissipated,
 )
-from .wrapped import AbstractWrappedSolver
 
 
 class AbstractObserver(eqx.Module):
@@ -81,7 +80,7 @@ class Recorder(eqx.Module):
         return Point(*(leaf[0] for leaf in both)), Point(*(leaf[1] for leaf in both))
 
 
-class AugmentedSolver(AbstractWrappedSolver):
+class AugmentedSolver(diffrax.AbstractAdaptiveSolver):
     """Wraps a solver of y' to one of (y, *memory, step): the rest only follows.
 
     `memory` is the recorder's; `step` the length in s of the longest recent step, at which
@@ -93,6 +92,17 @@ class AugmentedSolver(AbstractWrappedSolver):
 
     solver: diffrax.AbstractSolver
     recorder: Recorder
+    term_structure: ClassVar = diffrax.ODETerm
+    interpolation_cls: ClassVar = diffrax.LocalLinearInterpolation
+
+    def order(self, terms: Any) -> Any:
+        return self.solver.order(terms)
+
+    def error_order(self, terms: Any) -> Any:
+        return self.solver.error_order(terms)
+
+    def func(self, terms: Any, t0: Any, y0: Any, args: Any) -> Any:
+        return terms.vf(t0, y0, args)
 
     def init(self, terms: Any, t0: Any, t1: Any, y0: tuple, args: Any) -> Any:
         return self.solver.init(self._tip_terms(), t0, t1, y0[0], args)

@@ -12,7 +12,6 @@ from jaxtyping import Array, Float, Int, PyTree
 from ..._checks import Real
 from ..equation import Status, StepPlan, TipField
 from .augmented_solver import augmented_field
-from .rounded_steps import RoundedSteps
 from .segment_adjoint import Past, segment_adjoint
 from .settings import SETTINGS
 from .step_adjoint import Ends, made_again
@@ -69,7 +68,7 @@ def _beside(ts: Array, ends: Array, rounding: Array) -> Array:
     return ts
 
 
-def controller_of(plan: StepPlan) -> RoundedSteps:
+def controller_of(plan: StepPlan) -> WellGuard:
     """What chooses steps."""
     controller = diffrax.PIDController(
         rtol=0.0,
@@ -82,7 +81,7 @@ def controller_of(plan: StepPlan) -> RoundedSteps:
         factormax=5.0,
         norm=_tip_norm,
     )
-    return RoundedSteps(WellGuard(controller, plan.reach))
+    return WellGuard(controller, plan.reach)
 
 
 def checkpoints_at(
@@ -91,7 +90,7 @@ def checkpoints_at(
     field: TipField,
     plan: StepPlan,
     solver: diffrax.AbstractSolver,
-    controller: diffrax.AbstractAdaptiveStepSizeController,
+    controller: WellGuard,
     max_steps: int,
     adjoint: diffrax.AbstractAdjoint | None = None,
     past: Past | None = None,
@@ -126,7 +125,7 @@ def _goes_on(rounding: Real, front: Checkpoint, stop: Real) -> Array:
 def _piece(
     stepper: Stepper,
     plan: StepPlan,
-    controller: diffrax.AbstractAdaptiveStepSizeController,
+    controller: WellGuard,
     max_steps: int,
     front: Checkpoint,
     stop: Real,
@@ -165,7 +164,7 @@ def _further(
 
 def _again(
     stepper: Stepper,
-    controller: diffrax.AbstractAdaptiveStepSizeController,
+    controller: WellGuard,
     front: Checkpoint,
     end: Real,
 ) -> Checkpoint:
@@ -187,7 +186,7 @@ def _solved(
     field: TipField,
     plan: StepPlan,
     solver: diffrax.AbstractSolver,
-    controller: diffrax.AbstractAdaptiveStepSizeController,
+    controller: WellGuard,
     max_steps: int,
     adjoint: diffrax.AbstractAdjoint,
     front: Checkpoint,
@@ -214,7 +213,7 @@ def _solved(
         front,
         t=jnp.where(unfinished, reached, stop),
         y=y,
-        code=_code(found.result),
+        code=code_of(found.result),
         steps=front.steps + found.stats["num_steps"],
         rejected=found.stats["num_rejected_steps"],
     )
@@ -223,16 +222,3 @@ def _solved(
 def _tip_norm(scaled: PyTree) -> Real:
     """Step control looks at the tip alone; the running integrals follow it."""
     return jnp.abs(jax.tree_util.tree_leaves(scaled)[0])
-
-
-def _code(result: diffrax.RESULTS) -> Array:
-    spent = result == diffrax.RESULTS.max_steps_reached
-    return jnp.where(spent, int(Status.MAX_STEPS), code_of(result))
-
-
-def first_of(codes: list[tuple[Any, Status]], otherwise: Any) -> Array:
-    """The first status whose condition holds."""
-    status = otherwise
-    for bad, code in reversed(codes):
-        status = jnp.where(bad, int(code), status)
-    return status

@@ -15,7 +15,6 @@ from .checkpoints import (
     checkpoint_at_start,
     checkpoints_at,
     controller_of,
-    first_of,
     times_of_stops,
 )
 from .own_methods import MAX_STEPS
@@ -118,12 +117,9 @@ def integrate(
 
 
 def _status(code: Array, z: Float[Array, " n"], turns: Array) -> Array:
-    known = [
-        (jnp.any(jnp.isnan(turns)), Status.TOO_MANY_TURNS),
-        (~jnp.all(jnp.isfinite(z)), Status.NOT_FINITE),
-    ]
-    found = first_of(known, jnp.asarray(int(Status.OK)))
-    return jnp.where((code != Status.OK) & (found != Status.TOO_MANY_TURNS), code, found)
+    lost = (code == Status.OK) & ~jnp.all(jnp.isfinite(z))
+    code = jnp.where(lost, int(Status.NOT_FINITE), code)
+    return jnp.where(jnp.any(jnp.isnan(turns)), int(Status.TOO_MANY_TURNS), code)
 
 
 def _pulled(scene: Scene, turns: Float[Array, " m"], until: Real) -> Real:

@@ -17,6 +17,7 @@ from jaxtyping import Array, Float, Int, PyTree
 
 from ..._checks import Real
 from .settings import SETTINGS
+from .step_adjoint import added
 
 
 class Log(NamedTuple):
@@ -110,12 +111,12 @@ def _back(log: Log, by: Past, perturbed: PyTree, parts: tuple, *_: Any) -> tuple
         # Only the last piece of a stretch ends where its stop is.
         last = (left == log.pieces) | (log.stops[left] != log.stops[index])
         by_end = jnp.where(after.t == end, jnp.where(last, by_end, 0.0), jnp.nan)
-        return by_front, _added(by_wanted, more), by_stop + by_end, index
+        return by_front, added(by_wanted, more), by_stop + by_end, index
 
     def over_stop(carry: tuple, given: tuple) -> tuple[tuple, PyTree]:
         by_front, by_wanted, left = carry
         index, by_here = given
-        start = _added(by_front, by_here), by_wanted, jnp.zeros_like(stops[0]), left
+        start = added(by_front, by_here), by_wanted, jnp.zeros_like(stops[0]), left
         *back, by_stop, left = jax.lax.while_loop(
             lambda c: (c[3] > 0) & (log.stops[c[3] - 1] == index), over_piece, start
         )
@@ -133,10 +134,6 @@ def _back(log: Log, by: Past, perturbed: PyTree, parts: tuple, *_: Any) -> tuple
     )
     by_piece = eqx.filter(parts[0], lambda leaf: False)
     return by_piece, by_wanted, by_front, by_stops
-
-
-def _added(one: PyTree, other: PyTree) -> PyTree:
-    return jax.tree_util.tree_map(jnp.add, one, other)
 
 
 def _whole(by_fronts: PyTree, moving: PyTree, count: int) -> PyTree:

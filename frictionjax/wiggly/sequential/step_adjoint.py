@@ -85,7 +85,7 @@ def _back(
         _, back = jax.vjp(step, wanted, begin.t, end, begin.y, memory)
         more, by_start, by_end, *by = back((pull.by_y, pull.by_memory))
         by_stop = jnp.where(last, by_end, pull.by_stop)
-        return _Pull(index, _added(pull.by_stepper, more), by_start, by_stop, *by)
+        return _Pull(index, added(pull.by_stepper, more), by_start, by_stop, *by)
 
     zero, none = jnp.zeros_like(ends.stop), jax.tree_util.tree_map(jnp.zeros_like, wanted)
     by_y = jax.tree_util.tree_map(
@@ -101,9 +101,10 @@ def _back(
 
     _, back = jax.vjp(begun, wanted, ends.t, ends.y)
     more = back(end.by_memory)
-    by_stepper, by_t, by_y = _added((end.by_stepper, end.by_start, end.by_y), more)
+    by_stepper, by_t, by_y = added((end.by_stepper, end.by_start, end.by_y), more)
     return Ends(by_stepper, by_t, by_y, end.by_stop)
 
 
-def _added(one: PyTree, other: PyTree) -> PyTree:
+def added(one: PyTree, other: PyTree) -> PyTree:
+    """Sums of derivatives, leaf by leaf."""
     return jax.tree_util.tree_map(jnp.add, one, other)

@@ -117,10 +117,12 @@ def step_to(
 
 
 def code_of(result: diffrax.RESULTS) -> Array:
-    """The `Status` of what diffrax says of a step."""
-    failed = jnp.where(
-        result == diffrax.RESULTS.dt_min_reached,
-        int(Status.STEP_TOO_SMALL),
-        int(Status.SOLVER_FAILED),
-    )
-    return jnp.where(result == diffrax.RESULTS.successful, int(Status.OK), failed)
+    """The `Status` of what diffrax says of a step, or of all."""
+    code: Any = int(Status.SOLVER_FAILED)
+    for known, status in (
+        (diffrax.RESULTS.max_steps_reached, Status.MAX_STEPS),
+        (diffrax.RESULTS.dt_min_reached, Status.STEP_TOO_SMALL),
+        (diffrax.RESULTS.successful, Status.OK),
+    ):
+        code = jnp.where(result == known, int(status), code)
+    return code

@@ -5,6 +5,7 @@ P the time of a passage under that force. It says how a slide is cut into panels
 guess for the recursion that is solved on them.
 """
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -46,74 +47,65 @@ def _grid(wells: np.ndarray) -> np.ndarray:
 
 
 @Program
-def _march(
+def _march(load: AbstractPull, support: AbstractSupport, *columns: Array) -> Any:
+    return jax.vmap(partial(_slide, load, support))(*columns)
+
+
+def _slide(
     load: AbstractPull,
     support: AbstractSupport,
-    table,
-    low,
-    fold,
-    sign,
-    eps,
-    origin,
-    first,
-    time,
-    number,
-):
+    table: Array,
+    low: Array,
+    fold: Array,
+    sign: Array,
+    eps: Array,
+    origin: Array,
+    first: Array,
+    time: Array,
+    number: Array,
+) -> list[Array]:
     pitch = (_RANGE[1] - _RANGE[0]) / (SETTINGS.table_rows - 1)
 
-    def one(
-        table: Array,
-        low: Array,
-        fold: Array,
-        sign: Array,
-        eps: Array,
-        origin: Array,
-        first: Array,
-        time: Array,
-        number: Array,
-    ) -> Any:
-        def law(force: Array) -> tuple[Array, Array]:
-            """P in s, and its derivative."""
-            place = (jnp.log(force) - low) / pitch
-            row = jnp.clip(jnp.floor(place).astype(int), 0, SETTINGS.table_rows - 2)
-            rise = table[row + 1] - table[row]
-            length = jnp.exp(table[row] + rise * (place - row))
-            return length, length * rise / (pitch * force)
+    def law(force: Array) -> tuple[Array, Array]:
+        """P in s, and its derivative."""
+        place = (jnp.log(force) - low) / pitch
+        row = jnp.clip(jnp.floor(place).astype(int), 0, SETTINGS.table_rows - 2)
+        rise = table[row + 1] - table[row]
+        length = jnp.exp(table[row] + rise * (place - row))
+        return length, length * rise / (pitch * force)
 
-        def force_at(time: Array, at: Array) -> Array:
-            held = support.force(origin + sign * eps * (first + at))
-            return sign * (load(time) - held) - fold
+    def force_at(time: Array, at: Array) -> Array:
+        held = support.force(origin + sign * eps * (first + at))
+        return sign * (load(time) - held) - fold
 
-        def step(before: tuple, at: Array) -> tuple[tuple, tuple]:
-            # Newton's method for log X: in T it diverged where X is 1e-7 of the load.
-            time, force, last = before
-            wells = at - last
+    def step(before: tuple, at: Array) -> tuple[tuple, tuple]:
+        # Newton's method for log X: in T it diverged where X is 1e-7 of the load.
+        time, force, last = before
+        wells = at - last
 
-            def sweep(_: Any, state: tuple[Array, Array]) -> tuple[Array, Array]:
-                log, _ = state
-                force = jnp.exp(log)
-                length, slope = law(force)
-                later = time + wells * length
-                rate = sign * load.slope(later)
-                left = force - force_at(later, at)
-                change = left / (force * (1 - wells * slope * rate))
-                return log - jnp.clip(change, -SETTINGS.farthest, SETTINGS.farthest), change
-
-            begin = jnp.log(force), jnp.zeros_like(force)
-            log, change = jax.lax.fori_loop(0, SETTINGS.step_sweeps, sweep, begin)
-            here = jnp.where(jnp.abs(change) < SETTINGS.last_change, jnp.exp(log), jnp.nan)
-            length, slope = law(here)
+        def sweep(_: Any, state: tuple[Array, Array]) -> tuple[Array, Array]:
+            log, _ = state
+            force = jnp.exp(log)
+            length, slope = law(force)
             later = time + wells * length
-            kept = jnp.exp(slope * sign * load.slope(later))
-            return (later, here, at), (here, later, kept)
+            rate = sign * load.slope(later)
+            left = force - force_at(later, at)
+            change = left / (force * (1 - wells * slope * rate))
+            return log - jnp.clip(change, -SETTINGS.farthest, SETTINGS.farthest), change
 
-        begin = force_at(time, number[0])
-        gain = law(begin)[1] * sign * load.slope(time)
-        _, rows = jax.lax.scan(step, (time, begin, number[0]), number[1:])
-        start = begin, time, jnp.exp(gain)
-        return [jnp.concatenate([a[None], b]) for a, b in zip(start, rows, strict=True)]
+        begin = jnp.log(force), jnp.zeros_like(force)
+        log, change = jax.lax.fori_loop(0, SETTINGS.step_sweeps, sweep, begin)
+        here = jnp.where(jnp.abs(change) < SETTINGS.last_change, jnp.exp(log), jnp.nan)
+        length, slope = law(here)
+        later = time + wells * length
+        kept = jnp.exp(slope * sign * load.slope(later))
+        return (later, here, at), (here, later, kept)
 
-    return jax.vmap(one)(table, low, fold, sign, eps, origin, first, time, number)
+    begin = force_at(time, number[0])
+    gain = law(begin)[1] * sign * load.slope(time)
+    _, rows = jax.lax.scan(step, (time, begin, number[0]), number[1:])
+    start = begin, time, jnp.exp(gain)
+    return [jnp.concatenate([a[None], b]) for a, b in zip(start, rows, strict=True)]
 
 
 def lags_of(

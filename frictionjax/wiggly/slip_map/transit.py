@@ -18,19 +18,17 @@ from ...loads import AbstractPull
 from ...model import TabulatedScene
 from ...supports import AbstractSupport
 from .settings import SETTINGS
-from .well_pull import GAUSS_NODES, GAUSS_POINTS, GAUSS_WEIGHTS, TO_LEGENDRE, WellPull
+from .well_pull import (
+    GAUSS_NODES,
+    GAUSS_POINTS,
+    GAUSS_WEIGHTS,
+    PRIMITIVE,
+    TO_LEGENDRE,
+    WellPull,
+)
 
-
-def _integrals() -> np.ndarray:
-    """Matrix from values at Gauss nodes to integrals from the left end to each node."""
-    columns = []
-    for k in range(GAUSS_POINTS):
-        primitive = np.polynomial.legendre.legint(np.eye(GAUSS_POINTS)[k], lbnd=-1)
-        columns.append(np.polynomial.legendre.legval(GAUSS_NODES, primitive))
-    return np.stack(columns, axis=1) @ TO_LEGENDRE
-
-
-_TO_NODES = _integrals()
+# From values at Gauss nodes to integrals from the left end to each node.
+_TO_NODES = np.polynomial.legendre.legval(GAUSS_NODES, PRIMITIVE).T @ TO_LEGENDRE
 
 
 class SupportPull(NamedTuple):

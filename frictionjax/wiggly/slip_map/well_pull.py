@@ -15,15 +15,8 @@ GAUSS_POINTS = 10  # Gauss nodes of a panel
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 TO_LEGENDRE = np.linalg.inv(np.polynomial.legendre.legvander(GAUSS_NODES, GAUSS_POINTS - 1))
 
-
-def _primitive() -> np.ndarray:
-    """Matrix from Legendre polynomials to their integrals from -1, one degree higher."""
-    one = np.eye(GAUSS_POINTS)
-    columns = [np.polynomial.legendre.legint(row, lbnd=-1) for row in one]
-    return np.stack([np.pad(c, (0, GAUSS_POINTS + 1 - c.size)) for c in columns], axis=1)
-
-
-_PRIMITIVE = _primitive()
+# From Legendre polynomials to their integrals from -1, one degree higher.
+PRIMITIVE = np.polynomial.legendre.legint(np.eye(GAUSS_POINTS), lbnd=-1, axis=1).T
 
 
 class WellPull(NamedTuple):
@@ -136,7 +129,7 @@ class _Clock(NamedTuple):
         for _ in range(SETTINGS.place_sweeps):
             values = np.polynomial.legendre.legvander(x, GAUSS_POINTS)
             rate = 0.5 * width * np.sum(values[..., :-1] * series, axis=-1)
-            grown = 0.5 * width * np.sum(values @ _PRIMITIVE * series, axis=-1)
+            grown = 0.5 * width * np.sum(values @ PRIMITIVE * series, axis=-1)
             x = np.clip(x - (grown - left) / rate, -1.0, 1.0)
         return self.left[panel] + width * 0.5 * (x + 1)
 

@@ -1,6 +1,6 @@
 """Sums over the way of one cell: dissipation, balance, largest deviations from the path."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -43,29 +43,6 @@ def way_of(
     return CellWay(chain, slides, surveys, totals, before)
 
 
-class _Outputs(NamedTuple):
-    """Where in a cell's chain or in which surveyed slide each requested time is."""
-
-    stop: np.ndarray
-    place: np.ndarray
-    survey: np.ndarray
-    begin: np.ndarray
-
-
-def _outputs(
-    cell: CellWay, stops: StopValues, layout: Layout, output: np.ndarray
-) -> _Outputs:
-    place = np.full(stops.time.size + 1, -1)
-    place[cell.chain] = np.arange(cell.chain.size)
-    lows = np.array([survey.low for survey in cell.surveys])
-    owner = layout.brackets.owner
-    # Where its bracket begins: times of one bracket may be in surveys further on.
-    first = np.searchsorted(owner, owner[output])
-    survey = np.searchsorted(lows, stops.time[first], side="right") - 1
-    begin = layout.brackets.begin[owner[output]]
-    return _Outputs(output, place[output], survey, begin)
-
-
 def _since_begin(brackets: Brackets, stops: StopValues, chosen: np.ndarray) -> np.ndarray:
     """Integrals in J over the brackets of the chosen stops, up to these, (3, n).
 
@@ -84,33 +61,28 @@ def _since_begin(brackets: Brackets, stops: StopValues, chosen: np.ndarray) -> n
 
 
 def _running(
-    cell: CellWay, stops: StopValues, brackets: Brackets, outputs: _Outputs
+    cell: CellWay, stops: StopValues, brackets: Brackets, output: np.ndarray
 ) -> np.ndarray:
-    """Integrals in J from 0 to each requested time, (3, n)."""
-    in_chain = (outputs.place >= 0) & (outputs.stop >= 0)
-    found = np.where(in_chain, cell.totals[:, np.maximum(outputs.place, 0)], 0.0)
+    """Integrals in J from 0 to each requested time, (3, n).
+
+    At a stop of the cell's chain, or in a bracket of its own, in a surveyed slide.
+    """
+    place = np.full(stops.time.size + 1, -1)
+    place[cell.chain] = np.arange(cell.chain.size)
+    place, known = place[output], output >= 0
+    in_chain = (place >= 0) & known
+    found = np.where(in_chain, cell.totals[:, np.maximum(place, 0)], 0.0)
+    lows = np.array([survey.low for survey in cell.surveys])
+    # Where its bracket begins: times of one bracket may be in surveys further on.
+    first = np.searchsorted(brackets.owner, brackets.owner[output])
+    which = np.searchsorted(lows, stops.time[first], side="right") - 1
+    begin = brackets.begin[brackets.owner[output]]
     for k, survey in enumerate(cell.surveys):
-        mine = np.flatnonzero(~in_chain & (outputs.stop >= 0) & (outputs.survey == k))
-        done = survey.integrals(outputs.begin[mine])
-        since_begin = _since_begin(brackets, stops, outputs.stop[mine])
+        mine = np.flatnonzero(~in_chain & known & (which == k))
+        done = survey.integrals(begin[mine])
+        since_begin = _since_begin(brackets, stops, output[mine])
         found[:, mine] = cell.before[k][:, None] + done + since_begin
     return found
-
-
-class Energetics(NamedTuple):
-    """Energies of a cell in J: (n,) at the outputs, else numbers.
-
-    `residual`, `gap`: at the end. `worst`: sup of the error of the dissipation. `lost`: how
-    far surveys may be off, in the dissipation or in that sup, over the dissipation in
-    [0, T].
-    """
-
-    dissipation: np.ndarray
-    running_residual: np.ndarray
-    residual: float
-    gap: float
-    worst: float
-    lost: float
 
 
 def energetics(
@@ -123,15 +95,15 @@ def energetics(
     path: Path,
     unit: float,
     eps: float,
-) -> Energetics:
-    """Energies of a cell at its outputs, and how good they are.
+) -> dict[str, Any]:
+    """Energies of a cell at its outputs and at the end, and how good they are, by the names
+    of `CellResults`.
 
     `int eps^gamma z'^2` is the path's dissipation and what the energies and the work of
     z - path add to it; the direct sum is an independent second value. `unit`: the accuracy
     in m.
     """
-    outputs = _outputs(cell, stops, layout, output)
-    running = _running(cell, stops, layout.brackets, outputs)
+    running = _running(cell, stops, layout.brackets, output)
     beyond = energy0 - stops.energy[cell.chain] - cell.totals[WORK]
     errors = _errors(cell, stops, path, unit)
     if _is_summed(cell, errors, path, eps):
@@ -141,14 +113,14 @@ def energetics(
         energy = np.where(output >= 0, stops.energy[output], energy0)
         spent = of_path + energy0 - energy - running[WORK]
         gap, worst, lost = _with_slips(cell, stops, energy0, beyond, path)
-    return Energetics(
-        dissipation=spent,
-        running_residual=running[RESIDUAL],
-        residual=cell.totals[RESIDUAL, -1],
-        gap=gap,
-        worst=worst,
-        lost=lost,
-    )
+    return {
+        "dissipation": spent,
+        "running_residual": running[RESIDUAL],
+        "residual": cell.totals[RESIDUAL, -1],
+        "dissipation_gap": gap,
+        "dissipation_error": worst,
+        "survey_work_error": lost,
+    }
 
 
 def _errors(cell: CellWay, stops: StopValues, path: Path, unit: float) -> Errors:
@@ -213,10 +185,11 @@ def _second_opinion(cell: CellWay, stops: StopValues, final: float) -> float:
     return abs(float(cell.totals[VISCOUS, -1]) - final)
 
 
-def no_energetics(size: int) -> Energetics:
+def no_energetics(size: int) -> dict[str, Any]:
     """What `energetics` would give, all NaN, and nothing that surveys spoil."""
-    nothing = np.full(size, np.nan)
-    return Energetics(nothing, nothing, np.nan, np.nan, np.nan, lost=0.0)
+    series = dict.fromkeys(("dissipation", "running_residual"), np.full(size, np.nan))
+    numbers = ("residual", "dissipation_gap", "dissipation_error")
+    return series | dict.fromkeys(numbers, np.nan) | {"survey_work_error": 0.0}
 
 
 def _spent(cell: CellWay, stops: StopValues, path: Path) -> float:
@@ -243,19 +216,12 @@ def _worst_dissipation(cell, stops, energy0, beyond) -> tuple[float, float]:
     return float(values.max()), _change(values, errors)
 
 
-class Deviations(NamedTuple):
-    """Largest |z - path|, largest way from the strip to z, and errors of both, in m."""
-
-    far: float
-    outside: float
-    error: float
+NO_DEVIATIONS = {"sup_error": np.nan, "strip_excess": np.nan, "survey_error": 0.0}
 
 
-NOT_ASKED = Deviations(np.nan, np.nan, 0.0)
-
-
-def deviations(cell: CellWay, stops: StopValues) -> Deviations:
-    """Largest deviations of the whole way, and by how much surveys may change them.
+def deviations(cell: CellWay, stops: StopValues) -> dict[str, float]:
+    """Largest |z - path| of the whole way, and largest way from the strip to z, and by how
+    much surveys may change them, by the names of `CellResults`; m.
 
     The first wells of a slide are surveyed most roughly, where z is still near the path:
     only what may be the largest of all counts.
@@ -269,7 +235,7 @@ def deviations(cell: CellWay, stops: StopValues) -> Deviations:
     *both, errors = np.array(rows).T
     changes = [_change(values, errors) for values in both]
     far, outside = (float(values.max()) for values in both)
-    return Deviations(far, outside, max(changes))
+    return {"sup_error": far, "strip_excess": outside, "survey_error": max(changes)}
 
 
 def _change(values: np.ndarray, errors: np.ndarray) -> float:

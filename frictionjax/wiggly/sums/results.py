@@ -10,7 +10,7 @@ from ..enclosure import BracketValues, CellBounds, Layout
 from ..equation import Status
 from ..limit_path import Path, states_at
 from .cell_sums import (
-    NOT_ASKED,
+    NO_DEVIATIONS,
     CellWay,
     deviations,
     energetics,
@@ -109,40 +109,28 @@ def evaluate(
                 unit=accuracy * eps[c],
                 eps=eps[c],
             )
-        off = deviations(cell, stops) if wanted.extremes else NOT_ASKED
-        used = np.concatenate([cell.chain, output[output >= 0], *_periods(cell)])
+        off = deviations(cell, stops) if wanted.extremes else NO_DEVIATIONS
+        used = np.concatenate(
+            [cell.chain, output[output >= 0], *(slide.stops for slide in cell.slides)]
+        )
         unbalanced = wanted.energies and not _is_balanced(cell, eps[c] * path.width)
         row: Any = {
             "z": np.where(output >= 0, stops.z[output], z_start[c]),
-            "dissipation": energies.dissipation,
-            "running_residual": energies.running_residual,
-            "residual": energies.residual,
-            "dissipation_gap": energies.gap,
-            "dissipation_error": energies.worst,
-            "sup_error": off.far,
-            "strip_excess": off.outside,
             "how": np.where(output >= 0, values.how[output], 0),
             "gap": np.where(output >= 0, values.gap[output], 0.0),
             "sampled": _share(cell, path, whole) if layout.whole else np.nan,
-            "survey_error": off.error,
-            "survey_work_error": energies.lost,
             "status": _status(values.arrivals.code[used], unbalanced),
             "steps": values.steps[c],
             "rejected": values.rejected[c],
             "tolerance": 0.0,
         }
-        rows.append(CellResults(**row))
+        rows.append(CellResults(**row | energies | off))
     return stacked(rows)
 
 
 def _share(cell: CellWay, path: Path, whole: float) -> float:
     covered = sum(abs(s.way) for s in cell.slides)
     return float(covered / whole) if whole > 0 else 0.0
-
-
-def _periods(cell: CellWay) -> list[np.ndarray]:
-    """Stops at which the periods end that are measured inside slides."""
-    return [slide.stops for slide in cell.slides]
 
 
 def _is_balanced(cell: CellWay, slip: float) -> bool:

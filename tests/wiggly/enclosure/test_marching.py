@@ -1,12 +1,9 @@
 """How lanes of brackets are dealt to threads."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.wiggly import batch
 from frictionjax.wiggly.enclosure import marching
 
 
@@ -18,9 +15,8 @@ def test_lanes_of_few_wells_stay_in_one_thread(monkeypatch, eps, asked):
         found.append(args)
         return known(*args)
 
-    known, two = marching.crew, partial(batch.AttemptContext, workers=2)
+    known = marching.crew
     monkeypatch.setattr(marching, "crew", crew)
-    monkeypatch.setattr(batch, "AttemptContext", two)
     profile, support = fx.profiles.Sine(0.10635), fx.supports.Spring(1.7858)
     bristle = fx.bristles.SlantedSpring(1.34635, 2.4, 1.0, angle=0.50613)
     scene = fx.Scene(profile, bristle, support, fx.loads.Sine(1.02157, 3.0), 3.0)

@@ -1,4 +1,4 @@
-"""Orders of the Rosenbrock schemes and of their dense output."""
+"""Orders of the Rosenbrock schemes."""
 
 import diffrax
 import jax.numpy as jnp
@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 from frictionjax.wiggly.sequential.rosenbrock_solvers import Rodas4P2, Rodas5P
-
-TIMES = jnp.linspace(0.0, 2.0, 41)
 
 
 def field(t, y, args):
@@ -22,9 +20,8 @@ def solve(solver, steps, **options):
         2.0,
         2.0 / steps,
         jnp.asarray(0.7),
-        saveat=diffrax.SaveAt(ts=TIMES),
         **options,
-    ).ys
+    ).ys[-1]
 
 
 @pytest.fixture(scope="module")
@@ -36,14 +33,10 @@ def exact():
 @pytest.mark.parametrize("solver", [Rodas5P(), Rodas4P2()], ids=["Rodas5P", "Rodas4P2"])
 def test_orders(solver, exact):
     order = solver.tableau.order
-    counts = np.array([11, 22, 44, 88])  # output times inside steps
-    found = [np.abs(np.asarray(solve(solver, n) - exact)) for n in counts]
-    at_end = np.array([error[-1] for error in found])
-    between = np.array([error.max() for error in found])
-    end_order = np.polyfit(np.log(counts), -np.log(at_end), 1)[0]
-    dense_order = np.polyfit(np.log(counts), -np.log(between), 1)[0]
-    assert end_order == pytest.approx(order, abs=0.3)
-    assert dense_order > order - 0.5
+    counts = np.array([11, 22, 44, 88])
+    errors = np.array([abs(float(solve(solver, n) - exact)) for n in counts])
+    found = np.polyfit(np.log(counts), -np.log(errors), 1)[0]
+    assert found == pytest.approx(order, abs=0.3)
 
 
 @pytest.mark.parametrize("solver", [Rodas5P(), Rodas4P2()], ids=["Rodas5P", "Rodas4P2"])

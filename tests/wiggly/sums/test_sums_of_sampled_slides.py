@@ -27,7 +27,7 @@ from frictionjax.wiggly.sums.cell_sums import (
     CellWay,
     _errors,
     _is_summed,
-    _outputs,
+    _running,
     _since_begin,
     deviations,
     energetics,
@@ -124,9 +124,9 @@ def way(*surveys):
 def test_errors_of_surveys_count_where_they_may_change_the_largest():
     far, near = rough_survey(10.0, 1e-6), rough_survey(5.0, 0.5)
     found = deviations(*way(far, near))
-    assert found.far == pytest.approx(10.0, rel=1e-6)
-    assert found.outside == pytest.approx(10.0, rel=1e-6)
-    assert found.error == pytest.approx(1e-6, rel=0.01)
+    assert found["sup_error"] == pytest.approx(10.0, rel=1e-6)
+    assert found["strip_excess"] == pytest.approx(10.0, rel=1e-6)
+    assert found["survey_error"] == pytest.approx(1e-6, rel=0.01)
     assert near.error_extreme == pytest.approx(0.5, rel=0.05)
 
 
@@ -138,9 +138,9 @@ def test_errors_of_surveys_that_reach_the_largest_count(behind):
     # The wobble itself is in what is found.
     high = behind + 0.5
     low = max(high - other.error_extreme, 10.0)
-    assert found.far == pytest.approx(max(high, 10.0), rel=1e-4)
-    wanted = max(high + other.error_extreme - found.far, found.far - low)
-    assert found.error == pytest.approx(wanted, rel=1e-3)
+    assert found["sup_error"] == pytest.approx(max(high, 10.0), rel=1e-4)
+    wanted = max(high + other.error_extreme - found["sup_error"], found["sup_error"] - low)
+    assert found["survey_error"] == pytest.approx(wanted, rel=1e-3)
 
 
 def test_a_rough_surplus_is_an_error_of_the_dissipation():
@@ -151,9 +151,9 @@ def test_a_rough_surplus_is_an_error_of_the_dissipation():
     for wobble in (1e-7, 1e-2):
         cell, stops = way(rough_survey(1.0, wobble, slice(SURPLUS, SURPLUS + 2)))
         of = layout, np.array([0]), 0.0, np.zeros(1), path, 1e-6, 1e-3
-        *_, sup, lost = energetics(cell, stops, *of)
-        assert sup == pytest.approx(wobble, rel=0.05)
-        assert lost == pytest.approx(wobble / (0.1 * 4.0), rel=0.05)
+        found = energetics(cell, stops, *of)
+        assert found["dissipation_error"] == pytest.approx(wobble, rel=0.05)
+        assert found["survey_work_error"] == pytest.approx(wobble / (0.1 * 4.0), rel=0.05)
 
 
 def test_an_unknown_error_of_a_survey_is_not_forgotten():
@@ -164,8 +164,7 @@ def test_an_unknown_error_of_a_survey_is_not_forgotten():
     )
     of = layout, np.array([0]), 0.0, np.zeros(1), path, 1e-6, 1e-3
     unknown = rough_survey(1.0, 0.0)._replace(error_work=np.nan)
-    *_, lost = energetics(*way(unknown), *of)
-    assert np.isnan(lost)
+    assert np.isnan(energetics(*way(unknown), *of)["survey_work_error"])
 
 
 @pytest.mark.parametrize(
@@ -205,15 +204,17 @@ def test_times_in_a_rest_of_the_path_share_a_window():
 
 def test_times_of_a_window_count_from_the_survey_in_which_it_begins():
     """Taken beyond its ends a survey gave 6e7 times what is dissipated (gamma = 0.1)."""
-    surveys = [SimpleNamespace(low=0.0), SimpleNamespace(low=1.0)]
-    cell = SimpleNamespace(chain=np.zeros(0, dtype=int), surveys=surveys)
-    stops = SimpleNamespace(time=np.array([0.5, 0.9, 1.4, 1.6]))
+    same = {"integrals": lambda times: np.stack([times] * 3)}
+    surveys = [SimpleNamespace(low=low, **same) for low in (0.0, 1.0)]
+    before, totals = np.array([[0.0] * 3, [10.0] * 3]), np.zeros((3, 1))
+    of = {"surveys": surveys, "before": before, "totals": totals}
+    cell = SimpleNamespace(chain=np.zeros(0, dtype=int), **of)
+    stops = SimpleNamespace(time=np.array([0.5, 0.9, 1.4, 1.6]), sums=np.zeros((3, 4)))
     brackets = SimpleNamespace(
         owner=np.array([0, 1, 1, 2]), begin=np.array([0.4, 0.8, 1.5])
     )
-    found = _outputs(cell, stops, SimpleNamespace(brackets=brackets), np.arange(4))
-    assert found.survey.tolist() == [0, 0, 0, 1]
-    assert found.begin.tolist() == [0.4, 0.8, 0.8, 1.5]
+    found = _running(cell, stops, brackets, np.arange(4))
+    assert found.tolist() == [[0.4, 0.8, 0.8, 11.5]] * 3
 
 
 class Bursts(eqx.Module):
