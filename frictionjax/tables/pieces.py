@@ -10,7 +10,7 @@ from jaxtyping import Array, ArrayLike, Float, Int
 from ..profiles import AbstractProfile
 from .settings import SETTINGS, size_for
 
-_DEGREE = 4  # of a corner of a polyline; a spline has 3
+_DEGREE = 4  # at least: of a corner of a polyline; a spline has 3
 
 
 class Pieces(NamedTuple):
@@ -60,7 +60,7 @@ def piecewise(pieces: Pieces, points: int) -> PiecewiseProfile | None:
     ends = np.append(first[1:], pieces.left.size - 1)
     if np.max(ends - first) > SETTINGS.few:
         return None
-    rows = np.zeros((size, 2 + _DEGREE))
+    rows = np.zeros((size, 1 + max(1 + _DEGREE, pieces.terms.shape[1])))
     rows[:, 0] = left
     rows[: pieces.left.size, 1 : 1 + pieces.terms.shape[1]] = pieces.terms
     samples = size_for(points, SETTINGS.points_a_period) or points

@@ -1,5 +1,6 @@
 """A profile as tables: a Fourier series, or pieces of polynomials."""
 
+import math
 from functools import singledispatch
 from typing import NamedTuple
 
@@ -76,9 +77,42 @@ def _in_series(series: Series, height: float) -> ProfileTables:
     size = size_for(count, SETTINGS.harmonics) or count
     cos, sin = (jnp.asarray(np.pad(c, (0, size - count))) for c in (series.cos, series.sin))
     parts = jnp.asarray(series.mean), cos, sin
-    lanes = SeriesProfile(*parts)
-    planning = Waves(*parts) if 1 < size <= SETTINGS.waves else lanes
-    return ProfileTables(lanes, planning, height)
+    alone = SeriesProfile(*parts)
+    planning = Waves(*parts) if 1 < size <= SETTINGS.waves else alone
+    return ProfileTables(_pieces_of(series, alone) or alone, planning, height)
+
+
+def _pieces_of(series: Series, profile: SeriesProfile) -> PiecewiseProfile | None:
+    """Of a long series, Taylor polynomials about the middles of many pieces.
+
+    What is left out is (pi n/pieces)^9/9! of harmonic n, 5e-18 for 64, and 1e-13 of its
+    second derivative.
+    """
+    size, count = profile.cos.shape[0], SETTINGS.pieces[-1] - SETTINGS.few
+    if not SETTINGS.written_out < size <= SETTINGS.harmonics[-1]:
+        return None
+    turn = 2j * np.pi * np.arange(1, series.cos.size + 1)
+    waves = 0.5 * (series.cos - 1j * series.sin) * np.exp(turn * 0.5 / count)
+    middle = np.empty((SETTINGS.degree + 1, count))
+    for power in range(SETTINGS.degree + 1):
+        spectrum = np.zeros(count // 2 + 1, complex)
+        spectrum[1 : turn.size + 1] = waves * turn**power / math.factorial(power)
+        middle[power] = np.fft.irfft(count * spectrum, count)
+    middle[0] += series.mean
+    return piecewise(Pieces(_places(count), _moved(middle, -0.5 / count).T), profile.points)
+
+
+def _moved(
+    terms: Float[np.ndarray, "powers n"], by: float
+) -> Float[np.ndarray, "powers n"]:
+    """The same polynomials in `t - by`."""
+    count = terms.shape[0]
+    return np.stack(
+        [
+            sum(math.comb(m, k) * by ** (m - k) * terms[m] for m in range(k, count))
+            for k in range(count)
+        ]
+    )
 
 
 @singledispatch

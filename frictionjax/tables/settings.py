@@ -10,6 +10,9 @@ class Settings(NamedTuple):
     # with 8, 0.18 with 16; each size is a loop to compile. (A larger loop until the right
     # one is there: last digits would depend on what has run before.)
     harmonics: tuple[int, ...] = (1, 4, 8, 16, 64)
+    # Longer ones as pieces of this degree: a step of 64 harmonics takes half as long.
+    written_out: int = 16
+    degree: int = 8
     # In planning: several, up to so many, as an axis (`waves.py`), one, and more, as lanes
     # do. A plan of 64 cells takes 3, 4, 12 and 36 ms for 4, 8, 16 and 64.
     waves: int = 8
