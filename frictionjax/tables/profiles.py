@@ -99,7 +99,8 @@ def _pieces_of(series: Series, profile: SeriesProfile) -> PiecewiseProfile | Non
         spectrum[1 : turn.size + 1] = waves * turn**power / math.factorial(power)
         middle[power] = np.fft.irfft(count * spectrum, count)
     middle[0] += series.mean
-    return piecewise(Pieces(_places(count), _moved(middle, -0.5 / count).T), profile.points)
+    terms = _moved(middle, -0.5 / count)
+    return piecewise(Pieces(_places(count), terms.T), SETTINGS.pieces[-1])
 
 
 def _moved(

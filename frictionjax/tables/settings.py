@@ -6,12 +6,12 @@ from typing import NamedTuple
 class Settings(NamedTuple):
     """Of series, of pieces, of points of loads."""
 
-    # Harmonics of a series in lanes (`profiles.py`). A step takes 0.12 us with 1, 0.145
-    # with 8, 0.18 with 16; each size is a loop to compile. (A larger loop until the right
-    # one is there: last digits would depend on what has run before.)
+    # Harmonics of a series (`profiles.py`). A step takes 0.12 us with 1, 0.145 with 8;
+    # each size is a loop to compile. (A larger loop until the right one is there: last
+    # digits would depend on what has run before.)
     harmonics: tuple[int, ...] = (1, 4, 8, 16, 64)
-    # Longer ones as pieces of this degree: a step of 64 harmonics takes half as long.
-    written_out: int = 16
+    # Longer ones as pieces of this degree in lanes: 0.21 us for 0.25 with 16, 0.58 with 64.
+    written_out: int = 8
     degree: int = 8
     # In planning: several, up to so many, as an axis (`waves.py`), one, and more, as lanes
     # do. A plan of 64 cells takes 3, 4, 12 and 36 ms for 4, 8, 16 and 64.

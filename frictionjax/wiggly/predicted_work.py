@@ -119,8 +119,10 @@ def _weight_of(scene: TabulatedScene) -> float:
     if not isinstance(potential, BristlePotential):
         return 1.0
     profile, bristle = potential.profile, potential.bristle
-    harmonics = profile.cos.shape[0] if isinstance(profile, SeriesProfile) else 1
+    surface = SETTINGS.in_pieces
+    if isinstance(profile, SeriesProfile):
+        surface = 1 + SETTINGS.a_harmonic * (profile.cos.shape[0] - 1)
     shape = SETTINGS.no_series
     if isinstance(bristle, SeriesBristle):
         shape = 1 + SETTINGS.a_degree * (bristle.ahead.shape[0] - 2)
-    return (1 + SETTINGS.a_harmonic * (harmonics - 1)) * shape
+    return surface * shape
