@@ -279,8 +279,8 @@ SEVERAL = [(t, 2e-3, 0.1) for t in (0.21, 0.47, 0.81, 1.13)]
     ("bursts", "eps", "gamma", "least"),
     [
         ((0.5, (1.5, 1e-4, 0.05)), 1e-4, 1.5, 0.95),  # was 1.054 for 0.992
-        pytest.param(  # was 2.2 for 19
-            *((0.3, *SEVERAL, (2.27, 5e-5, 0.02)), 3e-4, 1.0, 0.3),
+        pytest.param(  # was 2.2 for 19 at 3e-4, where all slips are less work now
+            *((0.3, *SEVERAL, (2.27, 5e-5, 0.02)), 6e-5, 1.0, 0.3),
             marks=pytest.mark.slow,
         ),
     ],
