@@ -11,7 +11,18 @@ from .numpy_rules import RULES
 from .programs import put_together, taken_apart
 
 _MOST = 256  # programs kept of one function
-_CALLED = "jaxpr", "call_jaxpr", "fun_jaxpr"  # what a step that only calls has
+# Steps that only call, by name: `reduce` has a `jaxpr` too, which is no call.
+_CALLS = {
+    "jit": "jaxpr",
+    "pjit": "jaxpr",
+    "closed_call": "call_jaxpr",
+    "core_call": "call_jaxpr",
+    "remat": "jaxpr",
+    "checkpoint": "jaxpr",
+    "custom_jvp_call": "call_jaxpr",
+    "custom_vjp_call": "call_jaxpr",
+    "custom_vjp_call_jaxpr": "fun_jaxpr",
+}
 
 
 class Interpreted:
@@ -68,9 +79,8 @@ def _run(jaxpr: Any, constants: Any, arguments: list) -> list:
 
 def _results(eqn: Any, operands: list) -> list:
     name, params = eqn.primitive.name, eqn.params
-    called = next((params[key] for key in _CALLED if key in params), None)
-    if called is not None and name != "scan":
-        return _call(called, operands)
+    if name in _CALLS:
+        return _call(params[_CALLS[name]], operands)
     if name == "cond":
         which = int(np.clip(operands[0], 0, len(params["branches"]) - 1))
         return _call(params["branches"][which], operands[1:])

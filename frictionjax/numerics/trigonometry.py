@@ -90,13 +90,20 @@ def fourier_sum(
 
 
 @jax.custom_jvp
-def _sum_at(cos: Array, sin: Array, turn: tuple, y: Array) -> Array:
+def _sum_at(
+    cos: Float[Array, " harmonics"],
+    sin: Float[Array, " harmonics"],
+    turn: tuple,
+    y: Float[Array, "*shape"],
+) -> Float[Array, "*shape"]:
     """The sum from `turn`, sine and cosine at y: `y` itself is there for derivatives."""
     return _add_up(cos, sin, turn)
 
 
 @partial(jax.jit, inline=True)
-def _add_up(cos: Array, sin: Array, turn: tuple) -> Array:
+def _add_up(
+    cos: Float[Array, " harmonics"], sin: Float[Array, " harmonics"], turn: tuple
+) -> Array:
     powers = [turn]
     for n in range(2, min(cos.shape[0], _GROUP) + 1):
         powers.append(_times(powers[n // 2 - 1], powers[n - n // 2 - 1]))

@@ -28,8 +28,13 @@ def looped(x):
     return halved + chosen + jnp.searchsorted(x, 0.5) + jnp.cumsum(x)[::-1]
 
 
+def folded(x):
+    """A step that holds a program, and is no call of it."""
+    return jax.lax.reduce(x, jnp.ones(()), lambda a, b: 1.5 * a * b, (0,))
+
+
 @pytest.mark.parametrize(
-    "fn", [mixed, looped, jax.vmap(jax.grad(lambda x: mixed(x[None])[0]))]
+    "fn", [mixed, looped, folded, jax.vmap(jax.grad(lambda x: mixed(x[None])[0]))]
 )
 def test_it_gives_what_jax_gives(fn):
     np.testing.assert_allclose(Interpreted(fn)(X), jax.jit(fn)(X), rtol=4e-15)
