@@ -5,6 +5,7 @@ from .programs import ARRAYS as ARRAYS
 from .programs import Program as Program
 from .programs import flattened as flattened
 from .programs import in_chunks as in_chunks
+from .programs import once_a_scene as once_a_scene
 from .programs import padded_size as padded_size
 from .programs import strong_arrays as strong_arrays
 from .progress import progress_bar as progress_bar

@@ -16,6 +16,7 @@ _LOOPS = "--xla_backend_extra_options=xla_cpu_small_while_loop_byte_threshold=10
 # level 0 four times. Of the older emitters 0.11.0 knows, 0.11.2, 0.12.0 and 0.12.0.1 end
 # the process at the flag, as at all that they do not know.
 _QUICK = "--xla_backend_optimization_level=1"
+_BRIEF = {"xla_backend_optimization_level": 0}
 _OLDER = "--xla_cpu_use_fusion_emitters=false"
 _OLDER_UNTIL = (0, 11, 1)  # jaxlib
 _WORTH_KEEPING = 0.0  # s of compilation: small programs add up to 2 s of a study
@@ -29,6 +30,11 @@ def fast_cpu_flags() -> list[str]:
     early = tuple(map(int, numbers[:3])) < _OLDER_UNTIL
     flags = [_LOOPS, "--xla_cpu_prefer_vector_width=512", _QUICK]
     return [*flags, _OLDER] if early else flags
+
+
+def brief_options() -> dict[str, int] | None:
+    """How to compile what seldom runs, where the level is ours to choose."""
+    return _BRIEF if _QUICK in os.environ.get("XLA_FLAGS", "").split() else None
 
 
 def use_fast_cpu() -> bool:

@@ -138,18 +138,36 @@ def _described(fn: Callable, structure: Any, rest: tuple) -> bytes:
     return file.getvalue()
 
 
-def kept(fn: Callable, run: Callable, structure: Any, rest: tuple) -> Callable:
+class _Jitted:
+    """`jax.jit(run)`, compiled with `options`, which no program inside another can have."""
+
+    def __init__(self, run: Callable, options: dict | None):
+        self._inside = jax.jit(run)
+        self._alone = jax.jit(run, compiler_options=options) if options else self._inside
+        self.options, self.__name__ = options, run.__name__
+
+    def __call__(self, numbers: list) -> Any:
+        return (self._inside if _has_traced(numbers) else self._alone)(numbers)
+
+
+def _has_traced(numbers: list) -> bool:
+    return any(isinstance(x, jax.core.Tracer) for x in numbers)
+
+
+def kept(
+    fn: Callable, run: Callable, structure: Any, rest: tuple, options: dict | None = None
+) -> Callable:
     """`jax.jit(run)`, fetched from the folder where programs are kept, or put there.
 
     `run` takes a list of arrays. `fn` of the library, called with the tree `structure` in
-    which the leaves `rest` are no arrays, says which program it is.
+    which the leaves `rest` are no arrays, says which program it is. `options`: of XLA's.
     """
-    jitted = jax.jit(run)
+    jitted = _Jitted(run, options)
     checked = [getattr(jax.config, f"jax_{name}") for name in ("disable_jit", "debug_nans")]
     if _place is None or any(checked) or not _alone():
         return jitted
     try:
-        what = _described(fn, structure, rest)
+        what = _described(fn, structure, rest) + repr(options).encode()
     except Exception:  # of any kind: what cannot be described is not kept
         return jitted
     return _Kept(jitted, what, _place)
@@ -163,13 +181,13 @@ def _alone() -> bool:
 class _Kept:
     """A program, fetched or compiled once for each set of shapes."""
 
-    def __init__(self, jitted: Callable, what: bytes, place: Path):
+    def __init__(self, jitted: _Jitted, what: bytes, place: Path):
         self._jitted, self._what, self._place = jitted, what, place
         self._known: dict[tuple, Callable] = {}
 
     def __call__(self, numbers: list) -> Any:
         # Programs from the folder know no derivatives or batches.
-        if any(isinstance(x, jax.core.Tracer) for x in numbers):
+        if _has_traced(numbers):
             return self._jitted(numbers)
         shapes = tuple([(x.shape, x.dtype) for x in numbers])
         program = self._known.get(shapes)
@@ -198,7 +216,7 @@ class _Kept:
         return program
 
 
-def _compiled(jitted: Callable, numbers: list) -> tuple[bytes | None, Callable]:
+def _compiled(jitted: _Jitted, numbers: list) -> tuple[bytes | None, Callable]:
     """A program as a file and as a function; no file of what JAX's cache has given.
 
     Such a program cannot be written down once more: it lacks its code.
@@ -211,7 +229,7 @@ def _compiled(jitted: Callable, numbers: list) -> tuple[bytes | None, Callable]:
         return leaves
 
     flat.__name__ = jitted.__name__  # as profilers and logs of compilations call it
-    lowered = jax.jit(flat).lower(numbers)
+    lowered = jax.jit(flat, compiler_options=jitted.options).lower(numbers)
     if _CALL in lowered.as_text():
         raise _ForeignError(f"{flat.__name__} calls another library")
     fetched = _FETCHED.count

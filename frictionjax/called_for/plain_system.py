@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real
-from .._compile import Program, in_chunks
+from .._compile import in_chunks, once_a_scene
 from ..bristles import Homothetic, Linear
 from ..model import AbstractPotential, BristlePotential, tabulated_potentials
 from ..numerics import slope_of
@@ -32,7 +32,7 @@ class HigherOrder(NamedTuple):
     turns: Float[np.ndarray, " turns"]
 
 
-@Program
+@once_a_scene
 def _rest(potential: AbstractPotential, eps: Real, Y: Float[Array, " n"]):
     """Q' and Q'' in N/m, W'' and W''' in N at phases Y.
 

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array, ArrayLike, Bool, Float
 
 from .._checks import Real, is_concrete, no_more, require
-from .._compile import Interpreted, Program, in_chunks
+from .._compile import Interpreted, in_chunks, once_a_scene
 from ..bristles import AbstractBristle
 from ..coefficients import Coefficients
 from ..numerics import smallest
@@ -109,10 +109,10 @@ def _margins_at(potential: AbstractPotential, eps: Real) -> tuple[Real, Real]:
     return smallest_stretch(potential, eps), clearance(potential, eps)
 
 
-_one_margin = Program(_margins_at)
+_one_margin = once_a_scene(_margins_at)
 
 
-@Program
+@once_a_scene
 def _some_margins(potential: AbstractPotential, eps: Float[Array, " few"]):
     return jax.lax.map(lambda size: _margins_at(potential, size), eps)
 
@@ -194,7 +194,7 @@ def largest_eps(potential: AbstractPotential, upper: float) -> float:
     return low
 
 
-@Program
+@once_a_scene
 def _range_and_convexity(support: AbstractSupport, low: Real, high: Real):
     ends = jax.vmap(support.state_of)(jnp.stack([low, high]))
     width = (ends[1] - ends[0]) / 1024

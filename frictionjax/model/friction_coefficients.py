@@ -3,7 +3,7 @@
 import jax.numpy as jnp
 
 from .._checks import ByIdentity, is_concrete
-from .._compile import Program
+from .._compile import once_a_scene
 from ..coefficients import Coefficients
 from ..numerics import periodic_extrema, slope_of
 from .potentials import AbstractPotential, BristlePotential
@@ -38,7 +38,7 @@ def coefficients(potential: AbstractPotential) -> Coefficients:
     )
 
 
-_of_tables = Program(coefficients)
+_of_tables = once_a_scene(coefficients)
 _FOUND = ByIdentity()  # coefficients of potentials that are known
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real
-from .._compile import Program, in_chunks
+from .._compile import in_chunks, once_a_scene
 from ..loads import AbstractPull
 from ..supports import AbstractSupport
 from ..tables import load_table
@@ -21,7 +21,7 @@ def strip_of(
     return support.state_of(load - rho_plus), support.state_of(load - rho_minus)
 
 
-@Program
+@once_a_scene
 def _strips(
     load: AbstractPull,
     support: AbstractSupport,

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real, require
-from .._compile import Program
+from .._compile import once_a_scene
 from ..bristles import Homothetic
 from ..profiles import Fourier
 from .potentials import AbstractPotential, BristlePotential
@@ -16,7 +16,7 @@ from .settings import SETTINGS
 from .summed_potential import SummedPotential
 
 
-@Program
+@once_a_scene
 def _energies(potential: AbstractPotential, eps: Real, places: Array) -> Array:
     """`V_eps/eps` of one tip at phases in a period, in N."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real
-from .._compile import Program, in_chunks
+from .._compile import in_chunks, once_a_scene
 from ..coefficients import Coefficients
 from ..model import (
     AbstractPotential,
@@ -85,7 +85,7 @@ def slide_data(
     return SlideData(*wells, *_moments(scene, found, turns))
 
 
-@Program
+@once_a_scene
 def _forces(potential: AbstractPotential, eps: Float[Array, ""], y: Float[Array, " n"]):
     """State, W' and Q' at places `y` of the tip, the last to second order in `eps`."""
     if isinstance(potential, BristlePotential):

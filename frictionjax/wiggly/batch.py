@@ -3,7 +3,6 @@
 import numpy as np
 
 from .._checks import quiet_where_extreme, viscosity_of
-from .._compile import WORKERS
 from ..model import Scene, SummedPotential, tabulated_scene
 from ..numerics import concatenated, rows_of
 from .attempts import AttemptContext, Cellwise, SoFar, with_rows
@@ -219,12 +218,11 @@ def _prepare(
     tableau: Tableau = SETTINGS.tableau,
 ) -> None:
     """Have the loop compiled beside the planning."""
-    values = cells * times
+    room, values = Room(cells, 1, 1), cells * times  # the smallest: see `_blocks`
     if values > SETTINGS.few_values:
-        segments = values // WORKERS
-        prepare(lanes, tableau, Room(cells, segments // 2, segments), summed)
+        prepare(lanes, tableau, room, summed)
     elif values <= SETTINGS.fewest_values:
-        prepare(lanes, tableau, Room(cells, values, values), summed, narrow=True)
+        prepare(lanes, tableau, room, summed, narrow=True)
 
 
 def _affordable(path: Path, cells: Cellwise) -> np.ndarray:

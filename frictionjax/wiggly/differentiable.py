@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array
 
 from .._checks import Real
-from .._compile import Program, strong_arrays
+from .._compile import Program, once_a_scene, strong_arrays
 from ..model import Scene
 from .equation import StepPlan, plan_steps
 from .sequential import integrate
@@ -34,7 +34,7 @@ class Options(NamedTuple):
     adjoint: Any
 
 
-@Program
+@once_a_scene
 def _planned(problem: Problem) -> StepPlan:
     scene, eps, gamma, _, accuracy = problem
     return plan_steps(scene, eps, gamma, accuracy)

@@ -6,7 +6,7 @@ import jax
 import numpy as np
 
 from .._checks import Real, viscosity_of
-from .._compile import Program, in_chunks
+from .._compile import Program, in_chunks, once_a_scene
 from ..model import AbstractPotential, TabulatedScene
 from ..tables import bent_part
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
@@ -21,7 +21,7 @@ from .slip_map import SteadyLags, none_known, steady_lags
 from .ways import Way, by_brackets, ends_before_tips_follow, ways_of
 
 
-@Program
+@once_a_scene
 def _plans(parts: SteppedParts, pull: PullRange, accuracy, eps, gamma):
     """Step control of cells, and the wells and tips of their z0."""
 

@@ -12,7 +12,7 @@ from jax.experimental.compilation_cache import compilation_cache
 
 import frictionjax as fx
 from frictionjax._compile import program_cache as kept_programs
-from frictionjax._compile.programs import Program
+from frictionjax._compile.programs import Program, once_a_scene
 from frictionjax.model.potentials import BristlePotential
 from frictionjax.slide_laws import ingredients
 from frictionjax.tables import profiles as table_profiles
@@ -185,7 +185,7 @@ def test_programs_that_call_other_libraries_are_not_written_down():
     """Loaded by a process that has not called them yet they would end it."""
     numbers = [np.eye(2), np.ones(2)]
     with pytest.raises(kept_programs._ForeignError, match="solve calls another library"):
-        kept_programs._compiled(jax.jit(solve), numbers)
+        kept_programs._compiled(kept_programs._Jitted(solve, None), numbers)
 
 
 def solve(numbers):
@@ -214,6 +214,37 @@ def test_derivatives_and_batches_of_programs_that_are_kept(compiled):
     np.testing.assert_allclose(np.diag(slope), expected, atol=1e-15)
     many = jax.vmap(lambda a: program(fx.profiles.Sine(a), PLACES))(np.array([0.1, 0.2]))
     np.testing.assert_allclose(2 * many[0], many[1], atol=1e-15)
+
+
+@pytest.mark.parametrize("keeps", [True, False])
+def test_what_runs_once_a_scene_compiles_for_less(keeps, compiled, monkeypatch):
+    """At LLVM's level 0, if the level is ours; inside other programs with theirs."""
+    asked, jit = [], jax.jit
+
+    def noted(fn, **options):
+        asked.append(options.get("compiler_options"))
+        return jit(fn, **options)
+
+    if not keeps:
+        monkeypatch.setattr(kept_programs, "_place", None)
+    monkeypatch.setattr(jax, "jit", noted)
+    level = "--xla_backend_optimization_level"
+    for flags, own in (f"{level}=1", {level[2:]: 0}), (f"{level}=3", None), ("", None):
+        monkeypatch.setenv("XLA_FLAGS", flags)
+        asked.clear()
+        brief, other = once_a_scene(HEIGHTS), Program(HEIGHTS)
+        found = [p(fx.profiles.Sine(0.1), PLACES) for p in (brief, other)]
+        np.testing.assert_allclose(*found, atol=1e-16)
+        assert [options for options in asked if options] == (
+            [own] * (1 + keeps) if own else []
+        )
+    monkeypatch.setenv("XLA_FLAGS", f"{level}=1")
+    brief = once_a_scene(HEIGHTS)
+
+    def steepest(slope):
+        return jnp.max(brief(fx.profiles.Sine(slope), PLACES))
+
+    assert jax.jit(jax.grad(steepest))(0.1) == pytest.approx(1 / (2 * np.pi), rel=1e-9)
 
 
 def test_other_source_packages_and_processors_mean_other_folders(tmp_path, monkeypatch):

@@ -168,6 +168,19 @@ def test_without_suprema_theirs_are_absent(data):
         fx.study(bare)
 
 
+def test_values_alone_of_cells_that_remember_without_end_give_no_warning():
+    """Of these none are sampled: 0 wells of a run-up that is infinite."""
+    scene = fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5),
+        fx.supports.Spring(1.0),
+        fx.loads.Sine(1.0, 3.0),
+        3.0,
+    )
+    bare = fx.sweep(scene, [0.0013503140378698735], [0.5], dissipation=False, suprema=False)
+    assert int(bare.status.max()) == fx.Status.OK
+
+
 def test_progress_goes_to_standard_error(capsys):
     fx.sweep(scene_of(), EPS, GAMMA, ts=np.linspace(0, 3, 61), progress=True)
     captured = capsys.readouterr()

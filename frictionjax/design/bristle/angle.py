@@ -19,7 +19,7 @@ from ..._checks import (
     require_x64,
     with_nan,
 )
-from ..._compile import Program, padded_size, waiting
+from ..._compile import once_a_scene, padded_size, waiting
 from ...bristles import AbstractBristle, swapped_text
 from ...effects import AbstractEffect, Engine
 from ...model import coefficients_jit, potential
@@ -51,7 +51,7 @@ class _Range(NamedTuple):
     reachable: Real
 
 
-@Program
+@once_a_scene
 def _survey(free: FreeParameter, bristle, slopes, which, bounds, pulling):
     """What is allowed, and bristles that pull and are not: two `_Range`."""
     low, high = free.interval(bristle, bounds)
@@ -76,7 +76,7 @@ class _Solved(NamedTuple):
     code: Real
 
 
-@Program
+@once_a_scene
 def _solve(free: FreeParameter, bristle, slopes, which, targets, seen):
     found = solve_targets(free, bristle, slopes, which, targets, seen)
     bristles = jax.vmap(lambda x: free.at(bristle, x))(found.x)

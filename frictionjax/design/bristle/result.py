@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..._checks import CodedResult, Real, as_text, is_concrete, is_known, require_whole
-from ..._compile import Program
+from ..._compile import once_a_scene
 from ..._text import Named, SelfDrawn, ShownNumbers
 from ...bristles import AbstractBristle, pulling_text
 from ...contact import Nap, nap
@@ -232,7 +232,7 @@ def intervals_text(pairs: Any) -> str:
     return " or ".join(texts)
 
 
-@Program
+@once_a_scene
 def _curve(free: FreeParameter, bristle, slopes, which, values):
     def one(value: Real) -> Real:
         return quantity_of(on_slopes(free.put(bristle, value), slopes), which)

@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 
 from ..._checks import Real, is_concrete
-from ..._compile import Program, padded_size
+from ..._compile import once_a_scene, padded_size
 from ...bristles import AbstractBristle
 from ...profiles import AbstractProfile
 from ..common import (
@@ -56,12 +56,12 @@ def _one(free: FreeParameter, bristle, profile, value, which, again: bool):
     return 1 / by[0], *by_slopes, by_bristle, pull(by_slopes)[0]
 
 
-@Program
+@once_a_scene
 def _derivatives(free: FreeParameter, bristle, profile, value, which, again: bool):
     return _one(free, bristle, profile, value, which, again)
 
 
-@Program
+@once_a_scene
 def _batch(free: FreeParameter, bristles, profile, values, which, again: bool):
     def one(bristle: Any, value: Real) -> Any:
         return _one(free, bristle, profile, value, which, again)

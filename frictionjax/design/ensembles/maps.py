@@ -18,7 +18,7 @@ from ..._checks import (
     require_x64,
     with_nan,
 )
-from ..._compile import Program, waiting
+from ..._compile import once_a_scene, waiting
 from ...bristles import AbstractBristle
 from ...effects import AbstractEffect, Engine
 from ...model import BristlePotential, coefficients_jit, potential
@@ -243,7 +243,7 @@ def _base(bristle, names, profile, steepness, scene: SceneEffects) -> np.ndarray
     return np.array([0.5 * (plus - minus), -plus / minus])
 
 
-@Program
+@once_a_scene
 def _mapped(
     frees: tuple,
     surface: tuple,

@@ -26,18 +26,29 @@ def _seats(count: int, seats: int) -> np.ndarray:
     return np.where(row % 2 == 0, seat, seats - 1 - seat)
 
 
-def _batches(work: np.ndarray, workers: int) -> int:
-    """Batches of jobs, as often as a report is wanted and lanes do not idle.
+def _blocks(work: np.ndarray, legs: np.ndarray, workers: int) -> list[np.ndarray]:
+    """Which jobs go together, in blocks, those that take longest first.
 
-    They do where a batch has less than two jobs a lane, or is done in hardly more time than
-    its longest takes. (Every slip of 48 cells, the tiles of gamma = 1/2 in four batches:
-    1.2 to 1.5 times as long. Fewer than need be: larger tables, and another loop to
-    compile.)
+    As often as a report is wanted, and no more than the smallest loop has room for, so that
+    no larger one is compiled (2.5 s of a study), unless lanes idled: a block has more to do
+    than its longest job takes. (Where each has some of the longest, all of them wait.)
     """
+    order = np.argsort(-work, kind="stable")
+    done, took = np.cumsum(work[order]), np.cumsum(legs[order])
     lanes = workers * LANE_SETTINGS.width
-    longest = SETTINGS.longest_job * work.max(initial=1.0)
-    most = min(work.size // (2 * lanes), int(work.sum() / (lanes * longest)))
-    return max(min(int(np.ceil(work.sum() / SETTINGS.batch)), most), 1)
+    _, jobs, room = (int(SETTINGS.filled * workers * n) for n in LANE_SETTINGS.room)
+    blocks, start = [], 0
+    while start < order.size:
+        before, used = (total[start - 1] if start else 0.0 for total in (done, took))
+        least, short = lanes * work[order[start]] * np.array(SETTINGS.longest_job)
+        wanted = np.searchsorted(done, before + max(short, SETTINGS.batch)) + 1
+        if wanted < order.size and done[-1] - done[wanted - 1] < short:
+            wanted = order.size  # what is left would be no block
+        fits = min(np.searchsorted(took, used + room, side="right"), start + jobs)
+        end = max(min(wanted, fits), np.searchsorted(done, before + least) + 1)
+        blocks.append(order[start:end])
+        start = end
+    return blocks
 
 
 def _of_jobs(plan: BracketPlan, of_segments: np.ndarray) -> np.ndarray:
@@ -178,21 +189,20 @@ class BracketContext(NamedTuple):
         work = self._wells(plan) + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
         work = np.where(plan.brief, SETTINGS.fast, 1.0) * work
         jobs, cells = self._steered(jobs, plan.brief | plan.forgetful)
-        order = np.argsort(-work, kind="stable")
-        order = order[able[order]]
+        some = np.flatnonzero(able)
         # Where a narrow loop ends little later than its longest lane, one thread is enough.
-        soon = work[able].max(initial=0.0) + LANE_SETTINGS.handed_over
-        workers = 1 if work[able].sum() <= LANE_SETTINGS.narrow * soon else WORKERS
-        batches = _batches(work[able], workers)
+        soon = work[some].max(initial=0.0) + LANE_SETTINGS.handed_over
+        workers = 1 if work[some].sum() <= LANE_SETTINGS.narrow * soon else WORKERS
         ends = np.full((len(SegmentEnds._fields), segments.start.size), np.nan)
         # Overwritten by lanes that run.
         ends[SegmentEnds._fields.index("code")] = int(Status.MAX_STEPS)
-        seat = _seats(order.size, batches * workers)
-        for batch in range(batches):
-            queues = [order[seat == batch + i * batches] for i in range(workers)]
+        legs, total = (jobs.past_leg - jobs.first_leg)[some], work[some].sum()
+        for block in _blocks(work[some], legs, workers):
+            seat = _seats(block.size, workers)
+            queues = [some[block[seat == i]] for i in range(workers)]
             for rows, part in self._through(cells, jobs, segments, queues, work):
                 ends[:, rows] = part
-            self.report(1 / batches)
+            self.report(work[some[block]].sum() / total)
         return SegmentEnds._make(ends)
 
     def _steered(self, jobs: Lanes, brief: np.ndarray) -> tuple[Lanes, LaneCells]:

@@ -108,6 +108,7 @@ def inner_wells(ways: np.ndarray, needs: Requirements) -> np.ndarray:
     are. (Angular, gamma = 3/4, eps = 2e-3: 4.5e5 steps for 2.7e5.)
     """
     inner = np.floor(ways) - transients(needs) - SETTINGS.tail - 1
-    samples, run_up = needs.samples[:, None], needs.run_up[:, None]
+    samples = needs.samples[:, None]
+    run_up = np.where(samples > 0, needs.run_up[:, None], 0.0)  # may be inf where none are
     each = np.where(run_up > SETTINGS.some_memory, needs.share * run_up, 1.0)
     return np.where((samples > 0) & (inner > 2 * samples * each), inner, 0.0)

@@ -15,7 +15,10 @@ class Settings(NamedTuple):
     some_memory: float = 15.0
     long_memory: float = 100.0
     fast: float = 0.35  # steps a well where tips do not rest, of those elsewhere
-    longest_job: float = 1.5  # times what its longest job takes: the shortest batch
+    # Times what its longest job takes: the shortest block, where no larger loop is compiled
+    # for one of full length, and else.
+    longest_job: tuple[float, float] = (0.5, 1.5)
+    filled: float = 0.9  # of a loop's rows, as workers have about as many each
     batch: float = 1e5  # a few seconds, between two reports
     # Steps beyond those for the wells of the path, of the longest lane in each march, added
     # up, that a cell may wait for in an attempt: 2 to 8 seconds. One lane alone, where that

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ..._checks import quiet_where_extreme, viscosity_of
-from ..._compile import Program, in_chunks, padded_size
+from ..._compile import Program, in_chunks, once_a_scene, padded_size
 from ...called_for import inertia_numbers
 from ...effects import Inertia
 from ...model import Scene, SummedPotential, TabulatedScene, padded_edges, tabulated_scene
@@ -155,7 +155,7 @@ def _measured(parts: SteppedParts, pull: PullRange, accuracy, eps, gamma) -> _Le
     return jax.vmap(one)(eps, gamma)
 
 
-_pull = Program(pull_between)
+_pull = once_a_scene(pull_between)
 
 
 def _lanes(

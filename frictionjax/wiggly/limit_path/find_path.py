@@ -3,14 +3,14 @@
 import numpy as np
 
 from ..._checks import ByIdentity
-from ..._compile import Program
+from ..._compile import once_a_scene
 from ...model import Scene, TabulatedScene, padded_edges, strips_at
 from ..equation import pull_between
 from .fast_stretches import nodes_inside, probes_of, unseen_of
 from .path import Path, Probes, motion_at, rows_of_path, times_at
 from .settings import SETTINGS
 
-_pull = Program(pull_between)
+_pull = once_a_scene(pull_between)
 _PATHS = ByIdentity()  # of scenes, whatever the eps
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ..._checks import quiet_where_extreme, viscosity_of
-from ..._compile import Program
+from ..._compile import once_a_scene
 from ...effects import NapFlip
 from ...model import BristlePotential, Scene, tabulated_scene
 from ...numerics import concatenated
@@ -198,7 +198,7 @@ def _course(
     return _Course(parts, law, eps, float(viscosity_of(eps, gamma)), plans, budget)
 
 
-@Program
+@once_a_scene
 def _planned(
     parts: SceneParts, side, rho_plus, rho_minus, edges, duration, z0, eps, gamma, accuracy
 ) -> StepPlan:
@@ -279,7 +279,7 @@ def _numbers(course: _Course, at: _At) -> tuple[Any, ...]:
     return tuple(np.asarray(float(v)) for v in (at.mode, at.place, course.eps))
 
 
-@Program
+@once_a_scene
 def _stance(parts: SceneParts, side: Any, place: Any, eps: Any) -> tuple[Any, Any]:
     """The state z, and the height of the surface under the tip, in m."""
     potential = parts.potential(side)
@@ -287,7 +287,7 @@ def _stance(parts: SceneParts, side: Any, place: Any, eps: Any) -> tuple[Any, An
     return parts.held(side).place(state), eps * potential.profile(place)
 
 
-@Program
+@once_a_scene
 def _start(parts: SceneParts, z0: Any, eps: Any) -> Any:
     """Where the tip of the rod as it stands at first is, in periods."""
     number, inside = parts.potential(jnp.ones_like(eps)).tip(z0, eps)

@@ -10,7 +10,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.model import tabulated_scene
-from frictionjax.wiggly.enclosure.marching import _batches, _seats
+from frictionjax.wiggly.enclosure.marching import _blocks
 from frictionjax.wiggly.lanes.lane import LaneCells
 from frictionjax.wiggly.lanes.loops import (
     Room,
@@ -98,26 +98,42 @@ def test_loops_are_compiled_as_one_function(width):
     assert "scatter" not in text
 
 
-def idle(work, batches, workers=2):
-    """Share of the time that lanes idle, at best: as the longest job of a batch goes on."""
-    seat = _seats(work.size, batches)
-    rows = [np.sort(work)[::-1][seat == batch] for batch in range(batches)]
+def idle(work, blocks, workers=2):
+    """Share of the time that lanes idle, at best: as the longest job of a block goes on."""
+    rows = [work[block] for block in blocks]
     wall = sum(max(row.sum() / (workers * SETTINGS.width), row.max()) for row in rows)
     return 1 - work.sum() / (workers * SETTINGS.width * wall)
 
 
 @pytest.mark.parametrize("longest", [1e3, 3e3, 1e5])
-def test_lanes_do_not_wait_for_the_longest_job_of_every_batch(longest):
-    """One batch for all has the same work in it, and fewer reports."""
+def test_lanes_do_not_wait_for_the_longest_job_of_every_block(longest):
+    """One block for all has the same work in it, and fewer reports."""
     work = np.concatenate([np.full(160, longest), np.full(2400, 1e3)])
-    batches = _batches(work, 2)
-    assert idle(work, batches) <= 0.01 + idle(work, 1)
-    assert batches == {1e3: 10, 3e3: 5, 1e5: 1}[longest]
+    blocks = _blocks(work, np.full(work.size, 2), 2)
+    assert idle(work, blocks) <= 0.01 + idle(work, [np.arange(work.size)])
+    assert len(blocks) >= {1e3: 10, 3e3: 5, 1e5: 1}[longest]
+    assert sorted(np.concatenate(blocks)) == list(range(work.size))
 
 
-def test_a_few_jobs_and_none_are_one_batch():
-    assert _batches(np.zeros(0), 2) == 1
-    assert _batches(np.full(3, 1e6), 2) == 1
+def test_blocks_have_room_in_the_smallest_loop():
+    """But where one long job would then go on alone for most of the time."""
+    rng = np.random.default_rng(0)
+    work, legs = rng.exponential(3.0, 60_000), rng.integers(2, 6, 60_000)
+    _, jobs, room = SETTINGS.room
+    blocks = _blocks(work, legs, 2)
+    assert len(blocks) > 5
+    for block in blocks:
+        assert block.size <= 2 * jobs
+        assert legs[block].sum() <= 2 * room
+    assert idle(work, blocks) < 0.01
+    many = np.full(400, 100)
+    assert max(len(b) for b in _blocks(np.full(400, 1e4), many, 2)) < 400
+    assert [len(b) for b in _blocks(np.full(400, 1e4), 10 * many, 2)] == [64] * 6 + [16]
+
+
+def test_a_few_jobs_are_one_block_and_none_are_none():
+    assert _blocks(np.zeros(0), np.zeros(0, int), 2) == []
+    assert len(_blocks(np.full(3, 1e6), np.full(3, 2), 2)) == 1
 
 
 def test_a_version_that_copies_whole_tables_is_left_out():
