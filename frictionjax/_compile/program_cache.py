@@ -138,22 +138,6 @@ def _described(fn: Callable, structure: Any, rest: tuple) -> bytes:
     return file.getvalue()
 
 
-class _Jitted:
-    """`jax.jit(run)`, compiled with `options`, which no program inside another can have."""
-
-    def __init__(self, run: Callable, options: dict | None):
-        self._inside = jax.jit(run)
-        self._alone = jax.jit(run, compiler_options=options) if options else self._inside
-        self.options, self.__name__ = options, run.__name__
-
-    def __call__(self, numbers: list) -> Any:
-        return (self._inside if _has_traced(numbers) else self._alone)(numbers)
-
-
-def _has_traced(numbers: list) -> bool:
-    return any(isinstance(x, jax.core.Tracer) for x in numbers)
-
-
 def kept(
     fn: Callable, run: Callable, structure: Any, rest: tuple, options: dict | None = None
 ) -> Callable:
@@ -162,15 +146,14 @@ def kept(
     `run` takes a list of arrays. `fn` of the library, called with the tree `structure` in
     which the leaves `rest` are no arrays, says which program it is. `options`: of XLA's.
     """
-    jitted = _Jitted(run, options)
+    jitted = jax.jit(run)
     checked = [getattr(jax.config, f"jax_{name}") for name in ("disable_jit", "debug_nans")]
-    if _place is None or any(checked) or not _alone():
+    if any(checked) or not _alone():
         return jitted
-    try:
+    what = None
+    with contextlib.suppress(Exception):  # what cannot be described is not kept
         what = _described(fn, structure, rest) + repr(options).encode()
-    except Exception:  # of any kind: what cannot be described is not kept
-        return jitted
-    return _Kept(jitted, what, _place)
+    return _Kept(jitted, options, what, _place)
 
 
 def _alone() -> bool:
@@ -179,15 +162,26 @@ def _alone() -> bool:
 
 
 class _Kept:
-    """A program, fetched or compiled once for each set of shapes."""
+    """A program, fetched or compiled once for each set of shapes.
 
-    def __init__(self, jitted: _Jitted, what: bytes, place: Path):
-        self._jitted, self._what, self._place = jitted, what, place
+    Also where there is no folder: rules of derivatives are called while JAX traces, which
+    takes a program apart that it could call (3 s for the first derivative of a slide).
+    """
+
+    def __init__(
+        self,
+        jitted: Callable,
+        options: dict | None,
+        what: bytes | None,
+        place: Path | None,
+    ):
+        self._jitted, self._options = jitted, options
+        self._what, self._place = what, place
         self._known: dict[tuple, Callable] = {}
 
     def __call__(self, numbers: list) -> Any:
         # Programs from the folder know no derivatives or batches.
-        if _has_traced(numbers):
+        if any(isinstance(x, jax.core.Tracer) for x in numbers):
             return self._jitted(numbers)
         shapes = tuple([(x.shape, x.dtype) for x in numbers])
         program = self._known.get(shapes)
@@ -196,6 +190,10 @@ class _Kept:
         return program(numbers)
 
     def _first(self, numbers: list, shapes: tuple) -> Any:
+        if self._place is None or self._what is None:
+            lowered, structures = _lowered(self._jitted, numbers, self._options)
+            self._known[shapes] = program = _called(lowered.compile(), structures[0])
+            return program(numbers)
         name = hashlib.sha256(self._what + repr(shapes).encode()).hexdigest()
         path = self._place / f"{name[:40]}.bin"
         with contextlib.suppress(Exception):  # no such file, or one that is of no use
@@ -208,7 +206,7 @@ class _Kept:
 
     def _made(self, numbers: list, path: Path) -> Callable:
         try:
-            data, program = _compiled(self._jitted, numbers)
+            data, program = _compiled(self._jitted, numbers, self._options)
         except Exception:  # not every program can be written down
             return self._jitted
         if data is not None:
@@ -216,11 +214,8 @@ class _Kept:
         return program
 
 
-def _compiled(jitted: _Jitted, numbers: list) -> tuple[bytes | None, Callable]:
-    """A program as a file and as a function; no file of what JAX's cache has given.
-
-    Such a program cannot be written down once more: it lacks its code.
-    """
+def _lowered(jitted: Callable, numbers: list, options: dict | None) -> tuple[Any, list]:
+    """A program of flat results, lowered, and a list of their one structure."""
     structures: list = []
 
     def flat(numbers: list) -> list:
@@ -229,9 +224,19 @@ def _compiled(jitted: _Jitted, numbers: list) -> tuple[bytes | None, Callable]:
         return leaves
 
     flat.__name__ = jitted.__name__  # as profilers and logs of compilations call it
-    lowered = jax.jit(flat, compiler_options=jitted.options).lower(numbers)
+    return jax.jit(flat, compiler_options=options).lower(numbers), structures
+
+
+def _compiled(
+    jitted: Callable, numbers: list, options: dict | None = None
+) -> tuple[bytes | None, Callable]:
+    """A program as a file and as a function; no file of what JAX's cache has given.
+
+    Such a program cannot be written down once more: it lacks its code.
+    """
+    lowered, structures = _lowered(jitted, numbers, options)
     if _CALL in lowered.as_text():
-        raise _ForeignError(f"{flat.__name__} calls another library")
+        raise _ForeignError(f"{jitted.__name__} calls another library")
     fetched = _FETCHED.count
     whole, out = lowered.compile(), structures[0]
     program = _called(whole, out)

@@ -173,7 +173,7 @@ def _quantities(
         found, slide = _quantity(free, bristle, profile, asked, x)
         return jnp.where(slide.ok, found, jnp.nan)
 
-    return jax.vmap(one)(places)
+    return jax.lax.map(one, places)
 
 
 @Program

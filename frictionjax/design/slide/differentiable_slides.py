@@ -1,16 +1,27 @@
 """Steady slides of traced parts: forces, and all their derivatives in one program."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array
+import numpy as np
 
 from ..._checks import Real
 from ..._compile import Program, strong_arrays
 from ...model import AbstractPotential
-from .slide_sides import Sides, one_side
+from .periodic_orbit import (
+    PeriodicOrbit,
+    SlideScene,
+    force_slopes,
+    known_slide_forces,
+    least_pull,
+    slide_forces,
+)
+from .slide_sides import Sides, one_side, slide_scene
+
+_SIGNS = np.array([1.0, -1.0])
 
 
 class AskedSlides(NamedTuple):
@@ -24,14 +35,19 @@ class AskedSlides(NamedTuple):
 
 
 def slides_both_ways(
-    potential: AbstractPotential, gamma: Real, rate: Real, stiffness: Real, eps: Real
-) -> Sides:
-    """The slides to the right and to the left, (2,); traceable."""
+    potential: AbstractPotential,
+    gamma: Real,
+    rate: Real,
+    stiffness: Real,
+    eps: Real,
+    forces_of: Callable = slide_forces,
+) -> tuple[Sides, PeriodicOrbit]:
+    """The slides to the right and to the left, (2,), and a period of each; traceable."""
 
-    def one(sign: Real) -> Sides:
-        return one_side(potential, eps, gamma, rate, stiffness, sign)
+    def one(sign: Real) -> tuple[Sides, PeriodicOrbit]:
+        return one_side(potential, eps, gamma, rate, stiffness, sign, forces_of)
 
-    return jax.vmap(one)(jnp.array([1.0, -1.0]))
+    return jax.lax.map(one, jnp.asarray(_SIGNS))
 
 
 def differentiable_sides(asked: AskedSlides) -> Sides:
@@ -40,31 +56,40 @@ def differentiable_sides(asked: AskedSlides) -> Sides:
 
 
 @Program
-def _known(asked: AskedSlides) -> Sides:
-    return jax.vmap(lambda eps: slides_both_ways(*asked[:-1], eps))(asked.eps)
+def _known(asked: AskedSlides) -> tuple[Sides, PeriodicOrbit]:
+    def at(eps: Real) -> tuple[Sides, PeriodicOrbit]:
+        return slides_both_ways(*asked[:-1], eps, known_slide_forces)
+
+    return jax.lax.map(at, asked.eps)
 
 
 @Program
-def _with_slopes(asked: AskedSlides) -> tuple[Sides, AskedSlides]:
-    """Slides, and derivatives of their two forces by every number, (n, 2, 2, ...)."""
+def _slopes(asked: AskedSlides, periods: PeriodicOrbit) -> AskedSlides:
+    """Derivatives of the two forces by every number, (n, 2, 2, ...)."""
     moving, still = eqx.partition(asked._replace(eps=None), eqx.is_inexact_array)
 
-    def forces(moving: AskedSlides, eps: Real, sign: Real) -> tuple[Array, Sides]:
-        potential, gamma, rate, stiffness, _ = eqx.combine(moving, still)
-        found = one_side(potential, eps, gamma, rate, stiffness, sign)
-        return jnp.stack([found.mean, found.peak]), found
+    def of_side(eps: Real, sign: Real, period: PeriodicOrbit) -> AskedSlides:
+        def slide_of(moving: AskedSlides, eps: Real) -> SlideScene:
+            potential, gamma, rate, stiffness, _ = eqx.combine(moving, still)
+            whole = slide_scene(potential, eps, gamma, rate, stiffness, sign)
+            return least_pull(whole)[0]
 
-    def slopes(eps: Real, sign: Real) -> tuple[Sides, AskedSlides]:
-        by, found = jax.jacrev(forces, (0, 1), has_aux=True)(moving, eps, sign)
-        return found, by[0]._replace(eps=by[1])
+        slide, back = eqx.filter_vjp(slide_of, moving, eps)
+        by_slide = force_slopes(slide, period)
+        shared, own = jax.lax.map(back, by_slide)
+        return jax.tree_util.tree_map(lambda by: sign * by, shared._replace(eps=own))
 
-    both_ways = jax.vmap(slopes, (None, 0))
-    return jax.vmap(lambda eps: both_ways(eps, jnp.array([1.0, -1.0])))(asked.eps)
+    def both_ways(row: tuple) -> AskedSlides:
+        eps, periods = row
+        sides = jnp.asarray(_SIGNS), periods
+        return jax.lax.map(lambda side: of_side(eps, *side), sides)
+
+    return jax.lax.map(both_ways, (asked.eps, periods))
 
 
 @eqx.filter_custom_jvp
 def _sides(asked: AskedSlides) -> Sides:
-    return _known(asked)
+    return _known(asked)[0]
 
 
 @_sides.def_jvp
@@ -72,7 +97,8 @@ def _along(primals: tuple, tangents: tuple) -> tuple[Sides, Any]:
     """Derivatives by every number come from one program, whatever the direction, which is
     kept as others are: traced for a direction they took 6 s in every process."""
     (asked,), (by,) = primals, tangents
-    found, slopes = _with_slopes(asked)
+    found, periods = _known(asked)
+    slopes = _slopes(asked, periods)
     change = jnp.zeros((*found.mean.shape, 2))
     if by.eps is not None:
         change += slopes.eps * by.eps[:, None, None]

@@ -181,6 +181,31 @@ def _end(slide: SlideScene, period: PeriodicOrbit, level: Real) -> Real:
     return jax.lax.fori_loop(0, period.used, one, (jnp.zeros(()), level))[1]
 
 
+def along_step(
+    slide: SlideScene, x: Real, step: Real, level: Real
+) -> tuple[Real, Real, Real]:
+    """L after a step, `int D G dx` (N) over it, and its largest `sign f` (N).
+
+    That is at its end or a turn inside. A step of 0 goes nowhere, and is no peak.
+    """
+    there = step > 0
+    # Derivatives of a step that is not there must stay finite.
+    safe = jnp.where(there, step, 1e-3)
+    new, stages = slide_step(slide, x, safe, level)
+
+    def inside(share: Array) -> Array:
+        return dense_output(_TABLEAU, level, new, stages, share)
+
+    share = rise_to_turn(level, new, jnp.log(slide.pull / slide.give))
+    places = jnp.append(jnp.asarray(_SHARES), share)
+    forces, stretches = jax.vmap(slide.ground)(x + safe * places)
+    drives = jnp.exp(inside(places))
+    mean = 0.5 * safe * jnp.sum(_W * drives[:-1] * stretches[:-1])
+    peak = forces[-1] + drives[-1]
+    new = jnp.where(there, new, level)
+    return new, jnp.where(there, mean, 0.0), jnp.where(there, peak, -jnp.inf)
+
+
 def replay(
     slide: SlideScene, period: PeriodicOrbit, level: Real
 ) -> tuple[Real, Array, Array]:
@@ -189,34 +214,67 @@ def replay(
     Differentiable: steps are given. Returns L at the end, `int D G dx` (N) of each step
     and the largest `sign f` (N) at its end or a turn inside.
     """
-    shares = jnp.asarray(_SHARES)
-    turn = jnp.log(slide.pull / slide.give)
 
-    def one(
-        state: tuple[Array, Array], step: Array
-    ) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    def one(state: tuple[Array, Array], step: Array) -> tuple[Any, Any]:
         way, level = state
-        there = step > 0
-        # A step that is not there goes nowhere: its derivatives must stay finite.
-        safe = jnp.where(there, step, 1e-3)
-        x = period.start + way
-        new, stages = slide_step(slide, x, safe, level)
+        new, *forces = along_step(slide, period.start + way, step, level)
+        return (way + step, new), forces
 
-        def inside(share: Array) -> Array:
-            return dense_output(_TABLEAU, level, new, stages, share)
-
-        share = rise_to_turn(level, new, turn)
-        places = jnp.append(shares, share)
-        forces, stretches = jax.vmap(slide.ground)(x + safe * places)
-        drives = jnp.exp(inside(places))
-        mean = 0.5 * safe * jnp.sum(_W * drives[:-1] * stretches[:-1])
-        peak = forces[-1] + drives[-1]
-        new = jnp.where(there, new, level)
-        mean, peak = jnp.where(there, mean, 0.0), jnp.where(there, peak, -jnp.inf)
-        return (way + step, new), (mean, peak)
-
-    (_, last), (means, peaks) = jax.lax.scan(one, (jnp.zeros(()), level), period.steps)
+    begin = jnp.zeros(()), level
+    (_, last), (means, peaks) = jax.lax.scan(one, begin, period.steps)
     return last, means, peaks
+
+
+class _Pull(NamedTuple):
+    """Derivatives of L at the end, of mean and of peak force, traced back so far: by L at
+    the start of a step, (3,), and by the numbers of the slide, (3, ...)."""
+
+    left: Array
+    by_level: Float[Array, " 3"]
+    by_slide: Any
+
+
+def force_slopes(slide: SlideScene, period: PeriodicOrbit) -> SlideScene:
+    """Derivatives of mean and peak force by the numbers of a slide, (2, ...).
+
+    Of the steps of its period, one after the other from the last, and of its start by the
+    implicit function theorem. (The loop over steps differentiated as a whole takes a third
+    more to trace and compile and three times as long to run.)
+    """
+    moving, still = eqx.partition(slide, eqx.is_inexact_array)
+
+    def one(state: tuple[Array, Array], step: Array) -> tuple[Any, Any]:
+        way, level = state
+        new, _, peak = along_step(slide, period.start + way, step, level)
+        return (way + step, new), (way, level, peak)
+
+    begin = jnp.zeros(()), period.level
+    _, (ways, levels, peaks) = jax.lax.scan(one, begin, period.steps)
+    highest = jnp.argmax(peaks)
+
+    def over_step(pull: _Pull) -> _Pull:
+        place = pull.left - 1
+
+        def step(moving: Any, level: Real) -> tuple[Real, Real, Real]:
+            x = period.start + ways[place]
+            return along_step(eqx.combine(moving, still), x, period.steps[place], level)
+
+        _, back = jax.vjp(step, moving, levels[place])
+        peak = jnp.array([0.0, 0.0, 1.0]) * (place == highest)
+        pushes = pull.by_level, jnp.array([0.0, 1.0, 0.0]), peak
+        by_slide, by_level = jax.lax.map(back, pushes)
+        so_far = jax.tree_util.tree_map(jnp.add, pull.by_slide, by_slide)
+        return _Pull(place, by_level, so_far)
+
+    none = jax.tree_util.tree_map(lambda leaf: jnp.zeros((3, *leaf.shape)), moving)
+    last = _Pull(period.used, jnp.array([1.0, 0.0, 0.0]), none)
+    pull = jax.lax.while_loop(lambda pull: pull.left > 0, over_step, last)
+    by_start = pull.by_level[1:] / (1 - pull.by_level[0])
+
+    def closed(by: Array) -> Array:
+        return by[1:] + jnp.multiply.outer(by_start, by[0])
+
+    return jax.tree_util.tree_map(closed, pull.by_slide)
 
 
 def rise_to_turn(level: Real, new: Real, turn: Real) -> Real:

@@ -20,11 +20,9 @@ class Settings(NamedTuple):
     bristles: int = 20_000  # whose knots, 1500 each at most, are sorted
 
     # Slides (`slide_friction.py`).
-    lanes: int = 4  # eps at least that are solved at once: one program for a few of them
+    room: int = 4  # times as many eps in the next larger program with derivatives
     # Slides of known parts, rows of one program (`slide_rows.py`).
-    rows: int = 8
-    few_rows: int = 40  # up to which they go by eights, 70 ms each: no program of its own
-    rows_at_once: int = 128  # which wait for the slowest
+    rows: int = 2  # of a call
     harmonics: tuple[int, ...] = (8, 16, 64)
     terms: int = 9  # of the bristle's series: the most that there are
     open: float = 1e-7  # of log D over a period: mean forces right to that
@@ -54,8 +52,7 @@ class Settings(NamedTuple):
     relative_width: float = 1e-14
 
     # Bristles (`bristle_fit.py`).
-    # Slides of a call, which wait for the slowest: those near poles take 5x.
-    together: int = 11
+    together: int = 2  # slides of a call
 
     # Surfaces (`surface_fit.py`), in log forces.
     settled: float = 1e-6  # slides are right to 1e-7

@@ -129,7 +129,7 @@ def _curves(
         slide, _ = least_pull(slide_scene(table, eps, gamma, rate, stiffness, sign))
         return _knots(slide)
 
-    return jax.vmap(one)(jnp.array([1.0, -1.0]))
+    return jax.lax.map(one, jnp.array([1.0, -1.0]))
 
 
 def _knots(slide: SlideScene) -> tuple[Array, Array, Array]:

@@ -119,7 +119,7 @@ class SlideForces(NamedTuple):
 
 def slide_at(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> SteadySlide:
     """The steady slide at one eps; without checks, traceable."""
-    return _joined(eps, slides_both_ways(potential, gamma, rate, stiffness, eps))
+    return _joined(eps, slides_both_ways(potential, gamma, rate, stiffness, eps)[0])
 
 
 def _joined(eps: Real, both: Sides) -> SteadySlide:
@@ -285,7 +285,7 @@ def _forces_of(
 ) -> Sides:
     """Of all eps (m), in rooms of a few sizes; `numbers`: gamma, rate, stiffness."""
     count = eps.shape[0]
-    more = padded_size(count, SETTINGS.lanes, 2) - count
+    more = padded_size(count, 1, SETTINGS.room) - count
     padded = jnp.pad(eps, (0, more), mode="edge")
     found = differentiable_sides(AskedSlides(wiggle, *numbers, padded))
     return jax.tree_util.tree_map(lambda leaf: leaf[:count], found)

@@ -38,13 +38,13 @@ def one_side(
     stiffness: Real,
     sign: Real,
     forces_of: Callable = slide_forces,
-) -> Sides:
+) -> tuple[Sides, PeriodicOrbit]:
     """The slide to the right or to the left, as `sign` is 1 or -1; traceable."""
     slide = slide_scene(potential, eps, gamma, rate, stiffness, sign)
     resolved, added = least_pull(slide)
     mean, peak, period = forces_of(resolved)
     code = _code(period, mean, added)
-    return Sides(sign * mean, sign * peak, code, period.kept)
+    return Sides(sign * mean, sign * peak, code, period.kept), period
 
 
 def _code(period: PeriodicOrbit, mean: Real, added: Real) -> Real:

@@ -5,8 +5,6 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.design.slide import slide_rows
-from frictionjax.design.slide.settings import SETTINGS
 from frictionjax.design.slide.slide_rows import find_slides, rows_of_slides, slide_table
 from frictionjax.wiggly import Status
 
@@ -22,11 +20,8 @@ def surfaces(count):
         yield fx.profiles.Fourier(*rows)
 
 
-def test_slides_of_the_least_viscosity_are_found(monkeypatch):
+def test_slides_of_the_least_viscosity_are_found():
     """A third was not: steps of a landing did not replay but from where they were made."""
-    # Many at once, by the program of a few: one of 128 rows takes 8 s to trace and compile.
-    eights = SETTINGS._replace(rows_at_once=SETTINGS.rows)
-    monkeypatch.setattr(slide_rows, "SETTINGS", eights)
     profiles, eps = list(surfaces(24)), 1e-7
     tables = [slide_table(fx.potential(one, SLANTED), eps) for one in profiles]
     which = np.repeat(np.arange(24), 2)
