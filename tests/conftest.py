@@ -11,7 +11,7 @@ from pathlib import Path
 # Workers share what they compile: a tenth of the time.
 if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
     _CACHE = os.environ["JAX_COMPILATION_CACHE_DIR"] = tempfile.mkdtemp()
-    os.environ["JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"] = "0.3"
+    os.environ["JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"] = "0.1"
     atexit.register(shutil.rmtree, _CACHE, ignore_errors=True)
 
 # Two workers have a core each: threads of BLAS wait for one another, 33 of the 53 CPU s
