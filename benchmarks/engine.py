@@ -5,6 +5,7 @@ a table; first calls are in first_calls.py, flat folds in straight_flanks.py. CP
 the least of a few runs, of
 
     solve     a warm `solve` of few wells, eps = 0.02, gamma = 1, the median of scenes
+    slide     a warm `steady_slide`, both ways, eps = 0.01, gamma = 1, the median of scenes
     step      a step of one lane of a sweep, whole: planning and results included, on a
               sine and on series of 4 and 16 harmonics, with energies and suprema
     rows      rows of a measured map (`--map`, or series by chance) x 16 eps from 0.05 to
@@ -73,6 +74,13 @@ def solve(fx, options):
     scenes = sines(fx, 12, np.random.default_rng(1))
     taken = [least(lambda one=one: fx.solve(one, 0.02, 1.0, ts)) for one in scenes]
     return {"warm solve of few wells, ms": 1e3 * np.median(taken)}
+
+
+def slide(fx, options):
+    scenes = sines(fx, 12, np.random.default_rng(1))
+    parts = [(one.profile, one.bristle, 0.01) for one in scenes]
+    taken = [least(lambda of=of: fx.steady_slide(*of)) for of in parts]
+    return {"a warm steady slide, ms": 1e3 * np.median(taken)}
 
 
 def step(fx, options):
@@ -158,7 +166,7 @@ def times(fx, options):
     return {"a solve with another number of times, s": max(taken)}
 
 
-PARTS = {f.__name__: f for f in (solve, step, rows, scenes, gradient, times)}
+PARTS = {f.__name__: f for f in (solve, slide, step, rows, scenes, gradient, times)}
 
 
 def measured(checkout, parts, arguments):

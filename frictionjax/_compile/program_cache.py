@@ -150,9 +150,10 @@ def kept(
     checked = [getattr(jax.config, f"jax_{name}") for name in ("disable_jit", "debug_nans")]
     if any(checked) or not _alone():
         return jitted
-    what = None
-    with contextlib.suppress(Exception):  # what cannot be described is not kept
+    try:
         what = _described(fn, structure, rest) + repr(options).encode()
+    except Exception:  # what cannot be described is not kept: it may hold traced numbers
+        return jitted
     return _Kept(jitted, options, what, _place)
 
 
@@ -172,12 +173,13 @@ class _Kept:
         self,
         jitted: Callable,
         options: dict | None,
-        what: bytes | None,
+        what: bytes,
         place: Path | None,
     ):
         self._jitted, self._options = jitted, options
         self._what, self._place = what, place
         self._known: dict[tuple, Callable] = {}
+        self._lock = threading.Lock()  # several threads compile a program once
 
     def __call__(self, numbers: list) -> Any:
         # Programs from the folder know no derivatives or batches.
@@ -186,11 +188,14 @@ class _Kept:
         shapes = tuple([(x.shape, x.dtype) for x in numbers])
         program = self._known.get(shapes)
         if program is None:
-            return self._first(numbers, shapes)
+            with self._lock:
+                program = self._known.get(shapes)
+                if program is None:
+                    return self._first(numbers, shapes)
         return program(numbers)
 
     def _first(self, numbers: list, shapes: tuple) -> Any:
-        if self._place is None or self._what is None:
+        if self._place is None:
             lowered, structures = _lowered(self._jitted, numbers, self._options)
             self._known[shapes] = program = _called(lowered.compile(), structures[0])
             return program(numbers)

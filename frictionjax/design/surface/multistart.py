@@ -117,7 +117,7 @@ def multistart(
     At most `most` steps, of which there is room for `kept`.
     """
     one = partial(_one, layout, kept, most, task, shares[0])
-    return jax.vmap(one)(places, keys, shares)
+    return jax.lax.map(lambda row: one(*row), (places, keys, shares))
 
 
 def _one(layout, kept, most, task, own, place, key, share) -> StartRuns:
