@@ -215,12 +215,13 @@ def require_convex(support: AbstractSupport, low: Any, high: Any) -> None:
     if not is_concrete(support, low, high):
         return
     wanted = np.array([float(low), float(high)])
-    ends, least, largest, forces = _range_and_convexity(support, *wanted)
+    found = _range_and_convexity(support, *wanted)
+    ends, least, largest, forces = (np.asarray(column) for column in found)
     size = max(1e-300, float(np.max(np.abs(wanted))))
-    reached = np.all(np.abs(np.asarray(forces) - wanted) <= 1e-6 * size)
-    span = f"[{float(ends[0]):.6g}, {float(ends[1]):.6g}]"
+    reached = np.all(np.abs(forces - wanted) <= 1e-6 * size)
+    span = f"[{ends[0]:.6g}, {ends[1]:.6g}]"
     forces_wanted = f"[{wanted[0]:.6g}, {wanted[1]:.6g}]"
     needs = f"Phi uniformly convex and Phi' to reach the forces {forces_wanted}"
-    require(np.all(np.isfinite(np.asarray(ends))) and reached, "support", span, needs)
+    require(np.all(np.isfinite(ends)) and reached, "support", span, needs)
     needs = f"Phi uniformly convex on the range reached, z in {span}"
     require(float(least) > 1e-9 * float(largest), "support: min Phi''", least, needs)

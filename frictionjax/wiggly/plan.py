@@ -29,7 +29,7 @@ def _plans(parts: SteppedParts, pull: PullRange, accuracy, eps, gamma):
         plan = plan_steps(parts, eps, gamma, accuracy, pull)
         return plan, parts.potential.tip(parts.z0, eps)
 
-    return jax.vmap(one)(eps, gamma)
+    return jax.lax.map(lambda cell: one(*cell), (eps, gamma))
 
 
 def _controls(scene: TabulatedScene, path: Path, eps, gamma, accuracy: float):

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from ..._checks import Real
-from ..._compile import Program, in_chunks
+from ..._compile import in_chunks, once_a_scene
 from ...loads import AbstractPull
 from ...model import TabulatedScene
 from ...supports import AbstractSupport
@@ -19,7 +19,7 @@ from .sampled_slide import nodes_of, through_nodes
 from .settings import SETTINGS
 
 
-@Program
+@once_a_scene
 def _zoomed(
     load: AbstractPull,
     support: AbstractSupport,
