@@ -161,7 +161,9 @@ def _sum_at_jvp(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
         turns = 2 * jnp.pi * jnp.arange(1, cos.shape[0] + 1)
         change = _sum_at(turns * sin, -turns * cos, turn, y) * y_dot
     if not (is_zero(cos_dot) and is_zero(sin_dot)):
-        change = change + _sum_at(_filled(cos_dot), _filled(sin_dot), turn, y)
+        # Not by this function: in reverse mode JAX keeps its body alone, where `turn` does
+        # not depend on y (derivatives by y of those by coefficients were 0).
+        change = change + _add_up(_filled(cos_dot), _filled(sin_dot), sin_cos(y))
     return total, change
 
 

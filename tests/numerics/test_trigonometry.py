@@ -85,3 +85,20 @@ def test_no_call_of_a_library_sine():
     program = jax.jit(sin_cos).lower(jnp.zeros(64)).compile().as_text()
     assert "sine(" not in program
     assert "cosine(" not in program
+
+
+@pytest.mark.parametrize("inner", [jax.jacrev, jax.jacfwd])
+@pytest.mark.parametrize("outer", [jax.jacrev, jax.jacfwd])
+@pytest.mark.parametrize("by", [(0, 2), (2, 0), (1, 2), (2, 2), (0, 1)])
+def test_second_derivatives_in_every_order_and_mode(inner, outer, by):
+    """By places of those by coefficients were 0 where the first were in reverse mode."""
+    known = jnp.array([0.02, 0.01]), jnp.array([0.03, -0.01]), 0.3
+
+    def written_out(cos, sin, y):
+        turns = 2 * jnp.pi * jnp.arange(1, 3) * y
+        return jnp.sum(cos * jnp.cos(turns) + sin * jnp.sin(turns))
+
+    found, wanted = (
+        outer(inner(fn, by[0]), by[1])(*known) for fn in (fourier_sum, written_out)
+    )
+    np.testing.assert_allclose(found, wanted, rtol=1e-13, atol=1e-14)

@@ -37,8 +37,8 @@ class Programs:
         self.called = set()
         self._kept, programs.kept = programs.kept, self._recorded
 
-    def _recorded(self, fn, run, structure, rest):
-        program = self._kept(fn, run, structure, rest)
+    def _recorded(self, fn, run, structure, rest, options):
+        program = self._kept(fn, run, structure, rest, options)
 
         def call(numbers):
             shapes = tuple(getattr(x, "shape", ()) for x in numbers)
