@@ -45,7 +45,9 @@ def _blocks(work: np.ndarray, legs: np.ndarray, workers: int) -> list[np.ndarray
         if wanted < order.size and done[-1] - done[wanted - 1] < short:
             wanted = order.size  # what is left would be no block
         fits = min(np.searchsorted(took, used + room, side="right"), start + jobs)
-        end = max(min(wanted, fits), np.searchsorted(done, before + least) + 1)
+        # Where half a block does not fit, a larger loop is needed, and holds a whole one.
+        half = np.searchsorted(done, before + least) + 1
+        end = wanted if half > fits else min(wanted, fits)
         blocks.append(order[start:end])
         start = end
     return blocks
