@@ -20,7 +20,8 @@ HOME = TESTS.parent
 FLOORS = {
     "": [
         {"_checks"},
-        {"_compile", "_text", "numerics", "intervals"},
+        {"_compile", "_text", "numerics"},
+        {"intervals"},
         {"profiles", "bristles", "supports", "loads", "effects", "rods"},
         {"tables", "coefficients"},
         {"model"},

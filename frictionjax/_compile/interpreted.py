@@ -12,7 +12,7 @@ from .programs import put_together, taken_apart
 
 _MOST = 256  # programs kept of one function
 # Steps that only call, by name: `reduce` has a `jaxpr` too, which is no call.
-_CALLS = {
+CALLS = {
     "jit": "jaxpr",
     "pjit": "jaxpr",
     "closed_call": "call_jaxpr",
@@ -79,8 +79,8 @@ def _run(jaxpr: Any, constants: Any, arguments: list) -> list:
 
 def _results(eqn: Any, operands: list) -> list:
     name, params = eqn.primitive.name, eqn.params
-    if name in _CALLS:
-        return _call(params[_CALLS[name]], operands)
+    if name in CALLS:
+        return _call(params[CALLS[name]], operands)
     if name == "cond":
         which = int(np.clip(operands[0], 0, len(params["branches"]) - 1))
         return _call(params["branches"][which], operands[1:])

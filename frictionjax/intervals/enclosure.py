@@ -7,6 +7,7 @@ import jax
 import numpy as np
 from jax.extend.core import Literal
 
+from .._compile import CALLS
 from . import jet as jets
 from .functions import ELEMENTARY, cos, integer_power, sin
 from .interval import Interval
@@ -16,18 +17,6 @@ from .program import Program
 from .program import TooMuchWorkError as TooMuchWorkError
 from .settings import SETTINGS
 from .shapes import SHAPES, NoRuleError, stack
-
-_CALLS = {
-    "jit": "jaxpr",
-    "pjit": "jaxpr",
-    "closed_call": "call_jaxpr",
-    "core_call": "call_jaxpr",
-    "remat": "jaxpr",
-    "checkpoint": "jaxpr",
-    "custom_jvp_call": "call_jaxpr",
-    "custom_vjp_call": "call_jaxpr",
-    "custom_vjp_call_jaxpr": "fun_jaxpr",
-}
 
 
 class Enclosure:
@@ -93,9 +82,9 @@ def run(jaxpr: Any, constants: list[Jet], arguments: list[Jet]) -> list[Jet]:
 
 def _results(eqn: Any, operands: list[Jet]) -> list[Jet]:
     name, params = eqn.primitive.name, eqn.params
-    if name in _CALLS:
-        known = _known_call(params[_CALLS[name]], operands)
-        return known or _call(params[_CALLS[name]], operands)
+    if name in CALLS:
+        known = _known_call(params[CALLS[name]], operands)
+        return known or _call(params[CALLS[name]], operands)
     if name == "scan":
         return _scan(params, operands)
     if name == "cond":
@@ -142,7 +131,7 @@ def _is_short(aval: Any) -> bool:
 
 def _inlined(eqn: Any) -> Any:
     """The program that an equation calls; None where it is none, or bounded as a whole."""
-    called = eqn.params.get(_CALLS.get(eqn.primitive.name))
+    called = eqn.params.get(CALLS.get(eqn.primitive.name))
     return None if called is None or _is_known(called) else called
 
 
