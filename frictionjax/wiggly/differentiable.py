@@ -11,7 +11,7 @@ from .._checks import Real
 from .._compile import Program, once_a_scene, strong_arrays
 from ..model import Scene
 from .equation import StepPlan, plan_steps
-from .sequential import integrate
+from .sequential import Past, integrate
 from .solution import Solution
 
 
@@ -41,7 +41,7 @@ def _planned(problem: Problem) -> StepPlan:
 
 
 def _answered(
-    problem: Problem, plan: StepPlan, options: Options, past: Any = None
+    problem: Problem, plan: StepPlan, options: Options, past: Past | None = None
 ) -> tuple:
     scene, eps, gamma, ts, _ = problem
     found = integrate(
@@ -75,13 +75,13 @@ def _forth(problem: Problem, plan: StepPlan, options: Options) -> tuple:
 
 @Program
 def _back(
-    problem: Problem, plan: StepPlan, options: Options, past: Any, by: tuple
+    problem: Problem, plan: StepPlan, options: Options, past: Past, by: tuple
 ) -> Problem:
-    """Derivatives by the problem of what has those `by` the curve."""
+    """Derivatives by the problem of what has those `by` the curve, or its first part."""
     moving, still = eqx.partition(problem, eqx.is_inexact_array)
 
     def curve(moving: Problem) -> tuple:
-        return _answered(eqx.combine(moving, still), plan, options, past)[0]
+        return _answered(eqx.combine(moving, still), plan, options, past)[0][: len(by)]
 
     return jax.vjp(curve, moving)[1](by)[0]
 
@@ -107,12 +107,21 @@ def _pulled_back(
     known: tuple, by: tuple, perturbed: Any, problem: Problem, options: Options
 ) -> Problem:
     plan, past, curve = known
+    if by[0][1:] == (None, None):  # of z alone: energies are not gone through again
+        options, past, curve = options._replace(balanced=False), _of_tips(past), curve[:1]
     whole = jax.tree_util.tree_map(
         lambda value, by_value: jnp.zeros_like(value) if by_value is None else by_value,
         curve,
-        by[0],
+        by[0][: len(curve)],
     )
     return _back(problem, plan, options, past, whole)
+
+
+def _of_tips(past: Past) -> Past:
+    """The way without the energies that go with it."""
+    fronts, log = past
+    begins = log.begins._replace(y=log.begins.y[:1])
+    return Past(fronts._replace(y=fronts.y[:1]), log._replace(begins=begins))
 
 
 def solve_one_after_the_other(problem: Problem, options: Options) -> Solution:
