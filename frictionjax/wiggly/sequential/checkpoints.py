@@ -105,12 +105,12 @@ def checkpoints_at(
         piece = partial(_solved, field, plan, solver, controller, max_steps, adjoint)
         return jax.lax.scan(lambda f, stop: (piece(f, stop),) * 2, start, stops)[1], None
     stepper = Stepper(field, solver)
-    again = eqx.filter_closure_convert(partial(_again, stepper, controller), start, stops[0])
+    again: Any = partial(_again, stepper, controller)
+    again = eqx.filter_closure_convert(again, start, stops[0])
+    piece: Any = None
     if past is None:
         piece = partial(_piece, stepper, plan, controller, max_steps)
         piece = eqx.filter_closure_convert(piece, start, stops[0])
-    else:
-        piece = None
     goes_on = jax.tree_util.Partial(_goes_on, plan.shortest_step)
     found = segment_adjoint((piece, again, start, stops), goes_on, past)
     return found.fronts, found
