@@ -102,8 +102,8 @@ def checkpoints_at(
     `adjoint` of the caller's, all between two stops is one piece, made by `diffeqsolve`.
     """
     if adjoint:
-        piece = partial(_solved, field, plan, solver, controller, max_steps, adjoint)
-        return jax.lax.scan(lambda f, stop: (piece(f, stop),) * 2, start, stops)[1], None
+        whole = partial(_solved, field, plan, solver, controller, max_steps, adjoint)
+        return jax.lax.scan(lambda f, stop: (whole(f, stop),) * 2, start, stops)[1], None
     stepper = Stepper(field, solver)
     again: Any = partial(_again, stepper, controller)
     again = eqx.filter_closure_convert(again, start, stops[0])
