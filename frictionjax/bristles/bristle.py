@@ -3,6 +3,7 @@
 import abc
 from typing import ClassVar, NamedTuple
 
+import jax
 import jax.numpy as jnp
 
 from .._checks import Part, Real, require_real
@@ -76,6 +77,12 @@ class AbstractBristle(Part):
     @abc.abstractmethod
     def energy(self, eta: Real) -> Real:
         """`F(eta)` in J: energy stored when the tip stands at height `eta`."""
+
+    def with_slopes(self, eta: Real) -> tuple[Real, Real, Real]:
+        """`A(eta)` in m, `A'(eta)`, and `F'(eta)` in N."""
+        one = jnp.ones_like(eta)
+        offset, ahead = jax.jvp(self.offset, (eta,), (one,))
+        return offset, ahead, jax.jvp(self.energy, (eta,), (one,))[1]
 
     def slope_bounds(self) -> SlopeBounds:
         """Slopes that the contact allows; without a bound of its own, any."""

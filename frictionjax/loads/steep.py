@@ -1,5 +1,7 @@
 """Where a load is steepest between two of its turning points."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
@@ -25,13 +27,14 @@ def steep_times(load: AbstractPull, start: Real, end: Real) -> Float[Array, " sa
     gaps = jnp.abs(jnp.diff(jax.vmap(load)(edges)) - slopes * jnp.diff(edges))
     _, suspects = jax.lax.top_k(gaps, SETTINGS.suspects)
 
+    def zoomed(_: Any, ends: tuple[Real, Real]) -> tuple[Real, Real]:
+        low, high = ends
+        inner = low + (high - low) * jnp.arange(SETTINGS.parts + 1) / SETTINGS.parts
+        part = jnp.argmax(jnp.abs(jnp.diff(jax.vmap(load)(inner))))
+        return inner[part], inner[part + 1]
+
     def steepest(low: Real, high: Real) -> Real:
-        for _ in range(SETTINGS.zooms):
-            inner = low + (high - low) * jnp.arange(SETTINGS.parts + 1) / SETTINGS.parts
-            rises = jnp.abs(jnp.diff(jax.vmap(load)(inner)))
-            part = jnp.argmax(rises)
-            low, high = inner[part], inner[part + 1]
-        return 0.5 * (low + high)
+        return 0.5 * sum(jax.lax.fori_loop(0, SETTINGS.zooms, zoomed, (low, high)))
 
     found = jax.vmap(steepest)(edges[suspects], edges[suspects + 1])
     known = getattr(load, "steepest", None)

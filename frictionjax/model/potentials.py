@@ -87,10 +87,15 @@ class AbstractPotential(Part):
 
     def tip_force(self, y: Real, eps: Real) -> tuple[Real, Real]:
         """`V_eps'(z)` in N and `G = dz/dp` at the tip coordinate `y`."""
-        _, ahead = _slope(lambda s: self.offset(s, eps), y)
+        force, stretch, _ = self.at_tip(y, eps)
+        return force, stretch
+
+    def at_tip(self, y: Real, eps: Real) -> tuple[Real, Real, Real]:
+        """`V_eps'(z)` in N, `G = dz/dp` and the `offset` in m at the tip coordinate `y`."""
+        offset, ahead = _slope(lambda s: self.offset(s, eps), y)
         _, climb = _slope(lambda s: self.tip_energy(s, eps), y)
         stretch = 1 + ahead / eps
-        return climb / (eps * stretch), stretch
+        return climb / (eps * stretch), stretch, offset
 
     def energy(
         self, z: Float[ArrayLike, "*z"], eps: Float[ArrayLike, "*eps"]
@@ -156,13 +161,12 @@ class BristlePotential(AbstractPotential):
         end = self.bristle.energy(eps * self.profile(y))
         return end - self.bristle.energy(jnp.zeros_like(y))
 
-    def tip_force(self, y: Real, eps: Real) -> tuple[Real, Real]:
+    def at_tip(self, y: Real, eps: Real) -> tuple[Real, Real, Real]:
         # The chain rule by hand: F' and A' once each, not through `increment`.
         height, slope = _slope(self.profile, y)
-        _, climb = _slope(self.bristle.energy, eps * height)
-        _, ahead = _slope(self.bristle.offset, eps * height)
+        offset, ahead, climb = self.bristle.with_slopes(eps * height)
         stretch = 1 + ahead * slope
-        return climb * slope / stretch, stretch
+        return climb * slope / stretch, stretch, offset
 
     def well_coordinate(self, Y: Real, eps: Real) -> Real:
         def state(y: Real) -> Real:

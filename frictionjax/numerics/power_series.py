@@ -16,8 +16,8 @@ def power_sum(
     terms: Float[Array, " terms"], x: Float[ArrayLike, "*shape"]
 ) -> Float[Array, "*shape"]:
     """`sum_k terms_k x^k`, k = 0, 1, ...; `terms`: shape (terms,); `x`: any shape."""
-    total = jnp.zeros_like(x)
-    for power in range(terms.shape[0] - 1, -1, -1):
+    total = jnp.broadcast_to(terms[-1], jnp.shape(x))
+    for power in range(terms.shape[0] - 2, -1, -1):
         total = total * x + terms[power]
     return total
 

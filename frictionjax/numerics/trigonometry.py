@@ -6,6 +6,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
 from .zero_tangents import is_zero
@@ -22,9 +23,10 @@ _COSINE = tuple(
 # Harmonics in groups whose powers are there, groups by Horner's rule, blocks of groups in a
 # loop where there are more. XLA copies cheap chains into each of their users, so a chain of
 # n harmonics doubles n times: with 8 by Horner's rule alone LLVM wants more than 20 GB for
-# a lane's step, with 14 by the addition theorem. Microseconds of a step of 8 and 16
-# harmonics: 0.145 and 0.183 in groups of 4, 0.148 and - by the addition theorem, 0.19 for
-# 16 in groups of 8, 0.28 by Horner's rule in a loop over blocks of 8.
+# a lane's step, with 14 by the addition theorem, and for tips with mass with 4 where no
+# factor z stands outside of the sum. Microseconds of a step of 8 and 16 harmonics: 0.145
+# and 0.183 in groups of 4, 0.148 and - by the addition theorem, 0.19 for 16 in groups of 8,
+# 0.28 by Horner's rule in a loop over blocks of 8.
 _GROUP, _BLOCK = 4, 16
 
 
@@ -86,31 +88,37 @@ def fourier_sum(
     """
     y = jnp.asarray(y, dtype=float)
     turn = _evaluate(jax.lax.stop_gradient(y))
-    return _sum_at(cos, sin, turn, y)
+    return _sum_at(cos, sin, _powers(turn, cos.shape[0]), y)
 
 
 @jax.custom_jvp
 def _sum_at(
     cos: Float[Array, " harmonics"],
     sin: Float[Array, " harmonics"],
-    turn: tuple,
+    powers: list,
     y: Float[Array, "*shape"],
 ) -> Float[Array, "*shape"]:
-    """The sum from `turn`, sine and cosine at y: `y` itself is there for derivatives."""
-    return _add_up(cos, sin, turn)
+    """The sum from `powers` of `e^(2 pi i y)`: `y` itself is there for derivatives."""
+    return _add_up(cos, sin, powers)
+
+
+@partial(jax.jit, inline=True, static_argnums=1)
+def _powers(turn: tuple, harmonics: int) -> list[tuple]:
+    """z, z^2... of `turn` z, for a group of harmonics or all of them."""
+    powers = [turn]
+    for n in range(2, min(harmonics, _GROUP) + 1):
+        powers.append(_times(powers[n // 2 - 1], powers[n - n // 2 - 1]))
+    return powers
 
 
 @partial(jax.jit, inline=True)
 def _add_up(
-    cos: Float[Array, " harmonics"], sin: Float[Array, " harmonics"], turn: tuple
+    cos: Float[Array, " harmonics"], sin: Float[Array, " harmonics"], powers: list
 ) -> Array:
-    powers = [turn]
-    for n in range(2, min(cos.shape[0], _GROUP) + 1):
-        powers.append(_times(powers[n // 2 - 1], powers[n - n // 2 - 1]))
     if cos.shape[0] <= _BLOCK:
         total = _groups(powers, cos, sin)
     else:
-        size = _BLOCK * max(2, -(-cos.size // _BLOCK))
+        size = _BLOCK * -(-cos.size // _BLOCK)
         blocks = [jnp.pad(c, (0, size - c.size)).reshape(-1, _BLOCK) for c in (cos, sin)]
         whole = powers[-1]
         for _ in range(int(math.log2(_BLOCK // _GROUP))):
@@ -119,9 +127,10 @@ def _add_up(
         def block(total: tuple, coefficients: list) -> tuple[tuple, None]:
             return _plus(_times(total, whole), _groups(powers, *coefficients)), None
 
-        none = jnp.zeros_like(turn[0]), jnp.zeros_like(turn[0])
+        none = jnp.zeros_like(whole[0]), jnp.zeros_like(whole[0])
         total, _ = jax.lax.scan(block, none, blocks, reverse=True)
-    return _times(total, turn)[1]
+    sine, cosine = powers[0]
+    return total[1] * cosine - total[0] * sine
 
 
 def _times(a: tuple, b: tuple) -> tuple:
@@ -142,28 +151,29 @@ def _groups(
     for first in reversed(range(0, cos.shape[0], _GROUP)):
         part: Any = tuple(jnp.broadcast_to(v, shape) for v in (-sin[first], cos[first]))
         for n in range(first + 1, min(first + _GROUP, cos.shape[0])):
-            sine, cosine = powers[n - first - 1]
+            (sine, cosine), c, s = powers[n - first - 1], cos[n], sin[n]
             part = (
-                part[0] + cos[n] * sine - sin[n] * cosine,
-                part[1] + cos[n] * cosine + sin[n] * sine,
+                part[0] + c * sine - s * cosine,
+                part[1] + c * cosine + s * sine,
             )
         total = part if total is None else _plus(_times(total, powers[-1]), part)
     return total
 
 
 def _sum_at_jvp(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
-    cos, sin, turn, y = primals
+    cos, sin, powers, y = primals
     cos_dot, sin_dot, _, y_dot = tangents
-    total = _sum_at(cos, sin, turn, y)
+    total = _sum_at(cos, sin, powers, y)
     change = jnp.zeros_like(total)
     # Zero tangents leave no trace: without this, programs triple with every derivative.
     if not is_zero(y_dot):
-        turns = 2 * jnp.pi * jnp.arange(1, cos.shape[0] + 1)
-        change = _sum_at(turns * sin, -turns * cos, turn, y) * y_dot
+        turns = 2 * np.pi * np.arange(1, cos.shape[0] + 1)
+        change = _sum_at(turns * sin, -turns * cos, powers, y) * y_dot
     if not (is_zero(cos_dot) and is_zero(sin_dot)):
-        # Not by this function: in reverse mode JAX keeps its body alone, where `turn` does
-        # not depend on y (derivatives by y of those by coefficients were 0).
-        change = change + _add_up(_filled(cos_dot), _filled(sin_dot), sin_cos(y))
+        # Not by this function: in reverse mode JAX keeps its body alone, where `powers`
+        # do not depend on y (derivatives by y of those by coefficients were 0).
+        moving = _powers(sin_cos(y), cos.shape[0])
+        change = change + _add_up(_filled(cos_dot), _filled(sin_dot), moving)
     return total, change
 
 

@@ -47,6 +47,11 @@ class SeriesBristle(AbstractBristle):
     def energy(self, eta: Real) -> Real:
         return power_integral(self.climb, self.per_height, eta)
 
+    def with_slopes(self, eta: Real) -> tuple[Real, Real, Real]:
+        # As they are: as derivatives of integrals programs are a tenth larger.
+        x = eta * self.per_height
+        return self.offset(eta), power_sum(self.ahead, x), power_sum(self.climb, x)
+
     def rod(self, eta: Real) -> Rod | None:
         """The rod that has to clear the surface ahead of a tip at height `eta` (m)."""
         if self.rods is None:
@@ -108,4 +113,6 @@ def _powers(values: Sequence[np.ndarray]) -> np.ndarray | None:
     degree = size_for(needed, SETTINGS.degrees)
     if degree is None or not np.all(np.isfinite(rows)):
         return None
-    return series[:, : degree + 1] @ _TO_POWERS[: degree + 1, : degree + 1]
+    # Of a line nothing is left but a line, whatever the height that it was found for.
+    powers = series[:, : needed + 1] @ _TO_POWERS[: needed + 1, : needed + 1]
+    return np.pad(powers, ((0, 0), (0, degree - needed)))

@@ -78,7 +78,7 @@ def _in_series(series: Series, height: float) -> ProfileTables:
     cos, sin = (jnp.asarray(np.pad(c, (0, size - count))) for c in (series.cos, series.sin))
     parts = jnp.asarray(series.mean), cos, sin
     alone = SeriesProfile(*parts)
-    planning = Waves(*parts) if 1 < size <= SETTINGS.waves else alone
+    planning = Waves(*parts) if size <= SETTINGS.waves else alone
     return ProfileTables(_pieces_of(series, alone) or alone, planning, height)
 
 

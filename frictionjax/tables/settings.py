@@ -6,15 +6,17 @@ from typing import NamedTuple
 class Settings(NamedTuple):
     """Of series, of pieces, of points of loads."""
 
-    # Harmonics of a series (`profiles.py`). A step takes 0.12 us with 1, 0.145 with 8;
-    # each size is a loop to compile. (A larger loop until the right one is there: last
-    # digits would depend on what has run before.)
-    harmonics: tuple[int, ...] = (1, 4, 8, 16, 64)
+    # Harmonics of a series (`profiles.py`). Each size is programs to compile, 5 s of a core
+    # for the first scene of that size. A step of a sine takes 0.126 us, in a table of one
+    # harmonic, under a bristle of degree 1, it took 0.111, in one of 8, of degree 8, 0.157.
+    # (A larger loop until the right one is there: last digits would depend on what has run
+    # before.)
+    harmonics: tuple[int, ...] = (4, 8, 16, 64)
     # Longer ones as pieces of this degree in lanes: 0.21 us for 0.25 with 16, 0.58 with 64.
     written_out: int = 8
     degree: int = 8
-    # In planning: several, up to so many, as an axis (`waves.py`), one, and more, as lanes
-    # do. A plan of 64 cells takes 3, 4, 12 and 36 ms for 4, 8, 16 and 64.
+    # In planning: up to so many as an axis (`waves.py`), more as lanes do. A plan of 64
+    # cells takes 3, 4, 12 and 36 ms for 4, 8, 16 and 64.
     waves: int = 8
     # Samples of a function that may be a series: twice what 64 harmonics need, and as many
     # between them, which the series must meet.
@@ -35,8 +37,8 @@ class Settings(NamedTuple):
     # Bristles as power series (`bristles.py`).
     nodes: int = 16
     # The paper's linear springs need degree 1, its angular spring 3 to 6 at slopes of 0.1
-    # and eps = 0.1.
-    degrees: tuple[int, ...] = (1, 4, 8)
+    # and eps = 0.1. (A size for degree 1: as for harmonics.)
+    degrees: tuple[int, ...] = (4, 8)
     least: float = 1e-14  # of the largest value: coefficients below are left out
 
 

@@ -29,7 +29,7 @@ class SeriesProfile(AbstractProfile):
 class Waves(SeriesProfile):
     """The same with harmonics as an axis.
 
-    For planning with two to eight harmonics: written out one by one, 8 of them take 1.4
+    For planning with up to eight harmonics: written out one by one, 8 of them take 1.4
     times as long to compile. (64 of them, at the 4096 places that they need, as an axis:
     180 ms for 64 cells; one after the other in blocks 36.)
     """

@@ -6,6 +6,7 @@ import numpy as np
 
 from .._checks import quiet_where_extreme, viscosity_of
 from ..model import BristlePotential, Scene, TabulatedScene, tabulated_scene
+from ..tables import SETTINGS as TABLES
 from ..tables import SeriesBristle, SeriesProfile
 from .enclosure import Requirements, cost_of, longest_lane, wells_a_leg, wells_of
 from .equation import StepPlan as StepPlan
@@ -21,7 +22,7 @@ class Workload(NamedTuple):
     `steps`: of all lanes. `chain`: those that one lane takes after the other. `jobs`:
     lanes that set off; `segments`: of their ways. `maps`: slides of which slip maps are
     made; `rounds`: those of them that wait for each other. `weight`: of a step, relative to
-    a linear spring on a sine.
+    one of parts in the smallest tables.
     """
 
     steps: np.ndarray
@@ -121,8 +122,8 @@ def _weight_of(scene: TabulatedScene) -> float:
     profile, bristle = potential.profile, potential.bristle
     surface = SETTINGS.in_pieces
     if isinstance(profile, SeriesProfile):
-        surface = 1 + SETTINGS.a_harmonic * (profile.cos.shape[0] - 1)
+        surface = 1 + SETTINGS.a_harmonic * (profile.cos.shape[0] - TABLES.harmonics[0])
     shape = SETTINGS.no_series
     if isinstance(bristle, SeriesBristle):
-        shape = 1 + SETTINGS.a_degree * (bristle.ahead.shape[0] - 2)
+        shape = 1 + SETTINGS.a_degree * (bristle.ahead.shape[0] - 1 - TABLES.degrees[0])
     return surface * shape

@@ -83,12 +83,12 @@ class Settings(NamedTuple):
     map_growth: float = 0.05  # power of thousands of wells that both grow with
     # Drag of tips that are still on their way when a slide is over, and a rest begins.
     behind: float = 0.1
-    # What a step costs more: for each harmonic after the first (1.3 at 4 was measured), in
-    # pieces (0.21 us for 0.16), for each degree of the bristle's series after the first
-    # (1.35 at 4), for a bristle without one.
-    a_harmonic: float = 0.06
+    # What a step costs more: for each harmonic and each degree of the bristle's series
+    # beyond the smallest table (a sine in that of 8 harmonics and degree 8 takes 1.25 times
+    # as long), in pieces (0.21 us for 0.16), for a bristle without a series.
+    a_harmonic: float = 0.04
     in_pieces: float = 1.3
-    a_degree: float = 0.1
+    a_degree: float = 0.02
     no_series: float = 3.0
 
 

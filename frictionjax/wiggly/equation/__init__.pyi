@@ -6,6 +6,7 @@ from .energy_balance import at_rest as at_rest
 from .energy_balance import dissipated as dissipated
 from .energy_balance import errors_of_sums as errors_of_sums
 from .energy_balance import slopes_between as slopes_between
+from .field import Driven as Driven
 from .field import Point as Point
 from .field import TipField as TipField
 from .landscape import WiggleFolds as WiggleFolds

@@ -119,10 +119,10 @@ def advance(
     def add(total: tuple, s: Real) -> tuple[tuple[Real, Real, Real], None]:
         y, velocity = _cubic(s, step, *ends)
         t = t0 + s * step
-        force, stretch = field.driving_force(t, y)
+        force, stretch, state, _ = field.driven(t, y)
         drawn, speed = (field.eps * stretch * v for v in (velocity, velocity + along))
         work, viscous, defect = total
-        work += 0.5 * step * field.load_slope(t) * (field.state(y) - reference(t))
+        work += 0.5 * step * field.load_slope(t) * (state - reference(t))
         viscous += 0.5 * step * viscosity * speed**2
         defect += 0.25 * step * (viscosity * drawn - force) ** 2 / viscosity
         return (work, viscous, defect), None

@@ -24,6 +24,15 @@ class Point(NamedTuple):
     load: Real
 
 
+class Driven(NamedTuple):
+    """What drives a tip: `l - Phi' - V_eps'` in N, `G`, `z` in m, and the load in N."""
+
+    force: Real
+    stretch: Real
+    state: Real
+    load: Real
+
+
 class TipField(eqx.Module):
     """`eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.7) for the tip `y = p/eps`.
 
@@ -55,11 +64,17 @@ class TipField(eqx.Module):
         """`l'(t)` in N/s."""
         return self.load.slope(self.origin + t)
 
+    def driven(self, t: Real, y: Real) -> Driven:
+        """The force and what it is made of, with one look at the surface."""
+        wiggle, stretch, offset = self.potential.at_tip(y, self.eps)
+        state = self.eps * (self.well + y) + offset
+        load = self.load(self.origin + t)
+        return Driven(load - self.support.force(state) - wiggle, stretch, state, load)
+
     def driving_force(self, t: Real, y: Real) -> tuple[Real, Real]:
         """`l - Phi' - V_eps'` in N, and `G`."""
-        wiggle, stretch = self.potential.tip_force(y, self.eps)
-        pull = self.load(self.origin + t)
-        return pull - self.support.force(self.state(y)) - wiggle, stretch
+        force, stretch, _, _ = self.driven(t, y)
+        return force, stretch
 
     def velocity(self, t: Real, y: Real) -> Real:
         """`y'` in periods per second."""
@@ -70,16 +85,21 @@ class TipField(eqx.Module):
         """The field and its derivatives at one point."""
         one = jnp.ones_like(y)
 
-        def velocity_and_stretch(s: Real) -> tuple[Real, Real]:
-            force, stretch = self.driving_force(t, s)
-            return force / (self.viscosity * self.eps * stretch), stretch
+        def moved(s: Real) -> tuple[Real, Driven]:
+            driven = self.driven(t, s)
+            drag = self.viscosity * self.eps * driven.stretch
+            return driven.force / drag, driven
 
-        velocity, by_state, stretch = jax.jvp(
-            velocity_and_stretch, (y,), (one,), has_aux=True
+        velocity, by_state, driven = jax.jvp(moved, (y,), (one,), has_aux=True)
+        by_time = self.load_slope(t) / (self.viscosity * self.eps * driven.stretch)
+        return Point(
+            velocity=velocity,
+            by_state=by_state,
+            by_time=by_time,
+            state=driven.state,
+            stretch=driven.stretch,
+            load=driven.load,
         )
-        by_time = self.load_slope(t) / (self.viscosity * self.eps * stretch)
-        load = self.load(self.origin + t)
-        return Point(velocity, by_state, by_time, self.state(y), stretch, load)
 
     def energy(self, t: Real, y: Real) -> Real:
         """`E_eps = Phi - l z + V_eps` (eq. 2.6) in J."""

@@ -58,10 +58,10 @@ def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
     every = jax.vmap(lambda y: potential.tip_force(y, eps))
     (_, stretches), (slopes, _) = jax.jvp(every, (grid,), (one,))
     top, bottom = extrema.argmax, extrema.argmin
-    states = [eps * y + potential.offset(y, eps) for y in (top, bottom)]
+    ends = jnp.stack([top, bottom])
+    states = eps * ends + jax.vmap(lambda y: potential.offset(y, eps))(ends)
     # Forward twice: reverse mode takes twice as long to trace.
-    bend = slope_of(slope_of(jax.vmap(force)))
-    curvatures = jnp.abs(bend(jnp.stack([top, bottom])))
+    curvatures = jnp.abs(slope_of(slope_of(jax.vmap(force)))(ends))
     return Landscape(
         fold_curvature=jnp.max(curvatures),
         flat_curvature=jnp.min(curvatures),

@@ -52,30 +52,28 @@ class MassiveTip(eqx.Module):
     def rates(self, t: Real, motion: TipMotion) -> TipMotion:
         """Time derivatives of all four."""
         field = self.field
-        force, stretch = field.driving_force(t, motion.tip)
+        force, stretch, _, load = field.driven(t, motion.tip)
         velocity = field.eps * motion.speed
         drag = field.viscosity * velocity
         return TipMotion(
             tip=motion.speed / stretch,
             speed=(force - drag) / (self.mass * field.eps),
             lost=drag * velocity,
-            work=field.load(field.origin + t) * velocity,
+            work=load * velocity,
         )
 
     def coupling(self, t: Real, motion: TipMotion) -> FieldSlopes:
         """The derivatives of `rates`."""
         field, one = self.field, jnp.ones_like(motion.tip)
-        (_, stretch), (steep, bend) = jax.jvp(
-            lambda y: field.driving_force(t, y), (motion.tip,), (one,)
-        )
+        driven, slopes = jax.jvp(lambda y: field.driven(t, y), (motion.tip,), (one,))
         velocity = field.eps * motion.speed
         return FieldSlopes(
-            tip_by_tip=-motion.speed * bend / stretch**2,
-            tip_by_speed=1 / stretch,
-            speed_by_tip=steep / (self.mass * field.eps),
+            tip_by_tip=-motion.speed * slopes.stretch / driven.stretch**2,
+            tip_by_speed=1 / driven.stretch,
+            speed_by_tip=slopes.force / (self.mass * field.eps),
             speed_by_speed=-field.viscosity / self.mass,
             lost_by_speed=2 * field.viscosity * velocity * field.eps,
-            work_by_speed=field.load(field.origin + t) * field.eps,
+            work_by_speed=driven.load * field.eps,
             speed_by_time=field.load_slope(t) / (self.mass * field.eps),
             work_by_time=field.load_slope(t) * velocity,
         )

@@ -5,7 +5,6 @@ from typing import NamedTuple
 import jax
 import numpy as np
 
-from ..._checks import Real
 from ..._compile import Program, in_chunks
 from ...model import SETTINGS as MODEL_SETTINGS
 from ...model import AbstractPotential
@@ -41,10 +40,7 @@ class WellPull(NamedTuple):
 
 @Program
 def _wiggles(potential: AbstractPotential, eps, places):
-    def one(eps: Real, y: Real):
-        return *potential.tip_force(y, eps), potential.offset(y, eps)
-
-    return jax.vmap(one)(eps, places)
+    return jax.vmap(potential.at_tip)(places, eps)
 
 
 def wiggles_at(potential: AbstractPotential, eps: np.ndarray, places: np.ndarray):

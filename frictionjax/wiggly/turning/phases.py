@@ -12,6 +12,7 @@ from ..._compile import Program
 from ...turning import BentForce, SceneParts, compression
 from ..equation import (
     Balance,
+    Driven,
     Point,
     Status,
     TipField,
@@ -86,16 +87,10 @@ class TurningField(TipField):
     def state(self, y: Real) -> Real:
         return self.eps * (self.well + y)
 
-    def driving_force(self, t: Real, y: Real) -> tuple[Real, Real]:
-        pull = self.load(self.origin + t) - self.support.force(self.state(y))
-        return pull - self.rod.force(self.ahead(y)), jnp.ones_like(y)
-
-    def point(self, t: Real, y: Real) -> Point:
-        one = jnp.ones_like(y)
-        velocity, by_state = jax.jvp(lambda s: self.velocity(t, s), (y,), (one,))
-        by_time = self.load_slope(t) / (self.viscosity * self.eps)
-        load = self.load(self.origin + t)
-        return Point(velocity, by_state, by_time, self.state(y), one, load)
+    def driven(self, t: Real, y: Real) -> Driven:
+        load, state = self.load(self.origin + t), self.state(y)
+        force = load - self.support.force(state) - self.rod.force(self.ahead(y))
+        return Driven(force, jnp.ones_like(y), state, load)
 
     def energy(self, t: Real, y: Real) -> Real:
         z = self.state(y)
