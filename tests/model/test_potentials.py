@@ -41,6 +41,25 @@ def test_force_by_the_inverse_equals_the_tip_force(kind):
             assert jnp.max(jnp.abs(found - along)) < 1e-10 * size
 
 
+@eqx.filter_jit
+def at_tips(potential, y, eps):
+    """Force, G and offset at once, and each alone."""
+    once = jax.vmap(lambda place: potential.at_tip(place, eps))(y)
+    alone = jax.vmap(lambda place: potential.offset(place, eps))(y)
+    force, stretch = jax.vmap(lambda place: potential.tip_force(place, eps))(y)
+    return once, (force, stretch, alone)
+
+
+@pytest.mark.parametrize("kind", FEW_BRISTLES)
+def test_one_look_at_a_tip_is_all_of_them(kind):
+    for potential in potentials(kind):
+        eps = jnp.asarray(0.5 * largest_eps(potential, 0.1))
+        once, alone = at_tips(potential, jnp.linspace(-0.5, 0.5, 41), eps)
+        for found, expected in zip(once, alone, strict=True):
+            assert jnp.max(jnp.abs(expected)) > 0
+            assert jnp.max(jnp.abs(found - expected)) < 1e-14 * jnp.max(jnp.abs(expected))
+
+
 @pytest.mark.parametrize("kind", FEW_BRISTLES)
 def test_force_is_the_slope_of_the_energy(kind):
     for potential in potentials(kind):

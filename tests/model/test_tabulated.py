@@ -48,6 +48,18 @@ PAIRS = [
 ]
 
 
+def test_scenes_of_few_waves_are_of_one_kind():
+    """Whatever the bristle: a scene of another kind has nothing to compile."""
+    kinds = set()
+    for profile, bristle in itertools.product(("sine", "series"), BRISTLES):
+        tables = tabulated_scene(scene_of(profile, bristle), 0.02)
+        leaves, structure = jax.tree_util.tree_flatten(
+            (tables.potential, tables.lane_potential)
+        )
+        kinds.add((structure, *(np.shape(leaf) for leaf in leaves)))
+    assert len(kinds) == 1
+
+
 @pytest.mark.parametrize(("profile", "bristle"), PAIRS)
 def test_coefficients_are_those_of_the_parts(profile, bristle):
     potential = fx.potential(PROFILES[profile], BRISTLES[bristle])

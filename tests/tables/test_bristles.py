@@ -32,6 +32,24 @@ def test_the_series_is_the_bristle_to_rounding(name, highest):
     assert np.max(np.abs(slopes(found, etas) - expected) / size) < 4e-14
 
 
+@pytest.mark.parametrize("name", ["vertical", "slanted"])
+def test_of_a_line_a_line_is_left(name):
+    """In a table of degree 4, at whatever height it was found."""
+    for highest in (1e-2, 3e-4):
+        found = bristle_series(BRISTLES[name], highest)
+        assert found.ahead.shape == found.climb.shape == (5,)
+        assert not np.any([found.ahead[2:], found.climb[2:]])
+
+
+@pytest.mark.parametrize("name", ["slanted", "angular", "own"])
+def test_slopes_are_those_of_offset_and_energy(name):
+    eta = 3e-3
+    for bristle in (BRISTLES[name], bristle_series(BRISTLES[name], 1e-2)):
+        offset, *rest = bristle.with_slopes(eta)
+        assert float(offset) == pytest.approx(float(bristle.offset(eta)), rel=1e-15)
+        np.testing.assert_allclose(rest, slopes(bristle, np.array([eta]))[:, 0], 4e-15)
+
+
 def test_near_its_reach_a_bristle_stays_itself():
     angular = BRISTLES["angular"]
     assert bristle_series(angular, 0.29) is angular
