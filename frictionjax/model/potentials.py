@@ -327,9 +327,8 @@ def smallest_stretch(
     """
     count = points or potential.points
     grid = jnp.arange(count) / count
-    stretch = jax.vmap(lambda y: potential.tip_force(y, eps)[1])
-    offset = jax.vmap(lambda y: potential.offset(y, eps))(grid)
-    coarse = stretch(grid)
+    look = jax.vmap(lambda y: potential.at_tip(y, eps)[1:])
+    coarse, offset = look(grid)
     places = [jnp.argmin(coarse), jnp.argmin(offset), jnp.argmax(offset)]
     fine = grid[jnp.stack(places)][:, None] + np.linspace(-1, 1, SETTINGS.zoom + 1) / count
-    return smallest(jnp.concatenate([coarse, stretch(fine.ravel())]))
+    return smallest(jnp.concatenate([coarse, look(fine.ravel())[0]]))

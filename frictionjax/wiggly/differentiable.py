@@ -107,7 +107,8 @@ def _pulled_back(
     known: tuple, by: tuple, perturbed: Any, problem: Problem, options: Options
 ) -> Problem:
     plan, past, curve = known
-    if by[0][1:] == (None, None):  # of z alone: energies are not gone through again
+    if all(by_energy is None for by_energy in by[0][1:]):
+        # Of z alone: energies are not gone through again.
         options, past, curve = options._replace(balanced=False), _of_tips(past), curve[:1]
     whole = jax.tree_util.tree_map(
         lambda value, by_value: jnp.zeros_like(value) if by_value is None else by_value,

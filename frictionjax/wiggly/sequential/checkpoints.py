@@ -105,12 +105,13 @@ def checkpoints_at(
         whole = partial(_solved, field, plan, solver, controller, max_steps, adjoint)
         return jax.lax.scan(lambda f, stop: (whole(f, stop),) * 2, start, stops)[1], None
     stepper = Stepper(field, solver)
-    again: Any = partial(_again, stepper, controller)
-    again = eqx.filter_closure_convert(again, start, stops[0])
-    piece: Any = None
-    if past is None:
-        piece = partial(_piece, stepper, plan, controller, max_steps)
-        piece = eqx.filter_closure_convert(piece, start, stops[0])
+
+    def closed(piece: partial) -> Any:
+        return eqx.filter_closure_convert(piece, start, stops[0])
+
+    again = closed(partial(_again, stepper, controller))
+    made = past is not None
+    piece = None if made else closed(partial(_piece, stepper, plan, controller, max_steps))
     goes_on = jax.tree_util.Partial(_goes_on, plan.shortest_step)
     found = segment_adjoint((piece, again, start, stops), goes_on, past)
     return found.fronts, found

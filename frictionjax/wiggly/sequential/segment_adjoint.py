@@ -44,8 +44,8 @@ def segment_adjoint(
 
     `piece(front, stop)` goes towards the stop as far as it may, `again(front, end)` all the
     way to where a piece has ended; `goes_on(front, stop)`: whether there is more to go.
-    `past`: the way, where it has been gone before. Derivatives of fronts are by what the
-    pieces depend on, by the front and by the stops.
+    `past`: the way, where it has been gone before, and needs no `piece`. Derivatives of
+    fronts are by what the pieces depend on, by the front and by the stops.
     """
     if past is not None:
         return past
