@@ -32,12 +32,13 @@ class Settings(NamedTuple):
     growth: int = 16
 
     # Queues (`queue.py`).
-    # Steps between two looks at which lanes are done, at most: a look costs about two.
+    # Steps between two looks at which lanes are done, at most. A look costs a third to a
+    # half of one.
     chunk: int = 16
     # Share of the lanes under way that idle until the next look. (After 16 steps always:
     # loops of a few lanes with 201 times take twice as long, of 64 lanes a fifth longer. A
-    # half: a tenth longer; an eighth: the same.)
-    idle: float = 0.25
+    # quarter: loops of eight small cells 1.2 times as long; a thirtieth: of many, 1.03.)
+    idle: float = 0.06
 
     # Folds (`fold_steps.py`).
     # Folds of e that a tip may leave an unstable branch by in one step. Steps through slips
