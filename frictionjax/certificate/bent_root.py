@@ -6,7 +6,7 @@ from .._checks import Real
 from ..loads import AbstractPull
 from ..supports import AbstractSupport
 from ..turning import BentForce
-from .curve import AbstractForce, along_curve
+from .curve import AbstractForce, AtTip, along_curve
 from .plain_curve import CurveMeasures, residual_error, verdict
 from .tube import distance
 from .verdicts import Certificate
@@ -27,11 +27,9 @@ class BentForceOnRoot(AbstractForce):
     def tip(self, z: Real) -> tuple[Real, Real]:
         return 0.0 * z, z / self.eps
 
-    def state(self, well: Real, y: Real) -> Real:
-        return self.eps * (well + y)
-
-    def pull(self, y: Real) -> tuple[Real, Real]:
-        return self.rod.force(self.eps * y - self.above), 1.0 + 0.0 * y
+    def at_tip(self, well: Real, y: Real) -> AtTip:
+        force = self.rod.force(self.eps * y - self.above)
+        return AtTip(force, 1.0 + 0.0 * y, self.eps * (well + y))
 
 
 def bent_certificate(

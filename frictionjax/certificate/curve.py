@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Array
 
 from .._checks import Real
+from .._compile import Program
 from ..loads import AbstractPull
 from ..model import AbstractPotential, Scene
 from ..numerics import concatenated, rows_of
@@ -26,7 +27,7 @@ Column = Any
 
 class CurveSamples(NamedTuple):
     """At the samples, shapes (n,): the tip y = well + inside in periods, `f` in N with its
-    derivatives by z, the load and `V_eps'` in N.
+    derivatives by z, the load and `V_eps'` in N, and dz/dy in m.
     """
 
     well: Column
@@ -36,6 +37,7 @@ class CurveSamples(NamedTuple):
     bend: Column
     load: Column
     wiggle: Column
+    stretch: Column
 
 
 class Intervals(NamedTuple):
@@ -48,6 +50,22 @@ class Intervals(NamedTuple):
     middle: Column
     middle_slope: Column
     residual: Column
+
+
+class Driven(NamedTuple):
+    """What drives a tip: f and `V'` in N, and dz/dy in m."""
+
+    force: Real
+    wiggle: Real
+    stretch: Real
+
+
+class AtTip(NamedTuple):
+    """`V'` in N, `dz/dp`, and z in m, of a tip."""
+
+    wiggle: Real
+    stretch: Real
+    state: Real
 
 
 class AbstractForce(eqx.Module):
@@ -66,26 +84,38 @@ class AbstractForce(eqx.Module):
         """Well and y at a state in m."""
 
     @abc.abstractmethod
+    def at_tip(self, well: Real, y: Real) -> AtTip:
+        """All that there is to know of a tip, with one look at the surface."""
+
     def state(self, well: Real, y: Real) -> Real:
         """z in m."""
+        return self.at_tip(well, y).state
 
-    @abc.abstractmethod
     def pull(self, y: Real) -> tuple[Real, Real]:
         """`V'` in N, and `dz/dp`."""
+        wiggle, stretch, _ = self.at_tip(jnp.zeros_like(y), y)
+        return wiggle, stretch
 
     def stretch(self, y: Real) -> Real:
         """`dz/dy` in m."""
         return self.eps * self.pull(y)[1]
 
-    def __call__(self, t: Real, well: Real, y: Real) -> Real:
-        wiggle, _ = self.pull(y)
-        return self.load(t) - self.support.force(self.state(well, y)) - wiggle
+    def driven(self, t: Real, well: Real, y: Real) -> Driven:
+        """The force, and what it is made of."""
+        at = self.at_tip(well, y)
+        force = self.load(t) - self.support.force(at.state) - at.wiggle
+        return Driven(force, at.wiggle, self.eps * at.stretch)
 
-    def with_slope(self, t: Real, well: Real, y: Real) -> tuple[Real, Real]:
-        """f and `f_z`."""
+    def with_slope(self, t: Real, well: Real, y: Real) -> tuple[Driven, Real]:
+        """f and what it is made of, and `f_z`."""
+
+        def along(s: Real) -> tuple[Real, Driven]:
+            driven = self.driven(t, well, s)
+            return driven.force, driven
+
         one = jnp.ones_like(y)
-        force, by_tip = jax.jvp(lambda s: self(t, well, s), (y,), (one,))
-        return force, by_tip / self.stretch(y)
+        _, by_tip, driven = jax.jvp(along, (y,), (one,), has_aux=True)
+        return driven, by_tip / driven.stretch
 
 
 class Force(AbstractForce):
@@ -99,25 +129,30 @@ class Force(AbstractForce):
     def tip(self, z: Real) -> tuple[Real, Real]:
         return self.potential.tip(z, self.eps)
 
-    def state(self, well: Real, y: Real) -> Real:
-        return self.eps * (well + y) + self.potential.offset(y, self.eps)
-
-    def pull(self, y: Real) -> tuple[Real, Real]:
-        return self.potential.tip_force(y, self.eps)
+    def at_tip(self, well: Real, y: Real) -> AtTip:
+        wiggle, stretch, offset = self.potential.at_tip(y, self.eps)
+        return AtTip(wiggle, stretch, self.eps * (well + y) + offset)
 
 
 def _sample(force: AbstractForce, t: Real, z: Real) -> CurveSamples:
     well, inside = force.tip(z)
 
-    def along(y: Array) -> tuple[Array, Array]:
-        value, slope = force.with_slope(t, well, y)
-        return slope, value
+    def along(y: Array) -> tuple[Array, tuple[Driven, Array]]:
+        driven, slope = force.with_slope(t, well, y)
+        return slope, (driven, slope)
 
     one = jnp.ones_like(inside)
-    slope, by_tip, value = jax.jvp(along, (inside,), (one,), has_aux=True)
-    bend = by_tip / force.stretch(inside)
-    wiggle, _ = force.pull(inside)
-    return CurveSamples(well, inside, value, slope, bend, force.load(t), wiggle)
+    _, by_tip, (driven, slope) = jax.jvp(along, (inside,), (one,), has_aux=True)
+    return CurveSamples(
+        well=well,
+        inside=inside,
+        force=driven.force,
+        slope=slope,
+        bend=by_tip / driven.stretch,
+        load=force.load(t),
+        wiggle=driven.wiggle,
+        stretch=driven.stretch,
+    )
 
 
 def _hermite(
@@ -138,8 +173,8 @@ def _along(force: AbstractForce, viscosity, ends, first, last):
     def node(s: Array) -> tuple[Array, Array, Array]:
         rise, speed = _hermite(s, chord, first, last)
         y = left.inside + rise
-        found = force(t0 + s * step, left.well, y)
-        defect = viscosity * force.stretch(y) * speed / step - found
+        found, _, stretch = force.driven(t0 + s * step, left.well, y)
+        defect = viscosity * stretch * speed / step - found
         return found, defect**2, y
 
     found, defect, y = jax.vmap(node)(jnp.asarray(THREE_NODES))
@@ -153,8 +188,8 @@ def _interval(force: AbstractForce, viscosity: Real, ends) -> Intervals:
     chord = (right.well - left.well) + (right.inside - left.inside)
     stiffness = jnp.maximum(jnp.abs(left.slope), jnp.abs(right.slope))
     stiff = stiffness * step > SETTINGS.stiff * viscosity
-    first = step * left.force / (viscosity * force.stretch(left.inside))
-    last = step * right.force / (viscosity * force.stretch(right.inside))
+    first = step * left.force / (viscosity * left.stretch)
+    last = step * right.force / (viscosity * right.stretch)
     bent, bent_residual, y_bent = _along(force, viscosity, ends, first, last)
     flat, flat_residual, y_flat = _along(force, viscosity, ends, chord, chord)
     y = jnp.where(stiff, y_flat, y_bent)
@@ -165,7 +200,9 @@ def _interval(force: AbstractForce, viscosity: Real, ends) -> Intervals:
     rest = jnp.where(stiff, _rest_residual(force, viscosity, ends), jnp.inf)
     residual = jnp.minimum(jnp.minimum(bent_residual, flat_residual), rest)
     doubt = jnp.where(stiff, 0.0, 0.25 * jnp.abs(bent - flat))
-    return Intervals(jnp.where(stiff, flat, bent), doubt, middle, slope, residual)
+    return Intervals(
+        jnp.where(stiff, flat, bent), doubt, middle.force, slope, residual
+    )
 
 
 def _rest_residual(force: AbstractForce, viscosity: Real, ends) -> Real:
@@ -178,7 +215,7 @@ def _rest_residual(force: AbstractForce, viscosity: Real, ends) -> Real:
     return 0.25 * (t1 - t0) * total / viscosity
 
 
-@eqx.filter_jit
+@Program
 def _chunk(force: AbstractForce, viscosity: Real, ts, z) -> tuple[CurveSamples, Intervals]:
     samples = jax.vmap(lambda t, s: _sample(force, t, s))(ts, z)
     left = jax.tree_util.tree_map(lambda v: v[:-1], samples)

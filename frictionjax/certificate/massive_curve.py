@@ -16,6 +16,7 @@ from .curve import THREE_NODES, THREE_WEIGHTS, Force, every_second, force_of
 from .massive_steps import MassiveEquation
 from .sample_gaps import SampleGaps
 from .settings import SETTINGS
+from .tabulated_force import tabulated_force
 from .shadow import Shadow, shadow
 from .transits import CurveFolds, along, folds_of, transits
 from .verdicts import Certificate, CertificateStatus
@@ -61,7 +62,7 @@ def massive_certificate(
     velocity: np.ndarray,
 ) -> Certificate:
     """Of finite samples; `mass` in kg, `viscosity` is `eps^gamma`, `scale` in J."""
-    force = force_of(scene, jnp.asarray(eps))
+    force = tabulated_force(force_of(scene, jnp.asarray(eps)), ts)
     equation = MassiveEquation(force, jnp.asarray(mass), jnp.asarray(viscosity))
     well, inside, stretch = in_chunks(_tips, SETTINGS.steps, (force,), (z,))
     speed = velocity / eps

@@ -76,12 +76,12 @@ class _Rates(NamedTuple):
 def _rates(equation: MassiveEquation, well: Real, t: Array, y: Array, u: Array) -> _Rates:
     force, eps = equation.force, equation.force.eps
 
-    def pull(y: Array, t: Array) -> tuple[Array, Array]:
-        wiggle, stretch = force.potential.tip_force(y, eps)
-        return force.load(t) - force.support.force(force.state(well, y)) - wiggle, stretch
-
     def at(t: Array, y: Array) -> tuple:
-        return jax.jvp(lambda s: pull(s, t), (y,), (jnp.ones_like(y),))
+        def pull(s: Array) -> tuple[Array, Array]:
+            driven = force.driven(t, well, s)
+            return driven.force, driven.stretch / eps
+
+        return jax.jvp(pull, (y,), (jnp.ones_like(y),))
 
     (value, stretch), (slope, bend) = jax.vmap(at)(t, y)
     heavy = equation.mass * eps

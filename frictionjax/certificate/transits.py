@@ -2,12 +2,12 @@
 
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
+from .._compile import Program, once_a_scene
 from ..numerics import Extrema, periodic_extrema, rows_of
 from .curve import CurveSamples, Force, Intervals
 from .settings import SETTINGS
@@ -51,7 +51,7 @@ def over_windows(operation: np.ufunc, values: np.ndarray, first, last) -> np.nda
     return operation.reduceat(np.append(values, values[-1]), pairs)[::2]
 
 
-@eqx.filter_jit
+@once_a_scene
 def _extrema(force: Force) -> Extrema:
     def wiggle(y: Array) -> Array:
         return force.potential.tip_force(y, force.eps)[0]
@@ -100,7 +100,7 @@ def _pull(force: Force, well: np.ndarray, place: float) -> tuple[np.ndarray, np.
     return pull, stiffness
 
 
-@eqx.filter_jit
+@Program
 def _pulls(force: Force, well, place):
     z = jax.vmap(lambda n: force.state(n, place))(well)
     return jax.vmap(force.support.force)(z), jax.vmap(force.support.stiffness_at)(z)

@@ -1,0 +1,56 @@
+"""A force in tables, whose programs are there, where its parts say the same."""
+
+import jax
+import numpy as np
+from jaxtyping import Array, Float
+
+from .._compile import Interpreted, in_chunks
+from ..loads import AbstractPull
+from ..model import tabulated_potentials
+from ..tables import load_table
+from .curve import AbstractForce, Force
+from .settings import SETTINGS
+
+_GOLDEN = 0.5 * (5**0.5 - 1)  # of a period: places so far apart fill it evenly
+
+
+def tabulated_force(force: Force, ts: Float[np.ndarray, " n"]) -> Force:
+    """The force in tables, so that no scene compiles anything; else itself.
+
+    A certificate takes nobody's word: parts are asked themselves, uncompiled, at places all
+    over the period and at the times `ts` in s. Where a table says anything else than they
+    do it is not used.
+    """
+    potential, _ = tabulated_potentials(force.potential, float(force.eps))
+    load = load_table(force.load)
+    if potential is force.potential and load is force.load:
+        return force
+    tables = Force(potential=potential, support=force.support, load=load, eps=force.eps)
+    return tables if _say_the_same(force, tables, ts) else force
+
+
+@Interpreted
+def _at_places(force: AbstractForce, y: Array) -> tuple[Array, Array, Array]:
+    """`V'` in N, dz/dp and z/eps of tips at y in the well 0, (n,)."""
+    pull, stretch = jax.vmap(force.pull)(y)
+    return pull, stretch, jax.vmap(lambda s: force.state(0.0, s))(y) / force.eps
+
+
+@Interpreted
+def _at_times(load: AbstractPull, ts: Array) -> tuple[Array]:
+    return (jax.vmap(load)(ts),)
+
+
+def _say_the_same(force: Force, tables: Force, ts: np.ndarray) -> bool:
+    y = np.mod(_GOLDEN * np.arange(SETTINGS.asked), 1.0)
+    of_places = zip(_at_places(force, y), _at_places(tables, y), strict=True)
+    of_times = (
+        in_chunks(_at_times, SETTINGS.chunk, (load,), (ts,))[0]
+        for load in (force.load, tables.load)
+    )
+    return all(_are_near(*pair) for pair in (*of_places, tuple(of_times)))
+
+
+def _are_near(one: np.ndarray, other: np.ndarray) -> bool:
+    largest = max(float(np.max(np.abs(one))), 1e-300)
+    return bool(np.max(np.abs(one - other)) <= SETTINGS.same * largest)
