@@ -53,6 +53,15 @@ FLOORS = {
         {"engine_solutions"},
         {"trajectory"},
     ],
+    "certificate": [
+        {"settings", "forces"},
+        {"curve", "verdicts", "sample_gaps"},
+        {"transits", "tube", "critical_places", "massive_steps"},
+        {"plain_curve", "massive_course"},
+        {"array_curves", "bent_root", "shadow"},
+        {"turning_curve", "massive_curve"},
+        {"certification"},
+    ],
     "design": [
         {"common"},
         {"bristle", "surface"},

@@ -6,7 +6,8 @@ from .._checks import Real
 from ..loads import AbstractPull
 from ..supports import AbstractSupport
 from ..turning import BentForce
-from .curve import AbstractForce, AtTip, along_curve
+from .curve import along_curve
+from .forces import AbstractForce, AtTip
 from .plain_curve import CurveMeasures, residual_error, verdict
 from .tube import distance
 from .verdicts import Certificate

@@ -11,7 +11,7 @@ from .._checks import Real, require
 from .._compile import Program, in_chunks
 from ..model import BristlePotential
 from ..turning import SceneParts, compression
-from .curve import Force
+from .forces import Force
 from .settings import SETTINGS
 
 _Column = Float[np.ndarray, " k"]

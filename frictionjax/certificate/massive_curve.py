@@ -12,11 +12,11 @@ from .._checks import Real
 from .._compile import Program, in_chunks
 from ..model import Scene
 from ..numerics import cubic, cubic_slope
-from .curve import THREE_NODES, THREE_WEIGHTS, Force, every_second, force_of
+from .curve import THREE_NODES, THREE_WEIGHTS, every_second
+from .forces import Force, force_in_tables, force_of
 from .massive_steps import MassiveEquation
 from .sample_gaps import SampleGaps
 from .settings import SETTINGS
-from .tabulated_force import tabulated_force
 from .shadow import Shadow, shadow
 from .transits import CurveFolds, along, folds_of, transits
 from .verdicts import Certificate, CertificateStatus
@@ -62,7 +62,7 @@ def massive_certificate(
     velocity: np.ndarray,
 ) -> Certificate:
     """Of finite samples; `mass` in kg, `viscosity` is `eps^gamma`, `scale` in J."""
-    force = tabulated_force(force_of(scene, jnp.asarray(eps)), ts)
+    force = force_in_tables(force_of(scene, jnp.asarray(eps)), ts)
     equation = MassiveEquation(force, jnp.asarray(mass), jnp.asarray(viscosity))
     well, inside, stretch = in_chunks(_tips, SETTINGS.steps, (force,), (z,))
     speed = velocity / eps

@@ -15,7 +15,7 @@ from jaxtyping import Array
 
 from .._checks import Real
 from .._compile import Program, in_chunks
-from .curve import Force
+from .forces import Force
 from .settings import SETTINGS
 
 _ROOT = 6**0.5

@@ -6,9 +6,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..model import Scene
-from .curve import AbstractForce, Force, along_curve, every_second, force_of
+from .curve import along_curve, every_second
+from .forces import AbstractForce, Force, force_in_tables, force_of
 from .settings import SETTINGS
-from .tabulated_force import tabulated_force
 from .transits import folds_of, missing_forces, viscosity_ratio
 from .tube import distance
 from .verdicts import Certificate, CertificateStatus
@@ -27,7 +27,7 @@ def plain_certificate(
     scene: Scene, eps: float, viscosity: float, scale: float, ts, z
 ) -> Certificate:
     """Of finite samples; `viscosity` is `eps^gamma`, `scale` the energy of a slip in J."""
-    force = tabulated_force(force_of(scene, jnp.asarray(eps)), ts)
+    force = force_in_tables(force_of(scene, jnp.asarray(eps)), ts)
     return certificate_under(force, viscosity, scale, ts, z)
 
 

@@ -35,11 +35,6 @@ class Settings(NamedTuple):
     stiff: float = 1.5  # relaxation times an interval: beyond, velocities are not slopes
     chunk: int = 1 << 11  # samples a compiled call: any curve runs in the same program
 
-    # Tables in place of parts: at how many places of the period both are asked, and what may
-    # be between them, of the largest.
-    asked: int = 1024
-    same: float = 1e-10
-
     # Curves with mass; in periods, and speeds in units. Shooting from samples in place of
     # stages near them lost: curves shifted by eps/100 ran away at folds.
     steps: int = 2048  # of one compiled call

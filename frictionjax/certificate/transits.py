@@ -9,7 +9,8 @@ from jaxtyping import Array
 
 from .._compile import Program, once_a_scene
 from ..numerics import Extrema, periodic_extrema, rows_of
-from .curve import CurveSamples, Force, Intervals
+from .curve import CurveSamples, Intervals
+from .forces import Force
 from .settings import SETTINGS
 
 

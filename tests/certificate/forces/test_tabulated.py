@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.certificate import tabulated_force as asked
-from frictionjax.certificate.curve import force_of
+from frictionjax.certificate.forces import force_of
+from frictionjax.certificate.forces import tabulated as asked
 from frictionjax.loads import Sine
 
 EPS = 0.03
@@ -40,26 +40,33 @@ def force(profile="sine", bristle="slanted", load="sine"):
 
 @pytest.mark.parametrize(
     "parts",
-    [("sine", "slanted", "sine"), ("series", "vertical", "points")]
-    + [("spline", "angular", "ramp"), ("function", "slanted", "triangle")],
+    [
+        ("sine", "slanted", "sine"),
+        ("series", "vertical", "points"),
+        ("spline", "angular", "ramp"),
+        ("function", "slanted", "triangle"),
+    ],
 )
 def test_tables_are_used_and_say_the_same(parts):
     exact = force(*parts)
-    tables = asked.tabulated_force(exact, TS)
+    tables = asked.force_in_tables(exact, TS)
     assert tables is not exact
     one, other = (
         jax.vmap(lambda t, y, of=of: of.with_slope(t, 3.0, y))(TS, 0.5 * TS - 0.3)
         for of in (exact, tables)
     )
-    for a, b in zip(jax.tree_util.tree_leaves(one), jax.tree_util.tree_leaves(other)):
+    for a, b in zip(*map(jax.tree_util.tree_leaves, (one, other)), strict=True):
         assert np.max(np.abs(a - b)) <= 1e-9 * np.max(np.abs(a))
 
 
 def test_kinds_of_parts_share_one_program():
     shared = [("sine", "slanted", "sine"), ("series", "vertical", "triangle")]
     kinds = {
-        (jax.tree_util.tree_structure(of), *(x.shape for x in jax.tree_util.tree_leaves(of)))
-        for of in (asked.tabulated_force(force(*parts), TS) for parts in shared)
+        (
+            jax.tree_util.tree_structure(of),
+            *(x.shape for x in jax.tree_util.tree_leaves(of)),
+        )
+        for of in (asked.force_in_tables(force(*parts), TS) for parts in shared)
     }
     assert len(kinds) == 1
 
@@ -67,7 +74,7 @@ def test_kinds_of_parts_share_one_program():
 def test_a_table_of_another_load_is_not_used(monkeypatch):
     exact = force()
     monkeypatch.setattr(asked, "load_table", lambda load: Sine(0.7000001, 2.0))
-    assert asked.tabulated_force(exact, TS) is exact
+    assert asked.force_in_tables(exact, TS) is exact
 
 
 @pytest.mark.parametrize("wrong", ["profile", "bristle"])
@@ -83,17 +90,19 @@ def test_a_table_of_another_surface_is_not_used(monkeypatch, wrong):
         return right(fx.potential(**parts), highest)
 
     monkeypatch.setattr(asked, "tabulated_potentials", tables)
-    assert asked.tabulated_force(exact, TS) is exact
+    assert asked.force_in_tables(exact, TS) is exact
 
 
 def test_parts_that_no_table_holds_are_gone_by_themselves():
     given = fx.GivenPotential(lambda Y: 0.1 * jnp.sin(2 * jnp.pi * Y))
-    load = fx.loads.Custom(lambda t: 0.7 * jnp.sin(t**2), turning_points=[np.sqrt(np.pi / 2)])
+    load = fx.loads.Custom(
+        lambda t: 0.7 * jnp.sin(t**2), turning_points=[np.sqrt(np.pi / 2)]
+    )
     scene = fx.Scene(
         potential=given, support=fx.supports.Spring(1.0), load=load, duration=1.5
     )
     exact = force_of(scene, jnp.asarray(EPS))
-    assert asked.tabulated_force(exact, TS[TS < 1.5]) is exact
+    assert asked.force_in_tables(exact, TS[TS < 1.5]) is exact
 
 
 def test_certificates_are_those_by_the_parts(monkeypatch):
@@ -108,7 +117,8 @@ def test_certificates_are_those_by_the_parts(monkeypatch):
     monkeypatch.setattr(asked, "load_table", lambda load: Sine(1.0, 2.0))
     for curve, known in zip((z, moved), by_tables, strict=True):
         found = fx.certify(scene, EPS, 1.0, ts, curve)
-        assert found.status == known.status and found.slips == known.slips
+        assert found.status == known.status
+        assert found.slips == known.slips
         for name in ("distance", "missing_force", "viscosity", "residual"):
             assert getattr(found, name) == pytest.approx(
                 getattr(known, name), rel=1e-6, abs=1e-12

@@ -1,20 +1,21 @@
 """A force in tables, whose programs are there, where its parts say the same."""
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._compile import Interpreted, in_chunks
-from ..loads import AbstractPull
-from ..model import tabulated_potentials
-from ..tables import load_table
-from .curve import AbstractForce, Force
+from ..._compile import Interpreted, in_chunks
+from ...loads import AbstractPull
+from ...model import tabulated_potentials
+from ...tables import load_table
+from .force import AbstractForce, Force
 from .settings import SETTINGS
 
 _GOLDEN = 0.5 * (5**0.5 - 1)  # of a period: places so far apart fill it evenly
 
 
-def tabulated_force(force: Force, ts: Float[np.ndarray, " n"]) -> Force:
+def force_in_tables(force: Force, ts: Float[np.ndarray, " n"]) -> Force:
     """The force in tables, so that no scene compiles anything; else itself.
 
     A certificate takes nobody's word: parts are asked themselves, uncompiled, at places all
@@ -33,7 +34,7 @@ def tabulated_force(force: Force, ts: Float[np.ndarray, " n"]) -> Force:
 def _at_places(force: AbstractForce, y: Array) -> tuple[Array, Array, Array]:
     """`V'` in N, dz/dp and z/eps of tips at y in the well 0, (n,)."""
     pull, stretch = jax.vmap(force.pull)(y)
-    return pull, stretch, jax.vmap(lambda s: force.state(0.0, s))(y) / force.eps
+    return pull, stretch, jax.vmap(force.state)(jnp.zeros_like(y), y) / force.eps
 
 
 @Interpreted
@@ -42,7 +43,7 @@ def _at_times(load: AbstractPull, ts: Array) -> tuple[Array]:
 
 
 def _say_the_same(force: Force, tables: Force, ts: np.ndarray) -> bool:
-    y = np.mod(_GOLDEN * np.arange(SETTINGS.asked), 1.0)
+    y = np.mod(_GOLDEN * np.arange(SETTINGS.places), 1.0)
     of_places = zip(_at_places(force, y), _at_places(tables, y), strict=True)
     of_times = (
         in_chunks(_at_times, SETTINGS.chunk, (load,), (ts,))[0]
