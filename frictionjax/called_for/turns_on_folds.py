@@ -17,12 +17,14 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Array, Float
 
+from .._compile import Interpreted
 from ..effects import CompliantArray
+from ..loads import AbstractLoad
 from ..model import Scene, known_turning_points
+from ..supports import AbstractSupport
 from .setting import AWAY, Setting
 
 # Times of passage over times near a turn, between which the estimate may be exceeded: at
@@ -33,6 +35,27 @@ _DRAGGED = 0.4  # of friction: drag that is not small
 _MOVED = 2.0  # times a change of the force at a fold: as near to it
 _MANY = 32  # bristles of an array: of more, one is on a fold wherever they are
 _BESIDE = (np.linspace(0.0, 1.0, 801)[1:]) ** 2  # of the way to the next turn
+
+
+# In NumPy: through JAX each kind of load compiled dozens of single steps, half a second.
+@Interpreted
+def _loads(load: AbstractLoad, ts: Array) -> Array:
+    return jax.vmap(load)(ts)
+
+
+@Interpreted
+def _pace(load: AbstractLoad, t: Array) -> Array:
+    return jax.grad(load)(t)
+
+
+@Interpreted
+def _held(support: AbstractSupport, states: Array) -> Array:
+    return jax.vmap(support.force)(states)
+
+
+@Interpreted
+def _state_of(support: AbstractSupport, force: Array) -> Array:
+    return support.state_of(force)
 
 
 class _Turn(NamedTuple):
@@ -77,18 +100,18 @@ def _slid_up_to(at: Setting) -> Iterator[_Turn]:
     turns = known_turning_points(scene.load, duration, scene.turns)
     turns = turns[turns > 0]
     edges = np.concatenate([[0.0], turns, [duration]])
-    loads = np.asarray(jax.vmap(scene.load)(jnp.asarray(edges)))
+    loads = _loads(scene.load, edges)
     z = float(scene.z0)
     for i in range(1, turns.size + 1):
         sign = 1.0 if loads[i] > loads[i - 1] else -1.0
-        edge = float(scene.support.state_of(jnp.asarray(loads[i] - sign * _rho(at, sign))))
+        edge = float(_state_of(scene.support, loads[i] - sign * _rho(at, sign)))
         if sign * (edge - z) <= 0:  # the tip does not slide up to this turn
             continue
         z = edge
         ways = np.array([edges[i] - edges[i - 1], edges[i + 1] - edges[i]])
         beside = ways[:, None] * _BESIDE
-        away = jnp.asarray(edges[i] + np.array([[-1.0], [1.0]]) * beside)
-        falls = sign * (loads[i] - np.asarray(jax.vmap(jax.vmap(scene.load))(away)))
+        away = edges[i] + np.array([[-1.0], [1.0]]) * beside
+        falls = sign * (loads[i] - _loads(scene.load, away.ravel()).reshape(away.shape))
         drag = _dragged(at, edges[i], ways[0])
         yield _Turn(float(edges[i]), edge, sign, drag, beside, falls)
 
@@ -114,9 +137,8 @@ def _gaps(at: Setting, turn: _Turn, phase: float) -> tuple[float, float]:
     sign, edge = turn.sign, turn.edge
     top = float(at.data.phase[np.argmax(sign * at.data.force)]) - phase
     passed = np.floor(sign * (edge / at.eps - top))
-    here = float(at.scene.support.force(jnp.asarray(edge)))
     folds = at.eps * (top + sign * np.array([passed, passed + 1]))
-    last, following = (float(at.scene.support.force(jnp.asarray(z))) for z in folds)
+    here, last, following = _held(at.scene.support, np.append(edge, folds)).tolist()
     return sign * (here - last), sign * (following - here)
 
 
@@ -124,7 +146,7 @@ def _dragged(at: Setting, turn: float, way: float) -> float:
     """Viscous force in N on a slide, as long before a turn as a tip lags behind."""
     viscosity = at.eps**at.gamma
     lag = min(viscosity / at.softest, way)
-    pull = float(jax.grad(at.scene.load)(jnp.asarray(turn - lag)))
+    pull = float(_pace(at.scene.load, turn - lag))
     return viscosity * abs(pull) / at.softest
 
 
