@@ -152,7 +152,7 @@ def tolerance(
     `eps` (m): how the steady slides there spread too, with `gamma`, `rate` and `support` as
     in `steady_slide`, in the same samples: `slide_nominal`, `slide_mean`, `slide_std`,
     `slide_quantiles`, `slide_samples` of four forces in N, and the `status` of each sample.
-    About 20 ms a sample: 200 to 1000 do.
+    About 10 ms of a core a sample: 200 to 1000 do.
 
     `effects`: of the scene, as in `design_map`; all bristles of an array are alike in a
     sample.

@@ -119,7 +119,7 @@ def design_map(
     `eps` (m): the steady slides of all admissible designs there too, with `gamma`, `rate`
     and `support` as in `steady_slide`: `mean_plus, mean_minus, peak_plus, peak_minus` (N)
     and `status`, `NOT_TRIED` where the design is not admissible, or the bristle loses its
-    contact at this eps. About 20 ms a design: choose axes for it.
+    contact at this eps. About 10 ms of a core a design: choose axes for it.
 
     `effects`: of the scene. Of a `RigidArray` and a `CompliantArray` forces are those of
     all bristles, of tips at different phases where they stand upright and `profile` is

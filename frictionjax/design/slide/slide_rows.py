@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..._compile import ARRAYS, Program
+from ..._compile import ARRAYS, Program, crew
 from ...model import AbstractPotential, BristlePotential, tabulated_potentials
 from ...tables import SeriesBristle, SeriesProfile, Waves
 from .periodic_orbit import known_slide_forces, survey_ground
@@ -72,19 +72,29 @@ def _filled(terms: Any, count: int) -> Float[Array, " count"]:
 
 
 def find_slides(tables: Sequence[AbstractPotential], rows: SlideRows) -> KnownSlides:
-    """The slide of each row, about 4 ms each."""
+    """The slide of each row, about 4 ms of a core each, on all cores that work here."""
     found = np.full((len(Sides._fields) + 1, rows.eps.size), np.nan)
-    kinds: dict[Any, list[int]] = {}
-    for place, which in enumerate(rows.table):
-        kinds.setdefault(_kind(tables[which]), []).append(place)
-    for of_kind in kinds.values():
-        for at in range(0, len(of_kind), SETTINGS.rows):
-            some = of_kind[at : at + SETTINGS.rows]
-            filled = some + some[-1:] * (SETTINGS.rows - len(some))
-            numbers = [column[filled] for column in rows[1:]]
-            part = _sides(_stacked([tables[i] for i in rows.table[filled]]), *numbers)
-            found[:, some] = [np.asarray(column)[: len(some)] for column in part]
+
+    def find(some: list[int]) -> list[np.ndarray]:
+        filled = some + some[-1:] * (SETTINGS.rows - len(some))
+        numbers = [column[filled] for column in rows[1:]]
+        part = _sides(_stacked([tables[i] for i in rows.table[filled]]), *numbers)
+        return [np.asarray(column)[: len(some)] for column in part]
+
+    calls = _calls([_kind(tables[which]) for which in rows.table])
+    each = map if len(calls) == 1 else crew("slides").map
+    for some, part in zip(calls, each(find, calls), strict=True):
+        found[:, some] = part
     return KnownSlides(Sides(*found[:-1]), found[-1])
+
+
+def _calls(kinds: Sequence[tuple]) -> list[list[int]]:
+    """Rows that go together in a call, by their kinds."""
+    alike: dict[Any, list[int]] = {}
+    for row, kind in enumerate(kinds):
+        alike.setdefault(kind, []).append(row)
+    size = SETTINGS.rows
+    return [of[at : at + size] for of in alike.values() for at in range(0, len(of), size)]
 
 
 def find_both_ways(
