@@ -86,7 +86,7 @@ def slides_of_designs(
     numbers: SlideNumbers,
     effects: Sequence[AbstractEffect] = (),
 ) -> DesignSlides:
-    """The steady slides of all designs, about 10 ms of a core each; None: no design, no slide.
+    """The steady slides of all designs, 10 ms of a core each; None: no design, no slide.
 
     `effects`: those of their scene that `slide_numbers` takes.
     """
