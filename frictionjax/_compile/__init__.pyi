@@ -12,6 +12,8 @@ from .programs import strong_arrays as strong_arrays
 from .progress import progress_bar as progress_bar
 from .progress import waiting as waiting
 from .workers import WORKERS as WORKERS
+from .workers import cores as cores
 from .workers import crew as crew
 from .workers import in_background as in_background
 from .workers import interruptibly as interruptibly
+from .workers import side_by_side as side_by_side

@@ -7,17 +7,68 @@ side by side does so in threads. Nothing here is started on import.
 import contextlib
 import functools
 import threading
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
+import jax
+
+from .._checks import in_64_bits
+
 WORKERS = 2  # queues of lanes, or blocks of cells, at once: one core each
+_BESIDE = threading.local()  # `others`: whether others work beside a thread
+
+
+class _Crew(ThreadPoolExecutor):
+    """Threads whose numbers have as many bits as those of who asks for the work."""
+
+    def submit(self, fn: Callable, /, *args: Any, **kwargs: Any) -> Future:
+        return super().submit(_with_bits_of_here(fn), *args, **kwargs)
+
+
+def _with_bits_of_here(work: Callable) -> Callable:
+    """`work` for other threads: `with jax.enable_x64(True):` holds in one thread."""
+    wide = in_64_bits()
+
+    def run(*args: Any, **kwargs: Any) -> Any:
+        if in_64_bits() == wide:
+            return work(*args, **kwargs)
+        with jax.enable_x64(wide):
+            return work(*args, **kwargs)
+
+    return run
 
 
 @functools.cache
 def crew(work: str, size: int = WORKERS) -> ThreadPoolExecutor:
     """Threads that wait for one kind of work, kept: a pool for each sweep took 1 ms."""
-    return ThreadPoolExecutor(size, thread_name_prefix=f"frictionjax-{work}")
+    return _Crew(size, thread_name_prefix=f"frictionjax-{work}")
+
+
+def cores() -> int:
+    """How many the calling thread may work on: one where others work beside it."""
+    return 1 if getattr(_BESIDE, "others", False) else WORKERS
+
+
+def side_by_side(name: str, work: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
+    """`work` of each item, on a core each; of one alone, in this thread on all.
+
+    Where one raises, what has not begun is left out. `name`: of the threads.
+    """
+    items = list(items)
+    if len(items) == 1:
+        return [work(items[0])]
+
+    def alone(item: Any) -> Any:
+        _BESIDE.others = True
+        return work(item)
+
+    made = [crew(name).submit(alone, item) for item in items]
+    try:
+        return [one.result() for one in made]
+    finally:
+        for one in made:
+            one.cancel()
 
 
 def in_background(
@@ -32,7 +83,9 @@ def in_background(
         with contextlib.suppress(Exception):
             work()
 
-    thread = threading.Thread(target=quietly, name=f"frictionjax-{name}", daemon=daemon)
+    thread = threading.Thread(
+        target=_with_bits_of_here(quietly), name=f"frictionjax-{name}", daemon=daemon
+    )
     thread.start()
     return thread
 
@@ -50,7 +103,7 @@ def interruptibly(work: Callable[[], Any]) -> Any:
         except BaseException as error:  # raised again below, in the thread that waits
             result["error"] = error
 
-    thread = threading.Thread(target=run, daemon=True)
+    thread = threading.Thread(target=_with_bits_of_here(run), daemon=True)
     thread.start()
     thread.join()
     if "error" in result:

@@ -1,5 +1,6 @@
 """All cells eps x gamma of a scene, or of several, as a data set."""
 
+import threading
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -166,12 +167,14 @@ def _path_words(
 def _all_columns(
     family: SceneFamily, request: SweepRequest, progress: bool
 ) -> list[SceneColumns]:
+    counting = threading.Lock()
     with progress_bar("cells", progress) as bar:
 
         def report(share: float) -> None:
-            bar.update(min(share / len(family.scenes), bar.total - bar.n))
+            with counting:
+                bar.update(min(share / len(family.scenes), bar.total - bar.n))
 
-        return family.each(lambda scene: scene_columns(scene, request, report))
+        return family.side_by_side(lambda scene: scene_columns(scene, request, report))
 
 
 def _general(method: Any) -> Any:

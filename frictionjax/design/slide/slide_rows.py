@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..._compile import ARRAYS, Program, crew
+from ..._compile import ARRAYS, Program, side_by_side
 from ...model import AbstractPotential, BristlePotential, tabulated_potentials
 from ...tables import SeriesBristle, SeriesProfile, Waves
 from .periodic_orbit import known_slide_forces, survey_ground
@@ -82,8 +82,7 @@ def find_slides(tables: Sequence[AbstractPotential], rows: SlideRows) -> KnownSl
         return [np.asarray(column)[: len(some)] for column in part]
 
     calls = _calls([_kind(tables[which]) for which in rows.table])
-    each = map if len(calls) == 1 else crew("slides").map
-    for some, part in zip(calls, each(find, calls), strict=True):
+    for some, part in zip(calls, side_by_side("slides", find, calls), strict=True):
         found[:, some] = part
     return KnownSlides(Sides(*found[:-1]), found[-1])
 

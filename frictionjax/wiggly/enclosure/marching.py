@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..._compile import WORKERS, crew
+from ..._compile import cores, crew
 from ...model import TabulatedScene
 from ...numerics import concatenated, rows_of
 from ..equation import Status
@@ -194,7 +194,7 @@ class BracketContext(NamedTuple):
         some = np.flatnonzero(able)
         # Where a narrow loop ends little later than its longest lane, one thread is enough.
         soon = work[some].max(initial=0.0) + LANE_SETTINGS.handed_over
-        workers = 1 if work[some].sum() <= LANE_SETTINGS.narrow * soon else WORKERS
+        workers = 1 if work[some].sum() <= LANE_SETTINGS.narrow * soon else cores()
         ends = np.full((len(SegmentEnds._fields), segments.start.size), np.nan)
         # Overwritten by lanes that run.
         ends[SegmentEnds._fields.index("code")] = int(Status.MAX_STEPS)
