@@ -13,10 +13,12 @@ the least of a few runs, of
     scenes    sines by chance x 8 eps from 0.1 to 1e-3, values alone, a scene: the same
     gradient  of a steady slide and of a value of a trajectory, for the first time in a
               process: without a cache, then with every program kept
+    certificates  of curves of scenes of 18 kinds, each for the first time
     times     a `solve` with another number of times than before
 """
 
 import argparse
+import itertools
 import json
 import sys
 import tempfile
@@ -155,6 +157,31 @@ def gradient(fx, options):
     return figures
 
 
+def certificates(fx, options):
+    rng, ts = np.random.default_rng(5), np.linspace(0, 3, 2001)
+    profiles = [series(fx, count, rng) for count in (1, 3, 8)]
+    bristles = [
+        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5),
+        fx.bristles.AngularSpring(1.0, 1.4, 1.0, 0.5),
+    ]
+    loads = [fx.loads.Sine(1.2, 3.0), fx.loads.Triangle(1.1, 3.0)]
+    first, again = [], []
+    for parts in itertools.product(profiles, bristles, [fx.supports.Spring(1.0)], loads):
+        scene = fx.Scene(*parts, duration=3.0)
+        z = np.asarray(fx.solve(scene, 0.1, 1.0, ts).z)
+        for taken in (first, again):
+            begin = time.process_time()
+            fx.certify(scene, 0.1, 1.0, ts, z)
+            taken.append(time.process_time() - begin)
+    return {
+        "the first certificate, s": first[0],
+        "a certificate of a kind never seen, median, s": np.median(first[1:]),
+        "the longest of these, s": max(first[1:]),
+        "a certificate again, ms": 1e3 * np.median(again),
+    }
+
+
 def times(fx, options):
     scene = scene_of(fx, fx.profiles.Sine(0.1))
     fx.solve(scene, 0.02, 1.0, np.linspace(0, 3, 101))
@@ -166,7 +193,8 @@ def times(fx, options):
     return {"a solve with another number of times, s": max(taken)}
 
 
-PARTS = {f.__name__: f for f in (solve, slide, step, rows, scenes, gradient, times)}
+_ALL = solve, slide, step, rows, scenes, gradient, certificates, times
+PARTS = {part.__name__: part for part in _ALL}
 
 
 def measured(checkout, parts, arguments):
