@@ -5,7 +5,8 @@
 CPU milliseconds of a `solve` at eps = 0.02, gamma = 1, with 101 times, of scenes whose
 numbers differ: never seen before, and again, the least of ten each, the median of all.
 Then seconds of the steps of the latter. Then values alone of 8 eps from 0.1 to 1e-3 of many
-scenes, a scene: in one sweep, and in one each, the least of four.
+scenes, a scene: in one sweep, and in one each, the least of four, of CPU time and by the
+clock.
 """
 
 import argparse
@@ -55,9 +56,14 @@ def solve(one: fx.Scene) -> object:
 
 def cpu(call: Callable[[], object]) -> float:
     """CPU seconds of a call, those of all threads."""
-    begin = time.process_time()
+    return float(seconds(call)[0])
+
+
+def seconds(call: Callable[[], object]) -> np.ndarray:
+    """Of CPU time, and by the clock."""
+    begin = np.array([time.process_time(), time.perf_counter()])
     call()
-    return time.process_time() - begin
+    return np.array([time.process_time(), time.perf_counter()]) - begin
 
 
 @contextlib.contextmanager
@@ -108,10 +114,14 @@ def print_together(count: int, times: int) -> None:
     took = []
     for _ in range(4):  # what is compiled, in the background too, is there at last
         scenes, others = ([scene() for _ in range(count)] for _ in range(2))
-        alone = sum(cpu(lambda one=one: sweep(one)) for one in others)
-        took.append((cpu(lambda scenes=scenes: sweep(scenes)), alone))
-    together, alone = 1e3 * np.min(took, axis=0) / count
-    print(f"\ntogether: {together:.1f} ms a scene, alone: {alone:.1f} ms")
+        together = seconds(lambda scenes=scenes: sweep(scenes))
+        alone = seconds(lambda others=others: [sweep(one) for one in others])
+        took.append([together, alone])
+    print("\n| ms a scene | CPU | clock |\n|---|---|---|")
+    for name, (by_cpu, by_clock) in zip(
+        ("in one sweep", "one each"), 1e3 * np.min(took, axis=0) / count, strict=True
+    ):
+        print(f"| {name} | {by_cpu:.1f} | {by_clock:.1f} |")
 
 
 if __name__ == "__main__":

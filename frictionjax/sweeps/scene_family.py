@@ -40,7 +40,7 @@ class SceneFamily(NamedTuple):
 
     def side_by_side(self, work: Callable[[Scene], Any]) -> list[Any]:
         """The same on a core each. (Planning is half of a small scene: on both cores one
-        after the other they took 1.3 times as long.)"""
+        after the other they took 1.2 times as long.)"""
         numbers = range(len(self.scenes))
         return side_by_side("scenes", lambda number: self._named(work, number), numbers)
 

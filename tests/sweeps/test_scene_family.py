@@ -57,6 +57,16 @@ def test_each_is_what_it_is_alone(data, label):
         np.testing.assert_array_equal(own.attrs[name], alone.attrs[name], err_msg=name)
 
 
+def test_lanes_of_two_queues_have_the_same_bits():
+    few = {label: SCENES[label] for label in ("sine", "series")}
+    eps = [0.05, 0.01, 0.002, 0.0005]
+    both = fx.sweep(few, eps, GAMMA, TIMES)
+    for label, scene in few.items():
+        alone = fx.sweep(scene, eps, GAMMA, TIMES)
+        for name in ("z", "dissipation", "sup_error", "steps"):
+            np.testing.assert_array_equal(both[name].sel(scene=label), alone[name])
+
+
 def test_lists_are_numbered_and_files_keep_all(data, tmp_path):
     listed = fx.sweep(list(SCENES.values()), EPS, GAMMA, TIMES)
     assert listed.scene.values.tolist() == [0, 1, 2]
