@@ -143,7 +143,8 @@ def march(
     """Run all jobs side by side; each lane takes the next job when it is through.
 
     NumPy arrays in and out. What a lane finds does not depend on the others, but for its
-    last bits. `work` (jobs,): about in proportion to the steps of each; None: to its wells.
+    last bits: tips are counted from the nearest well anew whenever some lane is through.
+    `work` (jobs,): about in proportion to the steps of each; None: to its wells.
     """
     tables = [
         np.stack(np.broadcast_arrays(*(np.asarray(c, float) for c in t)), -1)
