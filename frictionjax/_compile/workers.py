@@ -61,7 +61,10 @@ def side_by_side(name: str, work: Callable[[Any], Any], items: Iterable[Any]) ->
 
     def alone(item: Any) -> Any:
         _BESIDE.others = True
-        return work(item)
+        try:
+            return work(item)
+        finally:
+            _BESIDE.others = False
 
     made = [crew(name).submit(alone, item) for item in items]
     try:

@@ -33,7 +33,9 @@ class Settings(NamedTuple):
 
     # Curves between samples.
     stiff: float = 1.5  # relaxation times an interval: beyond, velocities are not slopes
-    chunk: int = 1 << 11  # samples a compiled call: any curve runs in the same program
+    # Samples a compiled call: any curve runs in the same program. (2^14: 600 samples took
+    # four times as long.)
+    chunk: int = 1 << 11
 
     # Curves with mass; in periods, and speeds in units. Shooting from samples in place of
     # stages near them lost: curves shifted by eps/100 ran away at folds.

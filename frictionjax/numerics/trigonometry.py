@@ -39,7 +39,7 @@ def _horner(
     return total
 
 
-@jax.jit  # traced and lowered once, not at every use: a tenth of a first solve
+@jax.jit  # traced and lowered once, not at every use: up to a tenth of a first solve
 def _evaluate(
     y: Float[Array, "*shape"],
 ) -> tuple[Float[Array, "*shape"], Float[Array, "*shape"]]:

@@ -38,18 +38,18 @@ def _at_places(force: AbstractForce, y: Array) -> tuple[Array, Array, Array]:
 
 
 @Interpreted
-def _at_times(load: AbstractPull, ts: Array) -> tuple[Array]:
-    return (jax.vmap(load)(ts),)
+def _at_times(load: AbstractPull, ts: Array) -> Array:
+    return jax.vmap(load)(ts)
 
 
 def _say_the_same(force: Force, tables: Force, ts: np.ndarray) -> bool:
     y = np.mod(_GOLDEN * np.arange(SETTINGS.places), 1.0)
     of_places = zip(_at_places(force, y), _at_places(tables, y), strict=True)
-    of_times = (
-        in_chunks(_at_times, SETTINGS.chunk, (load,), (ts,))[0]
+    of_times = [
+        in_chunks(_at_times, SETTINGS.chunk, (load,), (ts,))
         for load in (force.load, tables.load)
-    )
-    return all(_are_near(*pair) for pair in (*of_places, tuple(of_times)))
+    ]
+    return all(_are_near(*pair) for pair in (*of_places, of_times))
 
 
 def _are_near(one: np.ndarray, other: np.ndarray) -> bool:

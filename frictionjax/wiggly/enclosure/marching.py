@@ -221,8 +221,8 @@ class BracketContext(NamedTuple):
     ):
         """Segments of each queue and what is found there; this thread runs the first.
 
-        And the others after it where it has a core alone: queues are the same either way,
-        as values are to the last bit those of the queue that a lane is in.
+        And the others after it, where it has one core: queues are the same either way, as
+        the last bits of what a lane finds depend on the queue that it is in.
         """
 
         def run(chosen: np.ndarray) -> tuple[np.ndarray, SegmentEnds]:

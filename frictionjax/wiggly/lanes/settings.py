@@ -37,7 +37,8 @@ class Settings(NamedTuple):
     chunk: int = 16
     # Share of the lanes under way that idle until the next look. (After 16 steps always:
     # loops of a few lanes with 201 times take twice as long, of 64 lanes a fifth longer. A
-    # quarter: loops of eight small cells 1.2 times as long; a thirtieth: of many, 1.03.)
+    # quarter: as counted, loops of eight small cells 1.18 times as long; a thirtieth: loops
+    # of many cells 1.03 times.)
     idle: float = 0.06
 
     # Folds (`fold_steps.py`).
