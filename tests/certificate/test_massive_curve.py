@@ -7,6 +7,7 @@ import pytest
 from tips_with_mass import by_scipy, mass_for, massive_scene
 
 import frictionjax as fx
+from frictionjax.certificate import massive_curve
 
 EPS, GAMMA = 0.05, 1.0
 TS = np.linspace(0.0, 1.5, 2501)
@@ -40,6 +41,26 @@ def test_solutions_of_the_library_are_accepted(beta):
     noisy = certified(beta, z + 0.01 * EPS * noise, velocity)
     assert noisy.ok
     assert 0.008 < noisy.distance <= 0.012
+
+
+def test_tables_tell_what_the_parts_tell(monkeypatch):
+    z, velocity = by_library(1.0)
+    curve = z + 0.003 * EPS, velocity
+    by_tables = certified(1.0, *curve)
+    used = []
+    exact = massive_curve.force_in_tables
+
+    def by_parts(force, ts):
+        used.append(exact(force, ts) is not force)
+        return force
+
+    monkeypatch.setattr(massive_curve, "force_in_tables", by_parts)
+    found = certified(1.0, *curve)
+    assert used == [True]
+    assert found.status == by_tables.status
+    for name in ("distance", "viscosity", "residual"):
+        known = getattr(by_tables, name)
+        assert getattr(found, name) == pytest.approx(known, rel=1e-5, abs=1e-11), name
 
 
 @pytest.mark.parametrize("beta", [1.0, 50.0])
