@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..._compile import WORKERS, cores, crew
+from ..._compile import cores, crew
 from ...model import TabulatedScene
 from ...numerics import concatenated, rows_of
 from ..equation import Status
@@ -194,7 +194,7 @@ class BracketContext(NamedTuple):
         some = np.flatnonzero(able)
         # Where a narrow loop ends little later than its longest lane, one thread is enough.
         soon = work[some].max(initial=0.0) + LANE_SETTINGS.handed_over
-        workers = 1 if work[some].sum() <= LANE_SETTINGS.narrow * soon else WORKERS
+        workers = 1 if work[some].sum() <= LANE_SETTINGS.narrow * soon else cores()
         ends = np.full((len(SegmentEnds._fields), segments.start.size), np.nan)
         # Overwritten by lanes that run.
         ends[SegmentEnds._fields.index("code")] = int(Status.MAX_STEPS)
@@ -219,20 +219,14 @@ class BracketContext(NamedTuple):
     def _through(
         self, cells: LaneCells, jobs: Lanes, segments: Segments, queues: list, work
     ):
-        """Segments of each queue and what is found there; this thread runs the first.
-
-        And the others after it, where it has one core: queues are the same either way, as
-        the last bits of what a lane finds depend on the queue that it is in.
-        """
+        """Segments of each queue and what is found there; this thread runs the first."""
 
         def run(chosen: np.ndarray) -> tuple[np.ndarray, SegmentEnds]:
             return self._queue(cells, jobs, segments, chosen, work)
 
-        queues = [queue for queue in queues if queue.size]
-        own = 1 if cores() > 1 else len(queues)
-        beside = [crew("lanes").submit(run, queue) for queue in queues[own:]]
-        done = [run(queue) for queue in queues[:own]]
-        return done + [part.result() for part in beside]
+        own, *others = [queue for queue in queues if queue.size]
+        beside = [crew("lanes").submit(run, queue) for queue in others]
+        return [run(own), *(part.result() for part in beside)]
 
     def _queue(self, cells, jobs, segments, chosen: np.ndarray, work: np.ndarray) -> tuple:
         """Segments of chosen jobs, and what is found there."""

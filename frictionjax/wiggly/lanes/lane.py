@@ -70,11 +70,12 @@ class LaneScene(eqx.Module):
 class LaneTask(NamedTuple):
     """What stays the same on a leg; `stop` in s since `origin`, `budget` in steps.
 
-    `level`, `rate`: of the straight part of the load, N where the leg starts and N/s.
+    `past_leg`: where the legs of its job end. `level`, `rate`: of the straight part of the
+    load, N where the leg starts and N/s.
     """
 
-    job: Int[Array, ""]
     leg: Int[Array, ""]
+    past_leg: Int[Array, ""]
     cell: LaneCells
     origin: Real
     guide: Guide
@@ -127,7 +128,7 @@ def keep(condition: Bool[Array, "*lanes"], new: Any, old: Any) -> Any:
     return jax.tree_util.tree_map(lambda a, b: jnp.where(condition, a, b), new, old)
 
 
-def _is_live(task: LaneTask, motion: LaneState) -> Bool[Array, ""]:
+def is_live(task: LaneTask, motion: LaneState) -> Bool[Array, "*lanes"]:
     """Whether neither the stop nor a failure has made an end of it."""
     return (motion.time < task.stop) & (motion.code == 0)
 
@@ -143,7 +144,7 @@ def _try_step(
     full = jnp.where(waits, pause, full)
     left = task.stop - motion.time - motion.unseen
     cut = full >= left
-    step = jnp.where(_is_live(task, motion), jnp.where(cut, left, full), 1.0)
+    step = jnp.where(is_live(task, motion), jnp.where(cut, left, full), 1.0)
     step = materialise(step, task.cell.eps)
     point, width = motion.point, scene.rho_plus - scene.rho_minus
     place = foothold(step, point, task.origin + motion.time, _drag(task, point), width)
@@ -181,7 +182,7 @@ def step_of_lane(
     """
     field = field_of_lane(scene, task)
     after, step, judged = _try_step(scene, tableau, task, motion)
-    live = _is_live(task, motion)
+    live = is_live(task, motion)
     accepted = judged.accepted & live
     if summed:
         tip = jnp.where(accepted, after.tip, motion.tip)

@@ -142,8 +142,8 @@ def march(
 ) -> SegmentEnds:
     """Run all jobs side by side; each lane takes the next job when it is through.
 
-    NumPy arrays in and out. What a lane finds does not depend on the others, but for its
-    last bits: tips are counted from the nearest well anew whenever some lane is through.
+    NumPy arrays in and out. What a lane finds does not depend on the others, to the last
+    bit.
     `work` (jobs,): about in proportion to the steps of each; None: to its wells.
     """
     tables = [

@@ -16,6 +16,7 @@ from .lane import (
     LaneState,
     LaneTask,
     field_of_lane,
+    is_live,
     keep,
     step_of_lane,
 )
@@ -99,20 +100,23 @@ class Tables(NamedTuple):
 
 
 class _Work(NamedTuple):
-    """All lanes under way, the next job of the queue, and what has been found."""
+    """All lanes under way, the next job of the queue, and what has been found.
+
+    `found` has a row more than there are legs: for lanes before their first.
+    """
 
     task: LaneTask
     motion: LaneState
     next_job: Int[Array, ""]
-    found: Float[Array, "legs 14"]
+    found: Float[Array, "rows 14"]
 
 
-def _idle(tables: Tables, width: int) -> tuple[LaneTask, LaneState]:
+def _waiting(width: int, legs: int) -> tuple[LaneTask, LaneState]:
+    """Lanes before their first leg."""
     zero, one = jnp.zeros(width), jnp.ones(width)
-    none = jnp.full(width, tables.jobs.shape[0], dtype=int)
-    past = jnp.full(width, tables.legs.shape[0], dtype=int)
+    none = jnp.full(width, legs, dtype=int)
     cells, guide = LaneCells(*[one] * len(LaneCells._fields)), Guide(*[one] * 7)
-    task = LaneTask(none, past, cells, zero, guide, zero, zero, zero, level=zero, rate=zero)
+    task = LaneTask(none, none, cells, zero, guide, zero, zero, zero, level=zero, rate=zero)
     motion = LaneState(
         tip=zero,
         time=zero,
@@ -128,132 +132,121 @@ def _idle(tables: Tables, width: int) -> tuple[LaneTask, LaneState]:
     return task, motion
 
 
-def _report(task: LaneTask, motion: LaneState) -> Float[Array, "width 14"]:
-    """Rows of `SegmentEnds` for all lanes; NaN where a lane has failed."""
+def _report(task: LaneTask, motion: LaneState) -> Float[Array, "1 14"]:
+    """The row of `SegmentEnds` of one lane; NaN where it has failed."""
     blank = jnp.where(motion.code == 0, 0.0, jnp.nan)
     speed = task.cell.eps * motion.point.stretch * motion.point.velocity
     values = (task.well, motion.tip, speed, *motion.sums, *motion.extent)
     counts = (motion.steps, motion.rejected, motion.code)
-    return jnp.stack([*(v + blank for v in values), *counts], axis=-1)
+    return jnp.stack([*(v + blank for v in values), *counts])[None]
 
 
-def _refill(
-    tables: Tables, work: _Work
-) -> tuple[LaneTask, LaneState, Int[Array, ""], Bool[Array, " width"]]:
-    """Give lanes that are through their leg the next one, or the next job; and which."""
-    task, motion = work.task, work.motion
-    jobs, legs, cells, count = tables.jobs, tables.legs, tables.cells, tables.waiting
-    idle = task.job >= count
-    done = idle | (motion.time >= task.stop) | (motion.code != 0)
-    past_leg = jobs[jnp.minimum(task.job, jobs.shape[0] - 1), 5]
-    same_job = done & ~idle & (task.leg + 1 < past_leg)
-    wants = done & ~same_job
-    turn = work.next_job + jnp.cumsum(wants) - 1
-    job = jnp.where(wants, jnp.minimum(turn, count), task.job)
-    fresh = wants & (job < count)
-    next_job = jnp.minimum(work.next_job + jnp.sum(wants), count)
-    cell, origin, well, tip, first_leg, _ = jobs[jnp.minimum(job, jobs.shape[0] - 1)].T
-    cell_row = LaneCells(*cells[cell.astype(int)].T)
-    leg = jnp.where(same_job, task.leg + 1, task.leg)
-    leg = jnp.where(fresh, first_leg.astype(int), leg)
-    leg = jnp.where(wants & ~fresh, legs.shape[0], leg)
-    own = Segments(*legs[jnp.minimum(leg, legs.shape[0] - 1)].T)
-    change = same_job | fresh
-    origin = jnp.where(fresh, origin, task.origin)
+def _row(table: Array, index: Int[Array, ""]) -> Array:
+    """One row; an index that cannot be negative needs no look whether it is."""
+    return jax.lax.dynamic_index_in_dim(table, index.astype(jnp.uint32), keepdims=False)
+
+
+def _with_row(table: Array, index: Int[Array, ""], row: Array) -> Array:
+    return jax.lax.dynamic_update_index_in_dim(table, row, index.astype(jnp.uint32), 0)
+
+
+def _next_leg(
+    tables: Tables, next_job: Int[Array, ""], task: LaneTask, motion: LaneState
+) -> tuple[LaneTask, LaneState, Bool[Array, ""]]:
+    """What one lane is to do next, and whether it takes the next job for that.
+
+    A lane for which there is nothing left has a leg beyond all rows.
+    """
+    legs, last_job = tables.legs.shape[0], tables.jobs.shape[0] - 1
+    same = task.leg + 1 < task.past_leg
+    fresh = ~same & (next_job < tables.waiting)
+    job = Lanes(*_row(tables.jobs, jnp.minimum(next_job, last_job)))
+    first, past = job.first_leg.astype(int), job.past_leg.astype(int)
+    leg = jnp.where(same, task.leg + 1, jnp.where(fresh, first, legs + 1))
+    own = Segments(*_row(tables.legs, jnp.minimum(leg, legs - 1)))
+    cell = LaneCells(*_row(tables.cells, job.cell.astype(int)))
+    origin = jnp.where(fresh, job.origin, task.origin)
     length = jnp.where(own.end > own.start, own.end - own.start, 1.0)
     own = own._replace(start=own.start - origin, end=own.end - origin)
-    guide = guide_of(own, length)
     # Positions are counted from the nearest well, so that `tip` keeps its digits.
-    tip = jnp.where(fresh, tip, motion.tip)
+    tip = jnp.where(fresh, job.tip, motion.tip)
     shift = jnp.where(jnp.isfinite(tip), jnp.round(tip), 0.0)
-    moved = LaneTask(
-        job=job,
+    following = LaneTask(
         leg=leg,
-        cell=keep(fresh, cell_row, task.cell),
+        past_leg=jnp.where(fresh, past, task.past_leg),
+        cell=keep(fresh, cell, task.cell),
         origin=origin,
-        guide=keep(change, guide, task.guide),
-        well=jnp.where(fresh, well, task.well) + shift,
-        budget=jnp.where(change, own.budget, task.budget),
-        level=jnp.where(change, own.level, task.level),
-        rate=jnp.where(change, own.rate, task.rate),
-        stop=jnp.where(change, own.end, jnp.where(wants, -1.0, task.stop)),
+        guide=guide_of(own, length),
+        well=jnp.where(fresh, job.well, task.well) + shift,
+        stop=jnp.where(leg <= legs, own.end, -1.0),
+        budget=own.budget,
+        level=own.level,
+        rate=own.rate,
     )
-    zero = jnp.zeros_like(tip)
-    empty = jnp.full_like(tip, jnp.inf)
-    nothing = Extent(-empty, empty, -empty, zero, zero)
-    time = jnp.where(fresh, 0.0, motion.time)
+    zero, empty = jnp.zeros_like(tip), jnp.full_like(tip, jnp.inf)
     set_off = motion._replace(
         tip=tip - shift,
-        time=time,
+        time=jnp.where(fresh, 0.0, motion.time),
         unseen=jnp.where(fresh, 0.0, motion.unseen),
         control=keep(fresh, ControlState(), motion.control),
-        sums=keep(change, Balance(zero, zero, zero), motion.sums),
-        extent=keep(change, nothing, motion.extent),
-        steps=jnp.where(change, 0.0, motion.steps),
-        rejected=jnp.where(change, 0.0, motion.rejected),
+        sums=Balance(zero, zero, zero),
+        extent=Extent(-empty, empty, -empty, zero, zero),
+        steps=zero,
+        rejected=zero,
         code=jnp.where(fresh, 0.0, motion.code),
     )
-    return moved, set_off, next_job, change
-
-
-def _written(
-    found: Float[Array, "legs 14"],
-    place: Int[Array, " width"],
-    through: Bool[Array, " width"],
-    rows: Array,
-) -> Float[Array, "legs 14"]:
-    """`found` with a row of each lane that is `through` at its place.
-
-    Row by row: XLA compiles a loop with a scatter as a list of kernels, which two threads
-    hand to each other at every look. (Steps took 1.3 times as long, and both cores.)
-    """
-    rank = jnp.cumsum(through)
-
-    def put(k: Array, found: Array) -> Array:
-        lane = jnp.sum(rank <= k)  # of the lanes that are through, number k
-        row = jax.lax.dynamic_slice_in_dim(rows, lane, 1)
-        return jax.lax.dynamic_update_slice_in_dim(found, row, place[lane], 0)
-
-    return jax.lax.fori_loop(0, rank[-1], put, found)
+    return following, set_off, fresh
 
 
 @Program
 def run_queue(
     scene: LaneScene, tableau: Tableau, summed: bool, width: int, tables: Tables
-) -> Float[Array, "legs 14"]:
+) -> Float[Array, "rows 14"]:
+    """Rows of `SegmentEnds` of all legs, and one more.
+
+    Lanes that are through with a leg are served one by one, with slices of a single row:
+    XLA compiles a loop with a scatter as a list of kernels, which two threads hand to each
+    other at every look. (Steps took 1.3 times as long, and both cores.)
+    """
     step = jax.vmap(lambda task, motion: step_of_lane(scene, tableau, summed, task, motion))
-    point = jax.vmap(lambda task, time, tip: field_of_lane(scene, task).point(time, tip))
+    legs = tables.legs.shape[0]
 
-    def under_way(task: LaneTask, motion: LaneState) -> Int[Array, ""]:
-        return jnp.sum((motion.time < task.stop) & (motion.code == 0))
-
-    def look(work: _Work) -> _Work:
-        task, motion, next_job, change = _refill(tables, work)
-        # From the right of a kink on which the last leg ended.
-        begin = point(task, motion.time, motion.tip)
-        motion = motion._replace(point=keep(change, begin, motion.point))
-        most = under_way(task, motion)
-
-        def goes(carry: tuple[Array, LaneState]) -> Bool[Array, ""]:
-            few_idle = under_way(task, carry[1]) > (1 - SETTINGS.idle) * most
-            return (carry[0] < SETTINGS.chunk) & few_idle
-
-        def stepped(carry: tuple[Array, LaneState]) -> tuple[Array, LaneState]:
-            return carry[0] + 1, step(task, carry[1])
-
-        motion = jax.lax.while_loop(goes, stepped, (jnp.asarray(0), motion))[1]
-        through = (motion.time >= task.stop) | (motion.code != 0)
-        through &= task.job < tables.waiting
-        found = _written(work.found, task.leg, through, _report(task, motion))
-        return _Work(task, motion, next_job, found)
+    def waits(task: LaneTask, motion: LaneState) -> Bool[Array, " width"]:
+        return (task.leg <= legs) & ~is_live(task, motion)
 
     def go_on(work: _Work) -> Bool[Array, ""]:
-        task, motion = work.task, work.motion
-        past_leg = tables.jobs[jnp.minimum(task.job, tables.jobs.shape[0] - 1), 5]
-        stands = (motion.time >= task.stop) | (motion.code != 0)
-        ended = (task.job >= tables.waiting) | (stands & (task.leg + 1 >= past_leg))
-        return (work.next_job < tables.waiting) | ~jnp.all(ended)
+        return jnp.any(work.task.leg <= legs)
 
-    found = jnp.full((tables.legs.shape[0], len(SegmentEnds._fields)), jnp.nan)
-    start = _Work(*_idle(tables, width), jnp.zeros((), dtype=int), found)
-    return jax.lax.while_loop(go_on, look, start).found
+    def serve(lane: Int[Array, ""], work: _Work) -> _Work:
+        both = work.task, work.motion
+        task, motion = jax.tree_util.tree_map(lambda column: _row(column, lane), both)
+        found = _with_row(work.found, task.leg, _report(task, motion))
+        task, motion, fresh = _next_leg(tables, work.next_job, task, motion)
+        # From the right of a kink on which the last leg ended.
+        begin = field_of_lane(scene, task).point(motion.time, motion.tip)
+        task, motion = jax.tree_util.tree_map(
+            lambda column, row: _with_row(column, lane, row),
+            both,
+            (task, motion._replace(point=begin)),
+        )
+        return _Work(task, motion, work.next_job + fresh, found)
+
+    def look(work: _Work) -> _Work:
+        rank = jnp.cumsum(waits(work.task, work.motion))
+        work = jax.lax.fori_loop(
+            0, rank[-1], lambda k, work: serve(jnp.sum(rank <= k), work), work
+        )
+        task = work.task
+        most = SETTINGS.idle * jnp.sum(task.leg <= legs)
+
+        def goes(motion: LaneState) -> Bool[Array, ""]:
+            return jnp.any(is_live(task, motion)) & (jnp.sum(waits(task, motion)) <= most)
+
+        motion = jax.lax.while_loop(goes, lambda motion: step(task, motion), work.motion)
+        return work._replace(motion=motion)
+
+    found = jnp.full((legs + 1, len(SegmentEnds._fields)), jnp.nan)
+    start = _Work(*_waiting(width, legs), jnp.zeros((), dtype=int), found)
+    return jax.lax.while_loop(
+        lambda work: jnp.any(work.task.leg <= legs), look, start
+    ).found
