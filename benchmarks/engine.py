@@ -14,6 +14,7 @@ the least of a few runs, of
     gradient  of a steady slide and of a value of a trajectory, for the first time in a
               process: without a cache, then with every program kept
     certificates  of curves of scenes of 18 kinds, each for the first time
+    others    a solver of diffrax, and a fit to a trace, of three scenes of other kinds
     times     a `solve` with another number of times than before
 """
 
@@ -182,6 +183,41 @@ def certificates(fx, options):
     }
 
 
+def others(fx, options):
+    two = series(fx, 2, np.random.default_rng(6))
+    kinds = [
+        (
+            fx.profiles.Sine(0.1),
+            fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5),
+            fx.loads.Sine(1.2, 3.0),
+        ),
+        (two, fx.bristles.AngularSpring(1.0, 1.5, 1.0, 0.5), fx.loads.Triangle(1.1, 3.0)),
+        (two, fx.bristles.VerticalSpring(1.0, 2.0, 1.0), fx.loads.Ramp(0.4, 0.0)),
+    ]
+    ts, figures = np.linspace(0.0, 3.0, 201), {}
+    scenes = [
+        fx.Scene(profile, bristle, fx.supports.Spring(1.0), load, 3.0)
+        for profile, bristle, load in kinds
+    ]
+    traces = [fx.simulate_trace(scene, 0.1, 1.0, ts, noise=0.001) for scene in scenes]
+
+    def fitted(index):
+        fx.fit_trace(traces[index], scenes[index], 0.1, harmonics=2, progress=False)
+
+    def solved(index):
+        fx.solve(scenes[index], 0.05, 1.0, ts, method="Kvaerno5")
+
+    for name, call in (("solve by Kvaerno5", solved), ("fit to a trace", fitted)):
+        taken = []
+        for index in range(len(scenes)):
+            begin = time.process_time()
+            call(index)
+            taken.append(time.process_time() - begin)
+        figures[f"{name}, the first, s"] = taken[0]
+        figures[f"{name}, of other kinds, the longest, s"] = max(taken[1:])
+    return figures
+
+
 def times(fx, options):
     scene = scene_of(fx, fx.profiles.Sine(0.1))
     fx.solve(scene, 0.02, 1.0, np.linspace(0, 3, 101))
@@ -193,7 +229,7 @@ def times(fx, options):
     return {"a solve with another number of times, s": max(taken)}
 
 
-_ALL = solve, slide, step, rows, scenes, gradient, certificates, times
+_ALL = solve, slide, step, rows, scenes, gradient, certificates, others, times
 PARTS = {part.__name__: part for part in _ALL}
 
 

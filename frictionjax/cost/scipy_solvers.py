@@ -13,7 +13,7 @@ from scipy import integrate as scipy_integrate
 
 from .._checks import Real
 from .._compile import Program
-from ..model import Scene, coefficients_jit
+from ..model import Scene, coefficients_jit, scene_of_tables
 from ..wiggly import Status, TipField, field_of
 from .settings import SETTINGS
 from .step_record import StepRecord
@@ -80,14 +80,15 @@ def run_scipy(
     against steps over wells: they are what happens. Ends after `seconds`, compilation
     apart, as TOO_SLOW. Steps are the accepted ones; see `told`.
     """
-    field = field_of(scene, jnp.asarray(eps), jnp.asarray(gamma))
+    tables = scene_of_tables(scene, eps)
+    field = field_of(tables, jnp.asarray(eps), jnp.asarray(gamma))
     solver_type = getattr(scipy_integrate, method)
     start = np.array([float(field.start(scene.z0)), 0.0])
     found = np.full((ts.size, 2), np.nan)
     found[ts <= 0.0] = start
     law = coefficients_jit(scene.potential)
     slip = eps * float(law.rho_plus - law.rho_minus)
-    edges = np.union1d(np.asarray(scene.turning_points()), [0.0, float(ts[-1])])
+    edges = np.union1d(np.asarray(tables.turning_points()), [0.0, float(ts[-1])])
     edges = edges[(edges >= 0) & (edges <= ts[-1])]
 
     def rates(t: float, y: np.ndarray) -> np.ndarray:
@@ -143,7 +144,8 @@ def told(run: Run, scene: Scene, eps: float, gamma: float, method: str) -> Run:
     assert run.record is not None
     tried, residual = run.record.tried(method), float("nan")
     if run.status == Status.OK:
-        field = field_of(scene, jnp.asarray(eps), jnp.asarray(gamma))
+        tables = scene_of_tables(scene, eps)
+        field = field_of(tables, jnp.asarray(eps), jnp.asarray(gamma))
         residual = run.record.residual(field)
     rejected = float(tried - run.record.accepted)
     return run._replace(

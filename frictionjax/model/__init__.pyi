@@ -26,6 +26,8 @@ from .strip import strips_at as strips_at
 from .summed_potential import SummedPotential as SummedPotential
 from .tabulated import TabulatedScene as TabulatedScene
 from .tabulated import require_friction as require_friction
+from .tabulated import scene_of_tables as scene_of_tables
+from .tabulated import scene_on_edges as scene_on_edges
 from .tabulated import tabulated_scene as tabulated_scene
 from .tabulated_potential import potential_at_rest as potential_at_rest
 from .tabulated_potential import potential_in_reach as potential_in_reach

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from .._checks import ByIdentity, require
+from .._checks import ByIdentity, exchanged, require
 from ..loads import AbstractPull, PiecewiseLinear
 from ..supports import AbstractSupport, Spring
 from ..tables import (
@@ -13,12 +13,15 @@ from ..tables import (
     SeriesBristle,
     SeriesProfile,
     SumOfLoads,
+    in_one_size,
+    load_on_edges,
     load_table,
 )
 from .friction_coefficients import coefficients_jit
 from .potentials import AbstractPotential, BristlePotential
 from .scene import Scene
-from .scene_loads import known_turning_points
+from .scene_loads import known_turning_points, padded_edges
+from .summed_potential import SummedPotential
 from .tabulated_potential import tabulated_potentials
 
 
@@ -95,3 +98,27 @@ def tabulated_scene(scene: Scene, eps: Any) -> TabulatedScene:
     )
     _TABLES.put(scene, (highest, tables))
     return tables
+
+
+def scene_of_tables(scene: Scene, eps: Any) -> Scene:
+    """A known scene whose parts are its tables, unchecked, for cells of these eps (m).
+
+    What is compiled for it serves all scenes. Itself where several tips are one surface at
+    each eps, and eps are several.
+    """
+    if isinstance(scene.potential, SummedPotential) and np.unique(eps).size > 1:
+        return scene
+    potential = tabulated_scene(scene, eps).lane_potential
+    if isinstance(potential, BristlePotential):
+        bristle = in_one_size(potential.bristle)
+        potential = BristlePotential(potential.profile, bristle)
+    return scene_on_edges(scene, potential)
+
+
+def scene_on_edges(scene: Scene, potential: AbstractPotential) -> Scene:
+    """A known scene with this potential, its load as lines on its edges, unchecked."""
+    turns = known_turning_points(scene.load, scene.duration, scene.turns)
+    edges = padded_edges(turns, scene.duration)
+    load = load_on_edges(load_table(scene.load), edges)
+    parts = {"potential": potential, "load": load, "turns": edges.size - 1, "effects": ()}
+    return exchanged(scene, parts)

@@ -17,7 +17,7 @@ from ..effects import (
     noise_among,
 )
 from ..limit import LimitSolution, solve_limit
-from ..model import Scene, coefficients_jit, strips_at, tabulated_scene
+from ..model import Scene, coefficients_jit, scene_of_tables, strips_at, tabulated_scene
 from ..slide_laws import slide_data
 from ..wiggly import Status, integrate_scene
 from .noiseless import without_noise
@@ -215,7 +215,7 @@ def _by_diffrax(
 
     solver = solver_of(request.method) if request.solver is None else request.solver
     values = run_blocks(
-        scene=scene,
+        scene=scene_of_tables(scene, request.eps),
         eps=request.eps,
         gamma=request.gamma,
         ts=request.ts,

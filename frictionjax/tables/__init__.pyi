@@ -1,8 +1,10 @@
 from .bristles import SeriesBristle as SeriesBristle
 from .bristles import bristle_at_rest as bristle_at_rest
 from .bristles import bristle_series as bristle_series
+from .bristles import in_one_size as in_one_size
 from .loads import SumOfLoads as SumOfLoads
 from .loads import bent_part as bent_part
+from .loads import load_on_edges as load_on_edges
 from .loads import load_table as load_table
 from .loads import straight_part as straight_part
 from .pieces import PiecewiseProfile as PiecewiseProfile

@@ -116,3 +116,14 @@ def _powers(values: Sequence[np.ndarray]) -> np.ndarray | None:
     # Of a line nothing is left but a line, whatever the height that it was found for.
     powers = series[:, : needed + 1] @ _TO_POWERS[: needed + 1, : needed + 1]
     return np.pad(powers, ((0, 0), (0, degree - needed)))
+
+
+def in_one_size(bristle: AbstractBristle) -> AbstractBristle:
+    """A series with zeros up to the largest size, for programs whose steps cost more."""
+    if not isinstance(bristle, SeriesBristle):
+        return bristle
+    more = SETTINGS.degrees[-1] + 1 - bristle.ahead.shape[0]
+    series = {
+        name: np.pad(getattr(bristle, name), (0, more)) for name in ("ahead", "climb")
+    }
+    return exchanged(bristle, series)

@@ -33,6 +33,7 @@ from .sequential import integrate as integrate
 from .sequential import is_ours as is_ours
 from .sequential import solver_of as solver_of
 from .solution import Solution as Solution
+from .solved_scene import pulls_at as pulls_at
 from .stepping import Control as Control
 from .stepping import ControlState as ControlState
 from .stepping import judge as judge

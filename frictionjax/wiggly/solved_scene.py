@@ -1,6 +1,6 @@
 """What pulls at a trajectory, read from the scene that it is of."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import numpy as np
@@ -10,14 +10,31 @@ from .._checks import require, scene_of
 from .._compile import Program, in_chunks
 from ..effects import CompliantArray, NapFlip
 from ..loads import AbstractPull
-from ..model import SETTINGS
+from ..model import SETTINGS, Scene
 from ..supports import AbstractSupport
 from ..tables import load_table
 
 
+class Pulls(NamedTuple):
+    """What acts, (n,): `load` and the support's `force` in N, its `stiffness` in N/m."""
+
+    load: Any
+    force: Any
+    stiffness: Any
+
+
 @Program
-def _loads_and_holds(load: AbstractPull, support: AbstractSupport, ts: Array, z: Array):
-    return jax.vmap(load)(ts), jax.vmap(support.force)(z)
+def _pulls(load: AbstractPull, support: AbstractSupport, ts: Array, z: Array) -> Pulls:
+    force, stiffness = jax.vmap(support.force), jax.vmap(support.stiffness_at)
+    return Pulls(jax.vmap(load)(ts), force(z), stiffness(z))
+
+
+def pulls_at(
+    scene: Scene, ts: Float[np.ndarray, " n"], z: Float[np.ndarray, " n"]
+) -> Pulls:
+    """The load of a known scene at times in s, and the support at states in m."""
+    fixed = load_table(scene.load), scene.support
+    return in_chunks(_pulls, SETTINGS.times, fixed, (ts, z))
 
 
 def loads_and_forces(
@@ -29,10 +46,8 @@ def loads_and_forces(
     """
     scene = scene_of(solution)
     require(np.ndim(solution.z) == 1, "solution", "a batch", "one trajectory")
-    fixed = load_table(scene.load), scene.support
-    columns = np.asarray(solution.ts), np.asarray(solution.z)
-    load, held = in_chunks(_loads_and_holds, SETTINGS.times, fixed, columns)
-    return load, load - held
+    found = pulls_at(scene, np.asarray(solution.ts), np.asarray(solution.z))
+    return found.load, found.load - found.force
 
 
 def require_one_force(solution: Any) -> None:

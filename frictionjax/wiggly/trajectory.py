@@ -30,6 +30,7 @@ from ..model import (
     require_times,
     require_told_apart,
     scene_for,
+    scene_of_tables,
 )
 from .engine_solutions import along_one_path, through_lanes, with_mass, with_turning
 from .equation import require_accuracy
@@ -208,6 +209,8 @@ def _solve(
     from .differentiable import Options, Problem, solve_one_after_the_other
     from .sequential import solver_of  # and diffrax, 0.5 s
 
+    if known and adjoint is None:
+        scene = scene_of_tables(scene, eps)
     problem = Problem(scene, eps, gamma, ts, jnp.asarray(as_real(accuracy)))
     options = Options(solver_of(method), bool(dissipation), int(max_steps), adjoint)
     return solve_one_after_the_other(problem, options)

@@ -3,14 +3,23 @@
 import itertools
 import re
 
+import diffrax
 import jax
 import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.model import coefficients, coefficients_jit, tabulated_scene
+from frictionjax.effects import Engine
+from frictionjax.model import (
+    coefficients,
+    coefficients_jit,
+    scene_for,
+    scene_of_tables,
+    tabulated_scene,
+)
 from frictionjax.tables import PiecewiseProfile, SeriesBristle
 from frictionjax.wiggly import limit_path
+from frictionjax.wiggly.sequential.rosenbrock_solvers import Rodas5P
 
 P, B, L = fx.profiles, fx.bristles, fx.loads
 SLANTED = B.SlantedSpring(20.0, 1.3, 1.0, 0.3)
@@ -95,7 +104,7 @@ def compiled(log):
     return {name for name in names if name.startswith("_") or name in ENGINE}
 
 
-ENGINE = {"run_queue", "coefficients", "pull_between"}
+ENGINE = {"run_queue", "coefficients", "pull_between", "run_block"}
 
 
 def test_scenes_of_all_classes_run_the_same_programs(caplog):
@@ -121,6 +130,72 @@ def test_scenes_of_all_classes_run_the_same_programs(caplog):
     assert solved("sine", "slanted", "triangle") == set()
     assert solved("sine", "vertical", "ramp") == set()
     assert solved("spline", "angular", "points") == set()
+
+
+def test_solvers_of_diffrax_run_the_same_programs_for_all_classes(caplog):
+    """And find what they find on the parts themselves, which an adjoint asks for."""
+    ts, method = [0.0, 0.5, 2.0], Rodas5P()
+
+    def solved(*names):
+        scene = scene_of(*names)
+        with jax.log_compiles(True):
+            found = fx.solve(scene, 0.02, 1.0, ts, method=method, accuracy=1e-2)
+            data = fx.sweep(scene, [0.02], [1.0], ts, method=method, accuracy=1e-2)
+        assert found.ok
+        # Compiled otherwise, steps may be others.
+        np.testing.assert_allclose(data.z[0, 0], found.z, atol=1e-2 * 0.02)
+        said = compiled(caplog) & {"_planned", "_forth", "run_block"}
+        caplog.clear()
+        return said, found
+
+    assert len(solved("sine", "slanted", "sine")[0]) == 3
+    assert solved("series", "angular", "points")[0] == set()
+    assert solved("sine", "vertical", "ramp")[0] == set()
+    said, found = solved("series", "slanted", "triangle")
+    assert said == set()
+    adjoint = diffrax.RecursiveCheckpointAdjoint()
+    more = {"method": method, "accuracy": 1e-2, "adjoint": adjoint}
+    parts = fx.solve(scene_of("series", "slanted", "triangle"), 0.02, 1.0, ts, **more)
+    np.testing.assert_allclose(found.z, parts.z, atol=1e-2 * 0.02)
+
+
+def test_scenes_of_tables_are_the_scene():
+    scene = scene_of("series", "angular", "triangle")
+    tables = scene_of_tables(scene, [1e-2, 1e-3])
+    t = np.linspace(0.0, 2.0, 41)
+    np.testing.assert_allclose(
+        jax.vmap(tables.load)(t), jax.vmap(scene.load)(t), atol=4e-15
+    )
+    turns = np.asarray(tables.turning_points())
+    np.testing.assert_allclose(np.unique(turns), [0.5, 1.5, 2.0])
+    assert float(tables.z0) == float(scene.z0)
+    for eps in (1e-2, 1e-4):
+        at_y = [
+            forces_at(s.potential, np.linspace(-1, 1, 41), eps) for s in (tables, scene)
+        ]
+        for found, expected in zip(*at_y, strict=True):
+            np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+def test_scenes_of_tables_are_of_one_kind_at_any_eps():
+    kinds = set()
+    for bristle, load, eps in itertools.product(BRISTLES, LOADS, (1e-4, 0.1)):
+        tables = scene_of_tables(scene_of("series", bristle, load), eps)
+        leaves, structure = jax.tree_util.tree_flatten(tables)
+        kinds.add((structure, *(np.shape(leaf) for leaf in leaves)))
+    assert len(kinds) == 1
+
+
+def test_sums_of_tips_are_a_surface_of_their_own_at_each_eps():
+    array = fx.effects.RigidArray(offsets=[0.0, 0.3])
+    scene = scene_for(Engine.PATH, scene_of().replace(effects=(array,)))
+    assert scene_of_tables(scene, [1e-2, 1e-3]) is scene
+    one = scene_of_tables(scene, [1e-2])
+    y = np.linspace(-1, 1, 41)
+    for found, expected in zip(
+        *(forces_at(s.potential, y, 1e-2) for s in (one, scene)), strict=True
+    ):
+        np.testing.assert_allclose(found, expected, atol=1e-10)
 
 
 def test_what_no_table_holds_is_told():

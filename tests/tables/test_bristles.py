@@ -5,7 +5,12 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.tables import SeriesBristle, bristle_at_rest, bristle_series
+from frictionjax.tables import (
+    SeriesBristle,
+    bristle_at_rest,
+    bristle_series,
+    in_one_size,
+)
 
 BRISTLES = {
     "vertical": fx.bristles.VerticalSpring(1.0, 1.3, 1.0),
@@ -72,3 +77,15 @@ def test_a_rod_is_one_where_it_is_asked_for():
         np.testing.assert_allclose(found.rod(eta), rod.rod(eta), rtol=1e-13)
     assert bristle_series(rod, 1e-2).rod(0.0) is None
     assert bristle_series(BRISTLES["slanted"], 1e-2, with_rods=True).rods is None
+
+
+def test_series_of_one_size_have_the_same_bits():
+    etas = np.linspace(-1e-2, 1e-2, 41)
+    sizes = set()
+    for bristle in BRISTLES.values():
+        series = bristle_series(bristle, 1e-2)
+        found = in_one_size(series)
+        sizes.add(found.ahead.shape + found.climb.shape)
+        np.testing.assert_array_equal(slopes(found, etas), slopes(series, etas))
+    assert sizes == {(9, 9)}
+    assert in_one_size(BRISTLES["angular"]) is BRISTLES["angular"]

@@ -5,7 +5,6 @@ import io
 from pathlib import Path
 from typing import Any
 
-import jax
 import numpy as np
 
 from ..._checks import (
@@ -18,7 +17,6 @@ from ..._checks import (
     without_masked,
     write_whole,
 )
-from ..._compile import Program
 from ...effects import Engine
 from ...model import Scene, require_times, scene_for
 from ...wiggly import solve
@@ -126,17 +124,6 @@ def _deviations(uncertainty: Any, shape: tuple) -> np.ndarray:
     return np.broadcast_to(known, shape).copy()
 
 
-@Program
-def forces_at(scene: Scene, ts, z):
-    """Load in N, and the support's force in N and stiffness in N/m at states z."""
-    support = scene.support
-    return (
-        jax.vmap(scene.load)(ts),
-        jax.vmap(support.force)(z),
-        jax.vmap(support.stiffness_at)(z),
-    )
-
-
 @with_nan
 def simulate_trace(
     scene: Scene,
@@ -171,8 +158,7 @@ def simulate_trace(
     ts = np.asarray(require_times(scene, ts, 301))
     found = solve(scene, eps, gamma, ts, accuracy, dissipation=False)
     require(found.ok, "scene", found.status.message, "a trajectory that can be trusted")
-    load, force, _ = (np.asarray(v) for v in forces_at(scene, ts, np.asarray(found.z)))
-    values = np.asarray(found.z) if quantity == "z" else load - force
+    values = np.asarray(found.z) if quantity == "z" else found.force
     random = np.random.default_rng(seed).normal(size=ts.size)
     measured: Any = {quantity: values + float(noise) * random}
     return Trace(ts, **measured, uncertainty=float(noise) or None)

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..measured_trace import Trace, forces_at
+from ...wiggly import pulls_at
+from ..measured_trace import Trace
 from .problem import TraceProblem, states_under
 from .settings import SETTINGS
 
@@ -35,12 +36,12 @@ def seen_as(problem: TraceProblem, trace: Trace, factor: float = 1.0) -> TraceSt
     """The trace times a factor; z is NaN where the support has no such force."""
     scene, ts = problem.scene, problem.ts[: trace.ts.size]
     rest = np.full(ts.size, float(scene.z0))
-    load, start, _ = map(np.asarray, forces_at(scene, ts, rest))
+    load, start, _ = pulls_at(scene, ts, rest)
     most = abs(load[0]) + abs(start[0]) + np.ptp(load)
     z = force = factor * _without_spikes(trace.values)
     if trace.quantity == "force":
-        z = np.asarray(states_under(scene, load - force))
-    _, held, stiffness = map(np.asarray, forces_at(scene, ts, z))
+        z = states_under(scene, load - force)
+    _, held, stiffness = pulls_at(scene, ts, z)
     if trace.quantity == "z":
         force = load - held
     elif not np.allclose(held, load - force, rtol=1e-6, atol=1e-9):

@@ -4,9 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..._compile import padded_size
 from ...model import Scene
-from ..measured_trace import forces_at
+from ...wiggly import pulls_at
 from .settings import SETTINGS
 from .start import wiggle
 
@@ -16,14 +15,12 @@ class Passages(NamedTuple):
 
     On a way to the right `V_eps' = l - Phi' - eps^gamma z' < max l - Phi'`, over the time
     between two samples; to the left the other way round. No speed is needed, and no
-    surface that gives the trace breaks it. `known`: how many these are; the rest of `z`
-    fills a program.
+    surface that gives the trace breaks it.
     """
 
     z: np.ndarray
     bound: np.ndarray
     side: np.ndarray
-    known: int
 
 
 class Held(NamedTuple):
@@ -50,21 +47,19 @@ def passages_of(scene: Any, ts: np.ndarray, z: np.ndarray, sd: np.ndarray, eps: 
         bounds.append(np.full(count + 1, highest[i] if side > 0 else lowest[i]))
         sides.append(np.full(count + 1, side))
     if not states:
-        return Passages(np.zeros(0), np.zeros(0), np.zeros(0), 0)
+        return Passages(np.zeros(0), np.zeros(0), np.zeros(0))
     every = [np.concatenate(parts) for parts in (states, bounds, sides)]
     count = min(every[0].size, SETTINGS.most_places)
     keep = np.linspace(0, every[0].size - 1, count).astype(int)
     places, loads, side = (part[keep] for part in every)
-    more = padded_size(keep.size, SETTINGS.room_of_places, 2) - keep.size
-    padded = np.pad(places, (0, more), mode="edge")
-    force = np.asarray(forces_at(scene, np.zeros_like(padded), padded)[1])[: keep.size]
-    return Passages(padded, loads - force, side, keep.size)
+    force = pulls_at(scene, np.zeros_like(places), places).force
+    return Passages(places, loads - force, side)
 
 
 def _load_range(scene: Scene, ts: np.ndarray, turns: np.ndarray):
     """Largest and smallest load between each two samples."""
     times = np.concatenate([ts, turns])
-    known = np.asarray(forces_at(scene, times, np.zeros_like(times))[0])
+    known = pulls_at(scene, times, np.zeros_like(times)).load
     ends, corners = known[: ts.size], known[ts.size :]
     high, low = np.maximum(ends[1:], ends[:-1]), np.minimum(ends[1:], ends[:-1])
     place = np.searchsorted(ts, turns) - 1
@@ -76,13 +71,12 @@ def _load_range(scene: Scene, ts: np.ndarray, turns: np.ndarray):
 
 def held(passages: Passages, scene: Any, eps: Any, numbers: np.ndarray) -> Held:
     """How far the wiggle force of the surface would have held the tip where it passed."""
-    count = passages.known
-    if count == 0:
+    if passages.z.size == 0:
         return Held(np.zeros(0), np.zeros((0, numbers.size)))
-    force, _, by = map(np.asarray, wiggle(numbers, scene, eps, passages.z))
-    excess = passages.side * (force[:count] - passages.bound)
+    force, _, by = wiggle(numbers, scene, eps, passages.z)
+    excess = passages.side * (force - passages.bound)
     over = excess > 0
-    rows = np.where(over[:, None], passages.side[:, None] * by[:count], 0.0)
+    rows = np.where(over[:, None], passages.side[:, None] * by, 0.0)
     return Held(np.where(over, excess, 0.0), rows)
 
 

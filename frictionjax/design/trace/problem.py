@@ -8,9 +8,14 @@ import numpy as np
 from jaxtyping import Array
 
 from ..._checks import as_real, require
-from ..._compile import Program, padded_size
-from ...model import BristlePotential, Scene, require_times
-from ..measured_trace import Trace, forces_at
+from ..._compile import Program, in_chunks, padded_size
+from ...bristles import AbstractBristle
+from ...loads import AbstractPull
+from ...model import BristlePotential, Scene, require_times, scene_on_edges
+from ...supports import AbstractSupport
+from ...tables import SeriesBristle, bristle_series, in_one_size
+from ...wiggly import pulls_at
+from ..measured_trace import Trace
 from .flow import Flow, bumped_flow, flow, plan_of, waves_of_numbers, with_profile
 from .gauss_newton import TraceSamples
 from .passed import Passages, held, passages_of
@@ -19,10 +24,22 @@ from .start import Read, Reading, read, read_residuals
 from .weights import bumps_of
 
 
+class SurfaceLimits(NamedTuple):
+    """Of surfaces that are tried: slopes between, and height in periods."""
+
+    lower: np.ndarray
+    upper: np.ndarray
+    height: np.ndarray
+
+
 class TraceProblem(NamedTuple):
-    """A checked fit: trace as states, and programs of the coefficients."""
+    """A checked fit: trace as states, and programs of the coefficients.
+
+    `scene`: in tables, so that programs for it serve all scenes, its surface still flat.
+    """
 
     scene: Scene
+    limits: SurfaceLimits
     eps: Any
     gamma: Any
     accuracy: Any
@@ -61,24 +78,25 @@ class TraceProblem(NamedTuple):
 
     def tips(self, numbers: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Phases of the tip, in periods, at states z."""
-        found = np.asarray(_tips(numbers, self.scene, self.eps, z))
+        fixed = numbers, self.scene, self.eps
+        found = in_chunks(_tips, SETTINGS.together, fixed, (z,))
         return found - np.floor(found)
 
     def unheld(self) -> np.ndarray:
         """States under the load alone, without friction."""
-        load = np.asarray(forces_at(self.scene, self.ts, np.zeros_like(self.ts))[0])
-        return np.asarray(states_under(self.scene, load))
+        load = pulls_at(self.scene, self.ts, np.zeros_like(self.ts)).load
+        return states_under(self.scene, load)
 
     def quantity_of(self, quantity: str, z: np.ndarray) -> np.ndarray:
         """What the trace measures, at states z."""
         if quantity == "z":
             return z
-        load, force, _ = forces_at(self.scene, self.ts[: z.size], z)
-        return np.asarray(load) - np.asarray(force)
+        found = pulls_at(self.scene, self.ts[: z.size], z)
+        return found.load - found.force
 
     def admissible(self, numbers: np.ndarray) -> bool:
         """Whether the bristle follows the surface, with a margin."""
-        return bool(_follows(numbers, self.scene, self.eps))
+        return bool(_follows(numbers, self.scene, self.eps, self.limits))
 
     def observed(self) -> TraceSamples:
         """The samples as the descent sees them."""
@@ -94,15 +112,15 @@ def _cut(found: Flow, count: int) -> Flow:
 
 
 @Program
-def _follows(numbers: Array, scene: Scene, eps: Any) -> Array:
+def _follows(numbers: Array, scene: Scene, eps: Any, limits: SurfaceLimits) -> Array:
     """`G` at this eps and at eps = 0, and the slopes that the contact allows."""
     waves = waves_of_numbers(numbers)
     potential = with_profile(scene, waves).potential
     grid = jnp.arange(waves.points) / waves.points
     stretch = jax.vmap(lambda y: potential.tip_force(y, eps)[1])(grid)
-    slopes = jax.vmap(jax.grad(waves))(grid)
-    ends = potential.bristle.slope_bounds()
-    inside = (slopes > ends.lower) & (slopes < ends.upper)
+    heights, slopes = jax.vmap(jax.value_and_grad(waves))(grid)
+    inside = (slopes > limits.lower) & (slopes < limits.upper)
+    inside &= jnp.abs(heights) <= limits.height
     least = jnp.minimum(stretch, 1 + potential.a() * slopes)
     return jnp.all((least > SETTINGS.stretch) & inside)
 
@@ -114,18 +132,40 @@ def _tips(numbers: Array, scene: Scene, eps: Any, z: Array) -> Array:
 
 
 @Program
-def states_under(scene: Scene, forces: Any) -> Array:
-    """States at which the support has these forces."""
-    return jax.vmap(scene.support.state_of)(forces)
+def _states(support: AbstractSupport, forces: Array) -> Array:
+    return jax.vmap(support.state_of)(forces)
+
+
+def states_under(scene: Scene, forces: np.ndarray) -> np.ndarray:
+    """States in m at which the support has these forces in N."""
+    return in_chunks(_states, SETTINGS.together, (scene.support,), (forces,))
 
 
 @Program
-def _fastest(scene: Scene) -> Array:
+def _fastest(load: AbstractPull, support: AbstractSupport, duration: Array) -> Array:
     """Largest |l'|/Phi'' without wiggles, m/s."""
-    ts = scene.duration * (jnp.arange(SETTINGS.times) + 0.5) / SETTINGS.times
-    states = jax.vmap(lambda t: scene.support.state_of(scene.load(t)))(ts)
-    speeds = jax.vmap(scene.load.slope)(ts) / jax.vmap(scene.support.stiffness_at)(states)
+    ts = duration * (jnp.arange(SETTINGS.times) + 0.5) / SETTINGS.times
+    states = jax.vmap(lambda t: support.state_of(load(t)))(ts)
+    speeds = jax.vmap(load.slope)(ts) / jax.vmap(support.stiffness_at)(states)
     return jnp.max(jnp.abs(speeds))
+
+
+def in_tables(scene: Scene, eps: float, harmonics: int) -> tuple[Scene, SurfaceLimits]:
+    """The scene with a bristle that is exact on all surfaces that are tried.
+
+    Between two slopes a surface of mean 0 is no higher than one that rises all along at one
+    and falls at the other.
+    """
+    assert isinstance(scene.bristle, AbstractBristle)
+    bounds = scene.bristle.slope_bounds()
+    inverse = 1 / float(bounds.upper) - 1 / float(bounds.lower)
+    height = min(0.5 / inverse, SETTINGS.highest) if inverse > 0 else SETTINGS.highest
+    bristle = in_one_size(bristle_series(scene.bristle, eps * height))
+    if not isinstance(bristle, SeriesBristle):
+        height = np.inf
+    flat = waves_of_numbers(jnp.zeros(2 * harmonics))
+    limits = SurfaceLimits(*map(np.asarray, (bounds.lower, bounds.upper, height)))
+    return scene_on_edges(scene, BristlePotential(flat, bristle)), limits
 
 
 def trace_problem(
@@ -134,26 +174,25 @@ def trace_problem(
     """Check the arguments of `fit_trace` that belong together."""
     given = isinstance(scene, Scene) and isinstance(scene.potential, BristlePotential)
     require(given, "scene", type(scene).__name__, "a Scene with a profile and a bristle")
-    times = require_times(scene, trace.ts)
-    ts = np.asarray(times)
+    ts = np.asarray(require_times(scene, trace.ts))
+    alpha = abs(float(scene.potential.alpha()))
+    scene, limits = in_tables(scene, eps, harmonics)
     z, wanted = trace.values, None
     if trace.quantity == "force":
-        load = np.asarray(forces_at(scene, ts, np.zeros_like(ts))[0])
-        wanted = load - trace.values
-        z = np.asarray(states_under(scene, wanted))
-    load, force, stiffness = (np.asarray(v) for v in forces_at(scene, ts, z))
+        wanted = pulls_at(scene, ts, np.zeros_like(ts)).load - trace.values
+        z = states_under(scene, wanted)
+    load, force, stiffness = pulls_at(scene, ts, z)
     if wanted is not None:
         known = np.allclose(force, wanted, rtol=1e-9, atol=1e-9 * np.max(np.abs(wanted)))
         allowed = "forces that the support can have: no z with Phi'(z) = l - force"
         require(known, "trace.force", trace.values, allowed)
-    sliding = float(_fastest(scene))
+    sliding = float(_fastest(scene.load, scene.support, scene.duration))
     require(sliding > 0, "scene.load", "constant", "a load that moves")
     sd = np.full(ts.size, accuracy * eps)
     if trace.uncertainty is not None:
         own = trace.uncertainty / (stiffness if trace.quantity == "force" else 1.0)
         sd = np.hypot(sd, own)
     rest = load - force
-    alpha = abs(float(scene.potential.alpha()))
     half = max(0.5 * float(np.ptp(np.percentile(rest, [2, 98]))), alpha * SETTINGS.no_force)
     reading = read(ts, z, sd, rest, eps**gamma, stiffness)
     drag_sd = np.hypot(reading.drag_sd, SETTINGS.start_rough * half)
@@ -166,4 +205,4 @@ def trace_problem(
     penalty = 0.5 * turns / (SETTINGS.bent * bending)
     passages = passages_of(scene, ts, z, sd, eps)
     found: Any = padded, reading, rough, sliding, penalty, passages, half
-    return TraceProblem(scene, *numbers, *found)
+    return TraceProblem(scene, limits, *numbers, *found)

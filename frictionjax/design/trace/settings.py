@@ -39,7 +39,6 @@ class Settings(NamedTuple):
     apart: float = 1 / 24  # between two places of a way
     shorter: float = 4.0  # ways are, at both ends
     most_places: int = 4096
-    room_of_places: int = 128
 
     # Problems (`problem.py`).
     # Of the force range: the start explains forces no better, or folds appear where the
@@ -49,6 +48,9 @@ class Settings(NamedTuple):
     # Prior: bending energy over that of a sine with the range of slopes seen.
     bent: float = 0.5
     room_of_times: int = 64  # by fours: few different programs
+    together: int = 256  # samples of one compiled call
+    # Of surfaces that the contact sets no bound: periods, which no bristle goes over.
+    highest: float = 1.0
     stretch: float = 0.02  # smallest G of an iterate
     times: int = 1024  # at which the fastest slide is looked for
     no_force: float = 1e-6  # of alpha: the least half range of forces

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from ..._compile import Program
+from ..._compile import Program, in_chunks
 from ...model import Scene
 from .flow import waves_of_numbers, with_profile
 from .settings import SETTINGS
@@ -44,10 +44,9 @@ def read(ts: np.ndarray, z: np.ndarray, sd: np.ndarray, rest: np.ndarray, drag, 
 
 
 @Program
-def wiggle(
+def _wiggle(
     numbers: Array, scene: Scene, eps: Any, states: Array
 ) -> tuple[Array, Array, Array]:
-    """`V_eps'` in N, `V_eps''` in N/m at states (n,), and the first by the numbers."""
 
     def one(numbers: Array, z: Array) -> Array:
         potential = with_profile(scene, waves_of_numbers(numbers)).potential
@@ -58,6 +57,13 @@ def wiggle(
         return force, stiffness, jax.jacfwd(one)(numbers, z)
 
     return jax.vmap(at)(states)
+
+
+def wiggle(
+    numbers: np.ndarray, scene: Scene, eps: Any, states: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`V_eps'` in N, `V_eps''` in N/m at states (n,), and the first by the numbers."""
+    return in_chunks(_wiggle, SETTINGS.together, (numbers, scene, eps), (states,))
 
 
 class Read(NamedTuple):
@@ -79,7 +85,7 @@ class Read(NamedTuple):
 
 def read_residuals(reading: Reading, scene: Any, eps: Any, numbers: np.ndarray) -> Read:
     """The wiggle force of the surface at the measured states, less what was read."""
-    force, stiffness, by = map(np.asarray, wiggle(numbers, scene, eps, reading.z))
+    force, stiffness, by = wiggle(numbers, scene, eps, reading.z)
     steep = np.abs(stiffness) + reading.support
     return Read(force - reading.force, by, steep, reading.drag_sd)
 

@@ -9,7 +9,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.design.trace.flow import _states, bumped_flow, flow, plan_of
-from frictionjax.design.trace.problem import trace_problem
+from frictionjax.design.trace.problem import in_tables, trace_problem
 from frictionjax.design.trace.report import _patterned
 from frictionjax.design.trace.status import TraceStatus
 from frictionjax.design.trace.waves import WaveProfile
@@ -31,8 +31,9 @@ def scene_of(profile=TRUTH, bristle=SLANTED, support=STIFF, load=LOOP):
 
 
 def states(numbers, scene, ts, accuracy=1e-9):
-    plan = plan_of(numbers, scene, EPS, ONE, np.asarray(accuracy))
-    return flow(numbers, scene, EPS, ONE, ts, plan)
+    tables, _ = in_tables(scene, float(EPS), numbers.size // 2)
+    plan = plan_of(numbers, tables, EPS, ONE, np.asarray(accuracy))
+    return flow(numbers, tables, EPS, ONE, ts, plan)
 
 
 def trace_of(scene, noise=NOISE, ts=TIMES, seed=0, quantity="force", numbers=NUMBERS):
