@@ -9,7 +9,7 @@ from frictionjax.design.trace.problem import in_tables
 from frictionjax.tables import SeriesBristle
 
 LOOP = fx.loads.PiecewiseLinear([0.0, 2.5, 7.5, 10.0], [0.0, 0.8, -0.8, 0.0])
-ANGULAR = fx.bristles.AngularSpring(1.0, 1.414, 1.0, 0.3)
+ANGULAR = fx.bristles.AngularSpring(1.0, 1.2, 1.0, 0.3)
 
 
 def scene_of(bristle, load=LOOP):
@@ -38,17 +38,17 @@ def test_scenes_of_all_classes_are_of_one_kind():
 
 
 def test_the_bristle_is_exact_as_high_as_slopes_that_the_contact_allows_go():
-    found, limits = in_tables(scene_of(ANGULAR), 0.05, 4)
+    found, limits = in_tables(scene_of(ANGULAR), 0.1, 4)
     bounds = ANGULAR.slope_bounds()
     # Of a sawtooth that rises at the one and falls at the other: half of its height.
     length = float(bounds.upper) / (float(bounds.upper) - float(bounds.lower))
     highest = 0.5 * -float(bounds.lower) * length
     assert float(limits.height) == pytest.approx(highest)
-    etas = np.linspace(-0.05 * highest, 0.05 * highest, 41)
+    etas = np.linspace(-0.1 * highest, 0.1 * highest, 41)
     series, own = slopes(found.bristle, etas), slopes(ANGULAR, etas)
     assert np.max(np.abs(series - own)) < 4e-14 * np.max(np.abs(own))
     assert (
-        np.max(np.abs(slopes(found.bristle, 20 * etas) - slopes(ANGULAR, 20 * etas))) > 1e-6
+        np.max(np.abs(slopes(found.bristle, 4 * etas) - slopes(ANGULAR, 4 * etas))) > 1e-6
     )
 
 
