@@ -9,13 +9,14 @@ from .._checks import ByIdentity, exchanged, require
 from ..loads import AbstractPull, PiecewiseLinear
 from ..supports import AbstractSupport, Spring
 from ..tables import (
+    PiecewiseLoad,
     PiecewiseProfile,
     SeriesBristle,
     SeriesProfile,
     SumOfLoads,
     in_one_size,
+    load_in_pieces,
     load_on_edges,
-    load_table,
 )
 from .friction_coefficients import coefficients_jit
 from .potentials import AbstractPotential, BristlePotential
@@ -63,6 +64,7 @@ _KNOWN = (
     Spring,
     SumOfLoads,
     PiecewiseLinear,
+    PiecewiseLoad,
 )
 
 
@@ -85,14 +87,16 @@ def tabulated_scene(scene: Scene, eps: Any) -> TabulatedScene:
     require_friction(scene)
     law = coefficients_jit(scene.potential)
     planning, lanes = tabulated_potentials(scene.potential, highest)
+    turns = known_turning_points(scene.load, scene.duration, scene.turns)
+    duration = float(scene.duration)
     tables = TabulatedScene(
         potential=planning,
         lane_potential=lanes,
         support=scene.support,
-        load=load_table(scene.load),
-        duration=float(scene.duration),
+        load=load_in_pieces(scene.load, turns, duration),
+        duration=duration,
         z0=float(scene.z0),
-        turning_points=known_turning_points(scene.load, scene.duration, scene.turns),
+        turning_points=turns,
         rho_plus=float(law.rho_plus),
         rho_minus=float(law.rho_minus),
     )
@@ -119,6 +123,7 @@ def scene_on_edges(scene: Scene, potential: AbstractPotential) -> Scene:
     """A known scene with this potential, its load as lines on its edges, unchecked."""
     turns = known_turning_points(scene.load, scene.duration, scene.turns)
     edges = padded_edges(turns, scene.duration)
-    load = load_on_edges(load_table(scene.load), edges)
+    table = load_in_pieces(scene.load, turns, float(scene.duration))
+    load = load_on_edges(table, edges)
     parts = {"potential": potential, "load": load, "turns": edges.size - 1, "effects": ()}
     return exchanged(scene, parts)

@@ -2,8 +2,10 @@ from .bristles import SeriesBristle as SeriesBristle
 from .bristles import bristle_at_rest as bristle_at_rest
 from .bristles import bristle_series as bristle_series
 from .bristles import in_one_size as in_one_size
+from .loads import PiecewiseLoad as PiecewiseLoad
 from .loads import SumOfLoads as SumOfLoads
 from .loads import bent_part as bent_part
+from .loads import load_in_pieces as load_in_pieces
 from .loads import load_on_edges as load_on_edges
 from .loads import load_table as load_table
 from .loads import straight_part as straight_part

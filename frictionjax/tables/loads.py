@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from .._checks import Real, as_real, exchanged, is_concrete
-from .._compile import Interpreted
+from .._compile import Interpreted, in_chunks
 from ..loads import (
     AbstractLoad,
     AbstractPull,
@@ -18,6 +18,8 @@ from ..loads import (
     Sine,
     Triangle,
 )
+from .fitted_pieces import fitted_pieces
+from .pieces import Binned, binned
 from .settings import SETTINGS, size_for
 
 
@@ -128,6 +130,50 @@ def _times(load: Sine | Triangle, factor: Real) -> AbstractPull:
 def load_table(load: AbstractPull) -> AbstractPull:
     """The load as one of a few classes of a few sizes; itself where it is a function."""
     return _table_of(load) if is_concrete(load) else load
+
+
+class PiecewiseLoad(AbstractPull):
+    """A function on [0, duration] (s) in pieces, as in `Binned`, at shares of it.
+
+    `steepest`: where it is known to be, s; NaN where it is not.
+    """
+
+    rows: Float[Array, "pieces columns"]
+    first: Int[Array, " bins"]
+    duration: Real
+    steepest: Real
+
+    def __call__(self, t: Real) -> Real:
+        return Binned(self.rows, self.first)(t / self.duration)
+
+
+@Interpreted
+def _values(load: AbstractPull, times: Array) -> Array:
+    return jax.vmap(load)(times)
+
+
+def load_in_pieces(
+    load: AbstractPull, turning_points: Float[np.ndarray, " n"], duration: float
+) -> AbstractPull:
+    """The table of a known load; a function in pieces, itself where none meet it.
+
+    `turning_points`: those inside (0, duration), and kinks, in s: there pieces end.
+    """
+    table = load_table(load)
+    if isinstance(table, SumOfLoads | PiecewiseLinear):
+        return table
+
+    def values(places: np.ndarray) -> np.ndarray:
+        return in_chunks(_values, SETTINGS.times, (table,), (duration * places,))
+
+    shares = turning_points / duration
+    pieces = fitted_pieces(values, np.unique([0.0, *shares, 1.0]))
+    found = None if pieces is None else binned(pieces, SETTINGS.function_bins)
+    if found is None:
+        return table
+    known = getattr(table, "steepest", None)
+    steepest = jnp.asarray(jnp.nan if known is None else known, dtype=float)
+    return PiecewiseLoad(*found, jnp.asarray(duration), steepest)
 
 
 class LoadOnEdges(AbstractLoad):

@@ -28,11 +28,19 @@ class Settings(NamedTuple):
     pieces: tuple[int, ...] = (64, 512, 4096)
     bins: int = 2  # for each piece of the room, at least
     few: int = 2  # pieces that may end within a bin
+    # Of the largest value: how well pieces of a function meet it between their nodes. (Ten
+    # roundings: at one, sines are never met.)
+    fitted: float = 2e-15
+    place_rounding: float = 2.0**-51  # four of a share's: what their places are moved by
     # Samples a period, which are static: few sizes, few programs.
     points_a_period: tuple[int, ...] = (256, 1024, 4096, 8192)
 
     # Points of a load (`loads.py`).
     points: tuple[int, ...] = (8, 64, 1024)
+    times: int = 1024  # of a function, asked at once
+    # Bins for each piece of a function: pieces meet its kinks, and are halves of halves of
+    # what is between these. (With those of a profile a bump beside two turns had no table.)
+    function_bins: int = 16
 
     # Bristles as power series (`bristles.py`).
     nodes: int = 16

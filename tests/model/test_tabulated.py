@@ -43,6 +43,10 @@ LOADS = {
 }
 
 
+# Where it bends pieces are too short for a table.
+BENT = L.Custom(lambda t: 6 * t + 0.1 * jax.numpy.abs(t - 0.777) ** 1.5)
+
+
 def scene_of(profile="sine", bristle="vertical", load="sine"):
     spring = fx.supports.Spring(2.0)
     return fx.Scene(PROFILES[profile], BRISTLES[bristle], spring, LOADS[load], 2.0)
@@ -132,6 +136,23 @@ def test_scenes_of_all_classes_run_the_same_programs(caplog):
     assert solved("spline", "angular", "points") == set()
 
 
+def test_scenes_whose_loads_are_functions_are_of_one_kind():
+    kinds, ts = set(), [0.5, 1.0, 2.0]
+    functions = (lambda t: 6 * jax.numpy.sin(3 * t)), (lambda t: 5 * t + t**2)
+    scenes = [scene_of().replace(load=L.Custom(fn)) for fn in functions]
+    for scene in scenes:
+        tables = tabulated_scene(scene, 1e-2)
+        leaves, structure = jax.tree_util.tree_flatten(tables._replace(turning_points=()))
+        kinds.add((structure, *(np.shape(leaf) for leaf in leaves)))
+        assert tables.untabulated == ""
+    assert len(kinds) == 1
+    # As through the load of the library that the first function is.
+    sine = scene_of().replace(load=L.Sine(6.0, 2 * np.pi / 3))
+    found = [fx.solve(s, 1e-2, 1.0, ts, dissipation=False) for s in (scenes[0], sine)]
+    assert all(each.ok for each in found)
+    np.testing.assert_allclose(found[0].z, found[1].z, atol=1e-7 * 1e-2)
+
+
 def test_solvers_of_diffrax_run_the_same_programs_for_all_classes(caplog):
     """And find what they find on the parts themselves, which an adjoint asks for."""
     ts, method = [0.0, 0.5, 2.0], Rodas5P()
@@ -203,7 +224,7 @@ def test_what_no_table_holds_is_told():
     own = scene_of().replace(
         profile=P.Custom(lambda y: 0.02 * jax.numpy.abs(jax.numpy.sin(np.pi * y)) ** 3),
         support=fx.supports.Convex(lambda z: z**2 + 0.01 * z**4),
-        load=L.Custom(lambda t: 6 * t),
+        load=BENT,
     )
     said = "support Convex, load Custom, profile Custom"
     assert tabulated_scene(own, 1e-2).untabulated == said
@@ -229,8 +250,7 @@ def test_turning_points_and_rooms_for_them():
 
 
 def test_what_no_table_holds_is_compiled_for_itself():
-    load = L.Custom(lambda t: 6 * t)
-    scene = scene_of().replace(load=load)
+    scene = scene_of().replace(load=BENT)
     assert tabulated_scene(scene, 1e-3).load is scene.load
     given = fx.potentials.GivenPotential if hasattr(fx, "potentials") else fx.GivenPotential
     other = given(lambda Y: jax.numpy.sin(2 * np.pi * Y))

@@ -1,12 +1,20 @@
 """Loads as tables."""
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import frictionjax as fx
 from frictionjax.model import known_turning_points, padded_edges
-from frictionjax.tables import bent_part, load_on_edges, load_table, straight_part
+from frictionjax.tables import (
+    PiecewiseLoad,
+    bent_part,
+    load_in_pieces,
+    load_on_edges,
+    load_table,
+    straight_part,
+)
 
 L = fx.loads
 T = np.concatenate([np.linspace(0, 3, 301), [0.5, 1.5, 2.5]])
@@ -54,6 +62,52 @@ def test_a_pulled_load_is_its_position_stretched(name):
     expected = 1.7 * (jax.vmap(LOADS[name])(T) - 0.7)
     np.testing.assert_allclose(jax.vmap(table)(T), expected, atol=1e-14)
     np.testing.assert_allclose(jax.vmap(load)(T), expected, atol=1e-14)
+
+
+def in_pieces(load, duration=3.0):
+    load = load.prepared(duration)
+    return load_in_pieces(load, known_turning_points(load, duration, 64), duration)
+
+
+FUNCTIONS = {
+    "wave": lambda t: jnp.sin(2 * t) + 0.1 * t,
+    "bump": lambda t: t + 0.2 * jnp.exp(-(((t - 1.2) / 0.1) ** 2)),
+    "kink": lambda t: jnp.abs(t - 1.0) + 0.3 * t,
+    "flat": lambda t: 0.5 + 0.0 * t,
+}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_are_met_in_pieces_with_slopes_from_the_right(name):
+    load = L.Custom(FUNCTIONS[name], [1.0] if name == "kink" else ())
+    found = in_pieces(load)
+    assert isinstance(found, PiecewiseLoad)
+    size = float(np.abs(jax.vmap(load)(T)).max())
+    np.testing.assert_allclose(jax.vmap(found)(T), jax.vmap(load)(T), atol=4e-15 * size)
+    times = np.append(T, 1.0)
+    np.testing.assert_allclose(
+        jax.vmap(found.slope)(times), jax.vmap(load.slope)(times), atol=1e-10
+    )
+    assert bent_part(found) is found
+
+
+def test_functions_are_of_one_kind_in_pieces_and_so_are_pulled_ends():
+    few = [fn for name, fn in FUNCTIONS.items() if name != "bump"]
+    kinds = {shapes(in_pieces(L.Custom(fn))) for fn in few}
+    pulled = L.Pulled(L.Custom(FUNCTIONS["wave"]), 0.3).held_by(jnp.asarray(1.7), 0.0)
+    kinds.add(shapes(in_pieces(pulled)))
+    assert len(kinds) == 1
+
+
+def test_tables_stay_tables_and_what_no_pieces_meet_stays_a_function():
+    assert shapes(in_pieces(LOADS["sine"])) == shapes(load_table(LOADS["sine"]))
+    bent = L.Custom(lambda t: t + 0.1 * jnp.abs(t - 0.777) ** 1.5)
+    assert isinstance(in_pieces(bent), L.Custom)
+
+
+def test_the_steepest_time_of_a_function_is_told():
+    load = L.Custom(FUNCTIONS["bump"]).prepared(3.0)
+    assert float(in_pieces(load).steepest) == float(load.steepest)
 
 
 def on_edges(load, duration=3.0):
