@@ -239,15 +239,21 @@ def _forces_met(
     return jnp.min(values), jnp.max(values), support.force(z0)
 
 
+def forces_met(scene: Scene) -> tuple[float, float, float]:
+    """Smallest and largest load of a known scene, and Phi' at z0, in N."""
+    parts = load_table(scene.load), scene.support
+    met = _forces_met(*parts, _edges(scene), np.asarray(scene.z0))
+    low, high, start = (float(v) for v in met)
+    return low, high, start
+
+
 def _require_hypotheses(scene: Scene) -> None:
     if not is_concrete(scene) or not in_64_bits():
         return  # traced values cannot be looked at; 32 bits raise at the entry points
     found = admissible_coefficients(scene.potential)
     if found.alpha is not None:
         _ALPHA.put(scene, float(found.alpha))
-    parts = load_table(scene.load), scene.support
-    met = _forces_met(*parts, _edges(scene), np.asarray(scene.z0))
-    low, high, start = (float(v) for v in met)
+    low, high, start = forces_met(scene)
     finite = np.isfinite(low) and np.isfinite(high)
     require(finite, "load", f"[{low:.6g}, {high:.6g}]", "finite values on [0, duration]")
     low = min(low - float(found.rho_plus), start)

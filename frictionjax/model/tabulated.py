@@ -13,14 +13,16 @@ from ..tables import (
     PiecewiseProfile,
     SeriesBristle,
     SeriesProfile,
+    SeriesSupport,
     SumOfLoads,
     in_one_size,
     load_in_pieces,
     load_on_edges,
+    support_table,
 )
 from .friction_coefficients import coefficients_jit
 from .potentials import AbstractPotential, BristlePotential
-from .scene import Scene
+from .scene import Scene, forces_met
 from .scene_loads import known_turning_points, padded_edges
 from .summed_potential import SummedPotential
 from .tabulated_potential import tabulated_potentials
@@ -62,6 +64,7 @@ _KNOWN = (
     PiecewiseProfile,
     SeriesBristle,
     Spring,
+    SeriesSupport,
     SumOfLoads,
     PiecewiseLinear,
     PiecewiseLoad,
@@ -92,7 +95,7 @@ def tabulated_scene(scene: Scene, eps: Any) -> TabulatedScene:
     tables = TabulatedScene(
         potential=planning,
         lane_potential=lanes,
-        support=scene.support,
+        support=_support_of(scene, float(law.rho_plus), float(law.rho_minus)),
         load=load_in_pieces(scene.load, turns, duration),
         duration=duration,
         z0=float(scene.z0),
@@ -104,6 +107,15 @@ def tabulated_scene(scene: Scene, eps: Any) -> TabulatedScene:
     return tables
 
 
+def _support_of(scene: Scene, rho_plus: float, rho_minus: float) -> AbstractSupport:
+    """The support's table, for all forces that it meets."""
+    if isinstance(scene.support, Spring):
+        return scene.support
+    low, high, start = forces_met(scene)
+    ends = min(low - rho_plus, start), max(high - rho_minus, start)
+    return support_table(scene.support, *ends)
+
+
 def scene_of_tables(scene: Scene, eps: Any) -> Scene:
     """A known scene whose parts are its tables, unchecked, for cells of these eps (m).
 
@@ -112,11 +124,12 @@ def scene_of_tables(scene: Scene, eps: Any) -> Scene:
     """
     if isinstance(scene.potential, SummedPotential) and np.unique(eps).size > 1:
         return scene
-    potential = tabulated_scene(scene, eps).lane_potential
+    tables = tabulated_scene(scene, eps)
+    potential = tables.lane_potential
     if isinstance(potential, BristlePotential):
         bristle = in_one_size(potential.bristle)
         potential = BristlePotential(potential.profile, bristle)
-    return scene_on_edges(scene, potential)
+    return scene_on_edges(exchanged(scene, {"support": tables.support}), potential)
 
 
 def scene_on_edges(scene: Scene, potential: AbstractPotential) -> Scene:

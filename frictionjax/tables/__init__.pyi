@@ -13,5 +13,7 @@ from .pieces import PiecewiseProfile as PiecewiseProfile
 from .profiles import ProfileTables as ProfileTables
 from .profiles import profile_tables as profile_tables
 from .settings import SETTINGS as SETTINGS
+from .supports import SeriesSupport as SeriesSupport
+from .supports import support_table as support_table
 from .waves import SeriesProfile as SeriesProfile
 from .waves import Waves as Waves

@@ -10,9 +10,11 @@ from .pieces import Pieces
 from .settings import SETTINGS
 
 _COUNT = SETTINGS.degree + 1
-# Where pieces meet the function, and where they are held against it, shares of a piece.
+# Where pieces meet the function, and where they are held against it, shares of a piece. At
+# both ends too, if less closely, as kinks may be a rounding away: what rises within less
+# than the distance of two nodes has risen there.
 _NODES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(_COUNT) + 0.5) / _COUNT)
-_BETWEEN = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, _COUNT) / _COUNT)
+_BETWEEN = 0.5 - 0.5 * np.cos(np.pi * np.arange(_COUNT + 1) / _COUNT)
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(2 * _NODES - 1, SETTINGS.degree))
 _AT_BETWEEN = chebyshev.chebvander(2 * _BETWEEN - 1, SETTINGS.degree)
 # Rows: Chebyshev polynomials on [0, 1] as powers.
@@ -47,10 +49,11 @@ def fitted_pieces(
             return None
         largest = max(largest, float(np.max(np.abs(values))))
         series = values[:, :_COUNT] @ _TO_SERIES.T
-        off = np.abs(series @ _AT_BETWEEN.T - values[:, _COUNT:]).max(axis=1)
+        off = np.abs(series @ _AT_BETWEEN.T - values[:, _COUNT:])
         # What a place is rounded by moves values where they are steep.
         noise = SETTINGS.place_rounding * np.ptp(values, axis=1) / width
-        good = off <= SETTINGS.fitted * largest + noise
+        good = off[:, 1:-1].max(axis=1) <= SETTINGS.fitted * largest + noise
+        good &= off[:, [0, -1]].max(axis=1) <= SETTINGS.same * largest + noise
         powers = series[good] @ _TO_POWERS / width[good, None] ** np.arange(_COUNT)
         done.append((left[good], powers))
         left, width = left[~good], 0.5 * width[~good]

@@ -38,6 +38,7 @@ class Settings(NamedTuple):
     # Points of a load (`loads.py`).
     points: tuple[int, ...] = (8, 64, 1024)
     times: int = 1024  # of a function, asked at once
+    same: float = 1e-10  # of the largest: how far pieces may be off at other times
     # Bins for each piece of a function: pieces meet its kinks, and are halves of halves of
     # what is between these. (With those of a profile a bump beside two turns had no table.)
     function_bins: int = 16
@@ -49,6 +50,12 @@ class Settings(NamedTuple):
     # traces try. (A size for degree 1: as for harmonics.)
     degrees: tuple[int, ...] = (4, 8, 12)
     least: float = 1e-14  # of the largest value: coefficients below are left out
+
+    # Supports as power series (`supports.py`).
+    support_terms: int = 24
+    # Of the forces that a support meets for eps -> 0: how much further its series goes, as
+    # folds at large eps are higher.
+    beyond: float = 0.25
 
 
 SETTINGS = Settings()

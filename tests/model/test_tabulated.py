@@ -153,6 +153,23 @@ def test_scenes_whose_loads_are_functions_are_of_one_kind():
     np.testing.assert_allclose(found[0].z, found[1].z, atol=1e-7 * 1e-2)
 
 
+def test_supports_given_as_functions_are_of_one_kind():
+    kinds, ts = set(), [0.5, 1.0, 2.0]
+    energies = (lambda z: z**2), (lambda z: z**2 + 0.01 * z**4)
+    scenes = [scene_of().replace(support=fx.supports.Convex(fn)) for fn in energies]
+    for scene in scenes:
+        tables = tabulated_scene(scene, 1e-2)
+        leaves, structure = jax.tree_util.tree_flatten(tables)
+        kinds.add((structure, *(np.shape(leaf) for leaf in leaves)))
+        assert tables.untabulated == ""
+    assert len(kinds) == 1
+    # As on the spring that the first one is.
+    both = [fx.solve(s, 1e-2, 1.0, ts) for s in (scenes[0], scene_of())]
+    assert all(each.ok for each in both)
+    np.testing.assert_allclose(both[0].z, both[1].z, atol=1e-7 * 1e-2)
+    np.testing.assert_allclose(both[0].dissipation, both[1].dissipation, rtol=1e-6)
+
+
 def test_solvers_of_diffrax_run_the_same_programs_for_all_classes(caplog):
     """And find what they find on the parts themselves, which an adjoint asks for."""
     ts, method = [0.0, 0.5, 2.0], Rodas5P()
@@ -223,7 +240,7 @@ def test_what_no_table_holds_is_told():
     assert tabulated_scene(scene_of("spline", "angular"), 1e-2).untabulated == ""
     own = scene_of().replace(
         profile=P.Custom(lambda y: 0.02 * jax.numpy.abs(jax.numpy.sin(np.pi * y)) ** 3),
-        support=fx.supports.Convex(lambda z: z**2 + 0.01 * z**4),
+        support=fx.supports.Convex(lambda z: z**2 + 0.01 * jax.numpy.abs(z) ** 3.5),
         load=BENT,
     )
     said = "support Convex, load Custom, profile Custom"

@@ -60,6 +60,18 @@ def test_a_kink_inside_takes_ever_shorter_pieces():
     assert widths.max() > 0.01
 
 
+@pytest.mark.parametrize("at", [0.5, 0.3137, 0.75])
+def test_a_rise_between_two_nodes_is_not_stepped_over(at):
+    """At the end of two halves both saw a line."""
+
+    def fn(y):
+        return y + 0.05 * (1 + np.tanh((y - at) / 3e-5))
+
+    found = fitted_pieces(fn, WHOLE)
+    places = np.append(PLACES, at + np.linspace(-2e-4, 2e-4, 201))
+    assert np.max(np.abs(values_of(found, places) - fn(places))) < 1e-11
+
+
 @pytest.mark.parametrize(
     "fn",
     [

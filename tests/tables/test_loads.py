@@ -15,6 +15,7 @@ from frictionjax.tables import (
     load_table,
     straight_part,
 )
+from frictionjax.tables.fitted_pieces import fitted_pieces
 
 L = fx.loads
 T = np.concatenate([np.linspace(0, 3, 301), [0.5, 1.5, 2.5]])
@@ -89,6 +90,27 @@ def test_functions_are_met_in_pieces_with_slopes_from_the_right(name):
         jax.vmap(found.slope)(times), jax.vmap(load.slope)(times), atol=1e-10
     )
     assert bent_part(found) is found
+
+
+@pytest.mark.parametrize("wide", [1e-4, 1e-2, 0.3])
+def test_short_rises_are_met_or_stay_functions(wide):
+    load = L.Custom(lambda t: 0.5 * t + 0.05 * jnp.tanh((t - 1.5) / wide))
+    found = in_pieces(load)
+    times = np.append(T, 1.5 + wide * np.linspace(-5, 5, 101))
+    np.testing.assert_allclose(jax.vmap(found)(times), jax.vmap(load)(times), atol=1e-12)
+    assert isinstance(found, PiecewiseLoad) == (wide > 1e-3)
+
+
+def test_pieces_that_say_anything_else_are_not_used(monkeypatch):
+    load = L.Custom(FUNCTIONS["wave"])
+    assert isinstance(in_pieces(load), PiecewiseLoad)
+
+    def off(fn, edges):
+        found = fitted_pieces(fn, edges)
+        return found._replace(terms=found.terms * (1 + 1e-9))
+
+    monkeypatch.setattr("frictionjax.tables.loads.fitted_pieces", off)
+    assert isinstance(in_pieces(load), L.Custom)
 
 
 def test_functions_are_of_one_kind_in_pieces_and_so_are_pulled_ends():
