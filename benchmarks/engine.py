@@ -14,7 +14,8 @@ the least of a few runs, of
     gradient  of a steady slide and of a value of a trajectory, for the first time in a
               process: without a cache, then with every program kept
     certificates  of curves of scenes of 18 kinds, each for the first time
-    others    a solver of diffrax, and a fit to a trace, of three scenes of other kinds
+    others    a solver of diffrax, and a fit to a trace, of three scenes of other kinds; and a
+              solve of scenes with one part as a function, of three such functions
     times     a `solve` with another number of times than before
 """
 
@@ -215,7 +216,40 @@ def others(fx, options):
             taken.append(time.process_time() - begin)
         figures[f"{name}, the first, s"] = taken[0]
         figures[f"{name}, of other kinds, the longest, s"] = max(taken[1:])
+    for name, scenes in functions(fx).items():
+        taken = []
+        for scene in scenes:
+            begin = time.process_time()
+            fx.solve(scene, 0.02, 1.0, ts)
+            taken.append(time.process_time() - begin)
+        figures[f"solve with a {name} as a function, the first, s"] = taken[0]
+        figures[f"solve with another {name} as a function, the longest, s"] = max(taken[1:])
     return figures
+
+
+def functions(fx):
+    """Three loads and three supports as functions, in scenes of a sine."""
+    import jax.numpy as jnp
+
+    scene, loads, supports = scene_of(fx, fx.profiles.Sine(0.1)), fx.loads, fx.supports
+    return {
+        "load": [
+            scene.replace(load=loads.Custom(fn))
+            for fn in (
+                lambda t: 1.2 * jnp.sin(2 * t),
+                lambda t: jnp.sin(2 * t) + 0.2 * t,
+                lambda t: 1.5 * t * jnp.exp(-t),
+            )
+        ],
+        "support": [
+            scene.replace(support=supports.Convex(fn))
+            for fn in (
+                lambda z: 0.5 * z**2 + 0.01 * z**4,
+                lambda z: 0.4 * z**2 + 0.01 * jnp.cosh(z),
+                lambda z: 0.6 * z**2 + 0.01 * z**3,
+            )
+        ],
+    }
 
 
 def times(fx, options):
