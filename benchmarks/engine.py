@@ -14,8 +14,8 @@ the least of a few runs, of
     gradient  of a steady slide and of a value of a trajectory, for the first time in a
               process: without a cache, then with every program kept
     certificates  of curves of scenes of 18 kinds, each for the first time
-    others    a solver of diffrax, and a fit to a trace, of three scenes of other kinds; a solve
-              of scenes with one part as a function, three functions each
+    others    a solver of diffrax, and a fit to a trace, of three scenes of other kinds
+              (and a `solve` with a load, and a support, as one of three functions)
     times     a `solve` with another number of times than before
 """
 
