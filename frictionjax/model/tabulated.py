@@ -2,10 +2,13 @@
 
 from typing import Any, NamedTuple
 
+import jax
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Array, Float
 
 from .._checks import ByIdentity, exchanged, require
+from .._compile import Interpreted
+from ..coefficients import Coefficients
 from ..loads import AbstractPull, PiecewiseLinear
 from ..supports import AbstractSupport, Spring
 from ..tables import (
@@ -24,6 +27,7 @@ from .friction_coefficients import coefficients_jit
 from .potentials import AbstractPotential, BristlePotential
 from .scene import Scene, forces_met
 from .scene_loads import known_turning_points, padded_edges
+from .settings import SETTINGS
 from .summed_potential import SummedPotential
 from .tabulated_potential import tabulated_potentials
 
@@ -95,7 +99,7 @@ def tabulated_scene(scene: Scene, eps: Any) -> TabulatedScene:
     tables = TabulatedScene(
         potential=planning,
         lane_potential=lanes,
-        support=_support_of(scene, float(law.rho_plus), float(law.rho_minus)),
+        support=_support_of(scene, planning, highest, law),
         load=load_in_pieces(scene.load, turns, duration),
         duration=duration,
         z0=float(scene.z0),
@@ -107,13 +111,27 @@ def tabulated_scene(scene: Scene, eps: Any) -> TabulatedScene:
     return tables
 
 
-def _support_of(scene: Scene, rho_plus: float, rho_minus: float) -> AbstractSupport:
-    """The support's table, for all forces that it meets."""
-    if isinstance(scene.support, Spring):
+@Interpreted
+def _wiggles(potential: AbstractPotential, eps: Array, places: Array) -> Array:
+    return jax.vmap(lambda y: potential.tip_force(y, eps)[0])(places)
+
+
+def _support_of(
+    scene: Scene, potential: AbstractPotential, eps: float, law: Coefficients
+) -> AbstractSupport:
+    """The support's table, for all forces that it meets.
+
+    Below a fold nothing pulls a tip further than the load and the wiggles do. Mass may, and
+    so scenes with effects keep the function.
+    """
+    if isinstance(scene.support, Spring) or scene.effects:
         return scene.support
+    places = np.arange(SETTINGS.places) / SETTINGS.places
+    wiggles = _wiggles(potential, np.asarray(eps), places)
     low, high, start = forces_met(scene)
-    ends = min(low - rho_plus, start), max(high - rho_minus, start)
-    return support_table(scene.support, *ends)
+    least = min(low - max(float(law.rho_plus), wiggles.max()), start)
+    most = max(high - min(float(law.rho_minus), wiggles.min()), start)
+    return support_table(scene.support, least, most)
 
 
 def scene_of_tables(scene: Scene, eps: Any) -> Scene:
@@ -129,14 +147,21 @@ def scene_of_tables(scene: Scene, eps: Any) -> Scene:
     if isinstance(potential, BristlePotential):
         bristle = in_one_size(potential.bristle)
         potential = BristlePotential(potential.profile, bristle)
-    return scene_on_edges(exchanged(scene, {"support": tables.support}), potential)
+    known = exchanged(scene, {"support": tables.support})
+    return _on_edges(known, potential, tables.load, tables.turning_points)
 
 
 def scene_on_edges(scene: Scene, potential: AbstractPotential) -> Scene:
     """A known scene with this potential, its load as lines on its edges, unchecked."""
     turns = known_turning_points(scene.load, scene.duration, scene.turns)
+    load = load_in_pieces(scene.load, turns, float(scene.duration))
+    return _on_edges(scene, potential, load, turns)
+
+
+def _on_edges(
+    scene: Scene, potential: AbstractPotential, table: AbstractPull, turns: np.ndarray
+) -> Scene:
     edges = padded_edges(turns, scene.duration)
-    table = load_in_pieces(scene.load, turns, float(scene.duration))
     load = load_on_edges(table, edges)
     parts = {"potential": potential, "load": load, "turns": edges.size - 1, "effects": ()}
     return exchanged(scene, parts)

@@ -170,6 +170,30 @@ def test_supports_given_as_functions_are_of_one_kind():
     np.testing.assert_allclose(both[0].dissipation, both[1].dissipation, rtol=1e-6)
 
 
+def test_series_of_supports_reach_as_far_as_wiggles_at_this_eps_pull():
+    """Where the bristle bends folds at large eps are higher than rho."""
+    support = fx.supports.Convex(lambda z: z**2 + 0.01 * z**4)
+    bent = B.Custom(lambda eta: 16 * eta**2, lambda eta: 20 * eta)
+    scene = scene_of().replace(support=support, bristle=bent, profile=P.Sine(0.5))
+    reached = []
+    for eps in (1e-3, 1.0):
+        tables = tabulated_scene(scene, eps)
+        pulls = forces_at(tables.potential, np.linspace(0, 1, 401), eps)[0]
+        least, most = -6.0 - float(pulls.max()), 6.0 - float(pulls.min())
+        sides = tables.support.low, tables.support.high
+        ends = [float(support.force(side)) for side in sides]
+        assert ends[0] < least < most < ends[1]
+        reached.append(ends[1] - ends[0])
+    assert reached[1] > 1.1 * reached[0]
+
+
+def test_supports_of_scenes_with_mass_stay_functions():
+    support = fx.supports.Convex(lambda z: z**2 + 0.01 * z**4)
+    inertia = fx.effects.Inertia(mass=1e-3, exponent=1.0)
+    scene = scene_of().replace(support=support, effects=(inertia,))
+    assert tabulated_scene(scene, 1e-2).support is scene.support
+
+
 def test_solvers_of_diffrax_run_the_same_programs_for_all_classes(caplog):
     """And find what they find on the parts themselves, which an adjoint asks for."""
     ts, method = [0.0, 0.5, 2.0], Rodas5P()
