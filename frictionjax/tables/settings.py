@@ -37,6 +37,7 @@ class Settings(NamedTuple):
 
     # Points of a load (`loads.py`).
     points: tuple[int, ...] = (8, 64, 1024)
+    few_edges: int = 128  # that are all compared with a time
     times: int = 1024  # of a function, asked at once
     same: float = 1e-10  # of the largest: how far pieces may be off at other times
     # Bins for each piece of a function: pieces meet its kinks, and are halves of halves of
@@ -53,8 +54,8 @@ class Settings(NamedTuple):
 
     # Supports as power series (`supports.py`).
     support_terms: int = 24
-    # Of the forces that a support meets for eps -> 0: how much further its series goes, as
-    # folds at large eps are higher.
+    # Of the forces that a support meets: how much further its series goes, as folds are
+    # looked for at some places only.
     beyond: float = 0.25
 
 

@@ -143,8 +143,7 @@ def march(
     """Run all jobs side by side; each lane takes the next job when it is through.
 
     NumPy arrays in and out. What a lane finds does not depend on the others, to the last
-    bit.
-    `work` (jobs,): about in proportion to the steps of each; None: to its wells.
+    bit. `work` (jobs,): about in proportion to the steps of each; None: to its wells.
     """
     tables = [
         np.stack(np.broadcast_arrays(*(np.asarray(c, float) for c in t)), -1)

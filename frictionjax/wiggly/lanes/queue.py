@@ -247,6 +247,4 @@ def run_queue(
 
     found = jnp.full((legs + 1, len(SegmentEnds._fields)), jnp.nan)
     start = _Work(*_waiting(width, legs), jnp.zeros((), dtype=int), found)
-    return jax.lax.while_loop(
-        lambda work: jnp.any(work.task.leg <= legs), look, start
-    ).found
+    return jax.lax.while_loop(go_on, look, start).found

@@ -1,0 +1,69 @@
+"""Loads given as functions, as polynomials on pieces."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from .._checks import Real
+from .._compile import Interpreted, in_chunks
+from ..loads import AbstractPull, PiecewiseLinear
+from .fitted_pieces import fitted_pieces
+from .loads import SumOfLoads, load_table
+from .pieces import Binned, binned
+from .settings import SETTINGS
+
+_GOLDEN = 0.5 * (5**0.5 - 1)  # places so far apart fill a stretch evenly
+
+
+class PiecewiseLoad(AbstractPull):
+    """A function on [0, duration] (s) in pieces, as in `Binned`, at shares of it.
+
+    `steepest`: where it is known to be, s; NaN where it is not.
+    """
+
+    rows: Float[Array, "pieces columns"]
+    first: Int[Array, " bins"]
+    duration: Real
+    steepest: Real
+
+    def __call__(self, t: Real) -> Real:
+        return Binned(self.rows, self.first)(t / self.duration)
+
+
+@Interpreted
+def _values(load: AbstractPull, times: Array) -> Array:
+    return jax.vmap(load)(times)
+
+
+def load_in_pieces(
+    load: AbstractPull, turning_points: Float[np.ndarray, " n"], duration: float
+) -> AbstractPull:
+    """The table of a known load; a function in pieces, itself where none meet it.
+
+    `turning_points`: those inside (0, duration), and kinks, in s: there pieces end.
+    """
+    table = load_table(load)
+    if isinstance(table, SumOfLoads | PiecewiseLinear):
+        return table
+
+    def values(places: np.ndarray) -> np.ndarray:
+        return in_chunks(_values, SETTINGS.times, (table,), (duration * places,))
+
+    known = getattr(table, "steepest", None)
+    steepest = float("nan" if known is None else known)
+    inside = [steepest] if 0 < steepest < duration else []
+    edges = np.unique([0.0, *turning_points, *inside, duration]) / duration
+    pieces = fitted_pieces(values, edges)
+    found = None if pieces is None else binned(pieces, SETTINGS.function_bins)
+    if found is None:
+        return table
+    load = PiecewiseLoad(*found, jnp.asarray(duration), jnp.asarray(steepest))
+    return load if _say_the_same(table, load, duration) else table
+
+
+def _say_the_same(load: AbstractPull, pieces: AbstractPull, duration: float) -> bool:
+    """Whether they do at times that pieces were not made of, all over the duration."""
+    times = duration * np.mod(_GOLDEN * np.arange(SETTINGS.times), 1.0)
+    one, other = _values(load, times), _values(pieces, times)
+    return bool(np.max(np.abs(one - other)) <= SETTINGS.same * np.max(np.abs(one)))
