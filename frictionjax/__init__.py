@@ -10,7 +10,7 @@ A scene: `Scene` of parts from `profiles`, `bristles`, `supports`, `loads`, with
 
 - Which friction? `friction`, `nap`, `steady_slide`, `friction_curve`.
 - How does it move? `solve`, `solve_limit`, `mechanics`; with noise `ensemble`, `histogram`.
-- Can I trust it? `Status`, `certify`.
+- Can I trust it? `Status`, `certify`, `certify_limit`; `principle`, what moving costs.
 - How fast is the limit reached? `sweep`, `study`.
 - What does accuracy cost? `work_precision`, `predict_cost`, `fit_budget`, `order_cost`.
 - Which effects does it call for? `explain`.

@@ -3,11 +3,13 @@ from . import effects as effects
 from . import loads as loads
 from . import measured as measured
 from . import plot as plot
+from . import principle as principle
 from . import profiles as profiles
 from . import supports as supports
 from ._compile import keep_compiled as keep_compiled
 from ._compile import use_fast_cpu as use_fast_cpu
 from .certificate import certify as certify
+from .certificate import certify_limit as certify_limit
 from .contact import mechanics as mechanics
 from .contact import nap as nap
 from .cost import fit_budget as fit_budget

@@ -28,7 +28,7 @@ FLOORS = {
         {"stochastic", "turning", "slide_laws"},
         {"called_for"},
         {"measured", "limit", "wiggly", "certificate"},
-        {"contact"},
+        {"contact", "principle"},
         {"io", "sweeps", "convergence"},
         {"cost", "explain"},
         {"plot"},
@@ -54,7 +54,7 @@ FLOORS = {
         {"trajectory"},
     ],
     "certificate": [
-        {"settings", "forces"},
+        {"settings", "forces", "limit_curve"},
         {"curve", "verdicts", "sample_gaps"},
         {"transits", "tube", "critical_places", "massive_steps"},
         {"plain_curve", "massive_course"},

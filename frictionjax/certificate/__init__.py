@@ -1,6 +1,8 @@
-"""Whether a sampled curve solves the wiggly system, judged from the scene alone.
+"""Whether a sampled curve solves the wiggly system, or the limit, by the scene alone.
 
-Nothing of `wiggly` is imported here: a certificate is worth something because it comes
-from elsewhere."""
+Nothing of `wiggly` or `limit` is imported here: a certificate is worth something because
+it comes from elsewhere."""
 
 from .certification import certify as certify
+from .limit_curve import certify_limit as certify_limit
+from .plain_curve import least_residual as least_residual

@@ -15,7 +15,7 @@ from ..effects import (
     inertia_among,
     nap_flip_among,
 )
-from ..model import Scene, coefficients_jit, require_reach, require_times, scene_for
+from ..model import Scene, coefficients_jit, require_instants, require_reach, scene_for
 from .plain_curve import plain_certificate
 from .verdicts import Certificate, CertificateStatus, nothing_known
 
@@ -35,7 +35,7 @@ def certify(
     mode: Any = None,
     progress: bool = False,
 ) -> Certificate:
-    """Certify any sampled curve, whatever made it, against the `scene` alone (eq. 2.7).
+    """Certify any sampled curve, whatever made it, against the `scene` alone (eq. 2.8).
 
     `eps` in m, `gamma` > 0; `ts` in s, increasing, in [0, duration]; `z` in m; shapes
     (n,), n >= 2, NumPy or JAX. The curve's start is not compared with the scene's `z0`.
@@ -118,7 +118,7 @@ def _certificate(
     require_real("eps", eps, "eps > 0", lambda e: e > 0)
     require_real("gamma", gamma, "gamma > 0", lambda g: g > 0)
     array = next((e for e in scene.effects if isinstance(e, CompliantArray)), None)
-    ts = _require_instants(scene, ts)
+    ts = require_instants(scene, ts)
     z = _require_states(ts, z, array)
     inertia = inertia_among(scene.effects)
     speeds = _require_column("velocity", velocity, inertia, "Inertia", "z' in m/s", ts)
@@ -164,14 +164,6 @@ def _certificate(
             mode=modes,
         )
     return plain_certificate(scene, eps, viscosity, scale, ts, z)
-
-
-def _require_instants(scene: Scene, ts: Any) -> np.ndarray:
-    times = known_numbers(ts)
-    require(times.ndim == 1 and times.size >= 2, "ts", ts, "times, shape (n,), n >= 2")
-    times = np.asarray(require_times(scene, times), dtype=float)
-    require(np.all(np.diff(times) > 0), "ts", times, "times that increase")
-    return times
 
 
 def _require_states(ts: np.ndarray, z: Any, array: CompliantArray | None) -> np.ndarray:

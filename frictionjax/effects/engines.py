@@ -24,6 +24,8 @@ class Engine(enum.Enum):
     PATH = "solve by a solver of diffrax, and for derivatives"
     SWEEP = "sweep"
     CERTIFICATE = "certify"
+    LIMIT_CERTIFICATE = "certify_limit"
+    PRINCIPLE = "principle (D and D_eps)"
     MECHANICS = "mechanics"
     COST = "work_precision, predict_cost and fit_budget"
     TRACE = "fit_trace"
@@ -47,14 +49,19 @@ _DOES: dict[str, frozenset[Engine]] = {
     "CompliantArray": frozenset(
         {
             *(_E.LIMIT, _E.RESOLVED, _E.WINDOWED, _E.SWEEP, _E.CERTIFICATE),
-            *(_E.SLIDE, _E.FRICTION_CURVE),
+            *(_E.SLIDE, _E.FRICTION_CURVE, _E.LIMIT_CERTIFICATE),
         }
     ),
     "Noise": frozenset(
         {_E.RESOLVED, _E.WINDOWED, _E.SWEEP, _E.ENSEMBLE, _E.FRICTION_CURVE}
     ),
     "NapFlip": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE}),
-    "Inertia": frozenset({_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE}),
+    "Inertia": frozenset(
+        {
+            *(_E.LIMIT, _E.RESOLVED, _E.SWEEP, _E.MECHANICS, _E.CERTIFICATE),
+            _E.LIMIT_CERTIFICATE,
+        }
+    ),
 }
 """Of effects that change what moves: the engines that do them."""
 _DOES_NOT: dict[str, frozenset[Engine]] = {
@@ -80,6 +87,10 @@ _INSTEAD: dict[tuple[str, Engine], str] = {
     ("RigidArray", _E.TRACE): _ALONE,
     ("Noise", _E.LIMIT): "a scene without it; with it friction_curve, at the speeds asked",
     ("Noise", _E.CERTIFICATE): "a scene without it; of noisy paths histogram, of many",
+    ("CompliantArray", _E.PRINCIPLE): _ALONE,
+    ("Noise", _E.LIMIT_CERTIFICATE): "a scene without it",
+    ("Noise", _E.PRINCIPLE): "a scene without it",
+    ("Inertia", _E.PRINCIPLE): _MASSLESS,
     ("Noise", _E.COST): "explain, which tells what it costs",
     ("Noise", _E.TRACE): "a scene without it",
     ("NapFlip", _E.SLIDE): "nap, of its bristle",
@@ -119,6 +130,8 @@ _INSTEAD |= {
     ("NapFlip", _E.COST): "stats of solve, which tell steps",
     ("NapFlip", _E.TRACE): _STANDS,
     ("NapFlip", _E.ENSEMBLE): _STANDS,
+    ("NapFlip", _E.LIMIT_CERTIFICATE): _STANDS,
+    ("NapFlip", _E.PRINCIPLE): _STANDS,
     ("NapFlip", _E.FRICTION_CURVE): "nap, of its bristle, and sweep of a slow load",
 }
 

@@ -182,7 +182,7 @@ def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSo
 
 
 def require_start_in_strip(scene: Scene) -> None:
-    """Check that z0 lies in the strip at t = 0, as Theorem 1 asks (eq. 2.11)."""
+    """Check that z0 lies in the strip at t = 0, as Theorem 1 asks (eq. 2.10)."""
     if not is_concrete(scene):
         return
     found = coefficients_jit(scene.potential)

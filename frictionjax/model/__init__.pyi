@@ -16,6 +16,8 @@ from .potentials import potential as potential
 from .potentials import smallest_stretch as smallest_stretch
 from .scene import Scene as Scene
 from .scene import known_scene as known_scene
+from .scene import require_curve as require_curve
+from .scene import require_instants as require_instants
 from .scene import require_times as require_times
 from .scene import require_told_apart as require_told_apart
 from .scene_loads import known_turning_points as known_turning_points
@@ -29,6 +31,7 @@ from .tabulated import require_friction as require_friction
 from .tabulated import scene_of_tables as scene_of_tables
 from .tabulated import scene_on_edges as scene_on_edges
 from .tabulated import tabulated_scene as tabulated_scene
+from .tabulated_potential import cancels as cancels
 from .tabulated_potential import potential_at_rest as potential_at_rest
 from .tabulated_potential import potential_in_reach as potential_in_reach
 from .tabulated_potential import tabulated_potentials as tabulated_potentials

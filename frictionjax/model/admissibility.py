@@ -151,7 +151,7 @@ def is_admitted(potential: BristlePotential, eps: Real) -> Bool[Array, ""]:
 def require_reach(potential: AbstractPotential, eps: Float[ArrayLike, "*shape"]) -> None:
     """Check what has to hold at the eps in use, with the bristle's geometry there.
 
-    `G = 1 + A'(eta) w' > 0` (eq. 3.31), and of a rod that only its tip touches the surface,
+    `G = 1 + A'(eta) w' > 0` (eq. 3.22), and of a rod that only its tip touches the surface,
     `w' < cot(theta)` of Section 3.3 at the angle in use; of a `GivenPotential` that W and Q
     keep their digits, and that Q is 1-periodic and bounded. Raises `ValueError` with the
     eps below which it holds.

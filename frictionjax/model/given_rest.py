@@ -1,4 +1,4 @@
-"""What eq. 2.8 asks of a given Q: 1-periodic, and bounded as eps -> 0."""
+"""What eq. 2.6 asks of a given Q: 1-periodic, and bounded as eps -> 0."""
 
 import numpy as np
 
@@ -52,5 +52,5 @@ def _require_bounded(potential: GivenPotential, least: float) -> None:
     said = (
         f"|Q| and |Q'| up to {largest[now]:.3g}, {growth[now]:.3g} times as much at eps/8"
     )
-    needs = "Q and Q' bounded as eps -> 0 (eq. 2.8), or rho is not the largest W'"
+    needs = "Q and Q' bounded as eps -> 0 (eq. 2.6), or rho is not the largest W'"
     require(not (grows and felt and known), name, said, needs)

@@ -1,4 +1,4 @@
-"""The wiggly potential `V_eps` (eq. 2.8), of a bristle or given directly."""
+"""The wiggly potential `V_eps` (eq. 2.5), of a bristle or given directly."""
 
 import abc
 import inspect
@@ -146,7 +146,7 @@ def _rest_anywhere(potential: AbstractPotential, eps: Real, Y: Real) -> Real:
 
 
 class BristlePotential(AbstractPotential):
-    """`V_eps(z) = F(w_eps(p(z))) - F(0)` with `z = p + A(w_eps(p))` (eqs. 2.20, 3.28)."""
+    """`V_eps(z) = F(w_eps(p(z))) - F(0)` with `z = p + A(w_eps(p))` (eqs. 2.16, 3.21)."""
 
     profile: AbstractProfile
     bristle: AbstractBristle
@@ -183,7 +183,7 @@ class BristlePotential(AbstractPotential):
         return _slope(self.bristle.offset, jnp.zeros(()))[1]
 
     def alpha(self) -> Real:
-        """`F'(0)` in N (eq. 2.15)."""
+        """`F'(0)` in N (eq. 2.13)."""
         return _slope(self.bristle.energy, jnp.zeros(()))[1]
 
     def flat_tip(self, Y: Real) -> Real:
@@ -233,7 +233,7 @@ def _takes_two(fn: Callable) -> bool:
 
 
 class GivenPotential(AbstractPotential):
-    """The abstract setting: `W` and `Q` as functions (eq. 2.8), z its own tip coordinate.
+    """The abstract setting: `W` and `Q` as functions (eq. 2.5), z its own tip coordinate.
 
     `W_fn(Y)` in N: 1-periodic, C^2; `Q_fn(eps, Y)` in N/m: 1-periodic and C^2 in Y, and
     bounded with its derivative as eps -> 0; scalar functions written with `jax.numpy`. Q is
@@ -299,7 +299,7 @@ class GivenPotential(AbstractPotential):
 
 
 def potential(profile: AbstractProfile, bristle: AbstractBristle) -> BristlePotential:
-    """The wiggly potential of a `bristle` on a surface, `profile` (eqs. 2.20, 3.28).
+    """The wiggly potential of a `bristle` on a surface, `profile` (eqs. 2.16, 3.21).
 
     Returns an object with `.energy(z, eps)`, V_eps in J, `.force(z, eps)`, V_eps' in N,
     `.W(Y)` in N and `.Q(eps, Y)` in N/m (Lemma 2); z and eps in m, Y = z/eps, any shape.

@@ -350,3 +350,24 @@ def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " 
     if known[0] >= 0 and known[-1] <= end:
         return ts
     return jnp.asarray(np.clip(known, 0.0, end))
+
+
+def require_instants(scene: Scene, ts: Any) -> Float[np.ndarray, " n"]:
+    """Check times of samples that are known: two or more that increase, in the scene."""
+    times = known_numbers(ts)
+    require(times.ndim == 1 and times.size >= 2, "ts", ts, "times, shape (n,), n >= 2")
+    times = np.asarray(require_times(scene, times), dtype=float)
+    require(np.all(np.diff(times) > 0), "ts", times, "times that increase")
+    return times
+
+
+def require_curve(
+    scene: Scene, ts: Any, z: Any
+) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
+    """Check a curve that is known by samples: times as above, and states in m."""
+    times = require_instants(scene, ts)
+    states, needs = known_numbers(z), f"real states of the shape {times.shape} of ts"
+    require(states.shape == times.shape, "z", z, needs)
+    states = states.astype(float)
+    require(np.all(np.isfinite(states)), "z", states, "finite states")
+    return times, states

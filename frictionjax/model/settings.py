@@ -46,10 +46,9 @@ class Settings(NamedTuple):
     grows: float = 2.5
     felt: float = 1e-9  # of the range of W': of less than that no force knows
 
-    # The law of friction (`friction_law.py`).
-    slack: float = 1e-10  # of the interval; rounding of l - Phi' at |l| = 1e4 rho is 1e-12
+    # What l - Phi'(z) loses on slides, where it is rho (`principle`, `contact`).
+    slack: float = 1e-10  # of the interval; rounding at |l| = 1e4 rho is 1e-12
     spacings: int = 8  # of l: two each of l, z and Phi', and of what z is solved from
-    newton: int = 6  # sweeps: H' is a parabola at worst, where xi is close to rho
 
     # Sums of potentials (`summed_series.py`).
     sum_places: int = 1024  # samples a period of one tip's energy

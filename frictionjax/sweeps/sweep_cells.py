@@ -38,7 +38,7 @@ def sweep(
     effects: str = "all",
     key: Any = None,
 ) -> "xr.Dataset":
-    """Solve all cells `eps` x `gamma` (eq. 2.7), compare each with the limit (eq. 2.3).
+    """Solve all cells `eps` x `gamma` (eq. 2.8), compare each with the limit (eq. 2.3).
 
     `eps` in m and `gamma`: numbers or lists, in any order; `ts`, `accuracy` and `method`
     as in `solve`. `progress`: a bar on standard error. `dissipation=False` integrates no

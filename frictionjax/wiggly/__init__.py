@@ -1,4 +1,4 @@
-"""The wiggly system (eq. 2.7) at finite eps: one trajectory, or all cells of a sweep.
+"""The wiggly system (eq. 2.8) at finite eps: one trajectory, or all cells of a sweep.
 
 From the bottom: `stepping` (step sizes, their control), `equation` (vector field, energies,
 step plan), `rosenbrock` (the scheme), `sequential` (one traced trajectory, through

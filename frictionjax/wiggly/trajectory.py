@@ -102,7 +102,7 @@ def solve(
     effects: str = "all",
     progress: bool = False,
 ) -> Solution:
-    """Solve `eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.7) of a `scene` from z0.
+    """Solve `eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.8) of a `scene` from z0.
 
     `eps` in m, `gamma` > 0. `ts`: times in s, not decreasing, in [0, duration]; 201 evenly
     spaced ones where None. `accuracy`: wanted error of `z` in units of eps at every time

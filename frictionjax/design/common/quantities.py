@@ -39,7 +39,7 @@ def slopes_of(profile: AbstractProfile, twice: bool = True) -> Slopes:
 class OnSlopes(NamedTuple):
     """A bristle on a surface with given extreme slopes.
 
-    `margin`: the least of what has to be positive (eq. 3.31 at eps = 0, the bristle's own
+    `margin`: the least of what has to be positive (eq. 3.22 at eps = 0, the bristle's own
     bounds on slopes), in units of slope; NaN where a number is not finite.
     """
 

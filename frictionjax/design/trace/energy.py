@@ -2,7 +2,7 @@
 
 No surface is needed: V_eps' has zero mean over a well, so on any surface a tip that moves
 on by wells, either way and however it gets there, has lost energy,
-`int f dz = int eps^gamma z'^2 dt >= 0` with `f = l - Phi'(z)` (eq. 2.7). Nor is a fine
+`int f dz = int eps^gamma z'^2 dt >= 0` with `f = l - Phi'(z)` (eq. 2.8). Nor is a fine
 sampling: in a slip the load is constant, and f a function of z that two samples show.
 """
 

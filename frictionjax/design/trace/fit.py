@@ -57,7 +57,7 @@ def fit_trace(
     an offset, and the load itself in place of the force.
 
     While the tip is not in a slip the equation itself shows the wiggle force: a robust
-    fit of V_eps'(z) = l - Phi'(z) - eps^gamma z' (eq. 2.7) at the samples is the start.
+    fit of V_eps'(z) = l - Phi'(z) - eps^gamma z' (eq. 2.8) at the samples is the start.
     Then Levenberg and Marquardt's method through the trajectory from z0 and its
     derivatives, every slip integrated. Samples inside slips are left out. Directions that
     the trace leaves open follow a weak prior (little bending); what is reported as

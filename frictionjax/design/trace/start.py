@@ -28,7 +28,7 @@ class Reading(NamedTuple):
 
 
 def read(ts: np.ndarray, z: np.ndarray, sd: np.ndarray, rest: np.ndarray, drag, support):
-    """Read the equation `V_eps'(z) = l - Phi'(z) - eps^gamma z'` (eq. 2.7) at samples.
+    """Read the equation `V_eps'(z) = l - Phi'(z) - eps^gamma z'` (eq. 2.8) at samples.
 
     `rest`: `l - Phi'(z)`, N. The speed by central differences; half the difference of the
     one before and the one after is taken for its error, so that samples in slips, and

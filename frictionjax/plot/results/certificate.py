@@ -11,15 +11,16 @@ _NAMES = {
     "spacing": "samples apart",
     "missing_force": "force missing in slips",
     "viscosity": "viscosity of slips off by",
+    "excess": "force beyond friction",
     "distance": "distance from solutions",
 }
 
 
 @styled
 def draw_certificate(found: Any, ax: Any = None) -> Any:
-    """Draw what decides of a certificate, `found` by `certify`, over the most accepted.
+    """Draw what decides of a certificate, over the most that is accepted.
 
-    A Figure, or `ax` where it is drawn into that.
+    `found` by `certify` or `certify_limit`. A Figure, or `ax` where it is drawn into that.
 
     Bars that pass the line at 1 are why a curve is refused. One without a bar is unknown,
     as are those of slips of a curve that has none.

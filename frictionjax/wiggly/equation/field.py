@@ -34,7 +34,7 @@ class Driven(NamedTuple):
 
 
 class TipField(eqx.Module):
-    """`eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.7) for the tip `y = p/eps`.
+    """`eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.8) for the tip `y = p/eps`.
 
     In y nothing has to be inverted:
     `y' = (l(t) - Phi'(eps y + A) - V_eps') / (eps^(gamma+1) G)`, `G = dz/dp`.
@@ -102,7 +102,7 @@ class TipField(eqx.Module):
         )
 
     def energy(self, t: Real, y: Real) -> Real:
-        """`E_eps = Phi - l z + V_eps` (eq. 2.6) in J."""
+        """`E_eps = Phi - l z + V_eps` (eq. 2.4) in J."""
         z = self.state(y)
         # Differences of energies over a scene lose nothing that the quadrature in
         # `tip_energy` could keep, and this one runs every step.

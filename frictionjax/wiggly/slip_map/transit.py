@@ -1,7 +1,7 @@
 """How long a tip that slides without rest takes from one well to the next.
 
 In a fast slide the force never falls to zero, so time is a function of the tip: from
-eq. 2.7, `dt/dy = eps^(gamma+1) G/(l - Phi' - V_eps')`, over exactly one period. That
+eq. 2.8, `dt/dy = eps^(gamma+1) G/(l - Phi' - V_eps')`, over exactly one period. That
 integrand is smooth and hardly stiff, where `y'` as a function of time is both.
 """
 

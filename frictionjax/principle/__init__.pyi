@@ -1,0 +1,9 @@
+from .along_curves import D as D
+from .along_curves import D_eps as D_eps
+from .dissipation import R as R
+from .dissipation import R_eps as R_eps
+from .dissipation import R_eps_star as R_eps_star
+from .dissipation import R_star as R_star
+from .joint import K as K
+from .joint import M as M
+from .joint import M_eps as M_eps

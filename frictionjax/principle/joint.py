@@ -1,0 +1,93 @@
+"""What a motion under a force dissipates at least: M, with its K, and M_eps."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from .._checks import is_concrete, with_nan
+from .._compile import once_a_scene, padded_size
+from ..model import AbstractPotential, cancels, potential_at_rest
+from .dissipation import is_held, law_of, numbers_as_given, viscosity_as_given
+from .settings import SETTINGS
+from .well_variation import well_variation
+
+
+@once_a_scene
+def _variations(
+    potential: AbstractPotential, xi: Float[Array, "rows together"]
+) -> Float[Array, "rows together"]:
+    return jax.lax.map(jax.vmap(lambda force: well_variation(potential, force)), xi)
+
+
+def mean_resistance(
+    potential: AbstractPotential, xi: Float[Array, "*xi"]
+) -> Float[Array, "*xi"]:
+    """`K` of a potential, at forces in N of any shape: one program for all of them."""
+    if is_concrete(potential) and cancels(potential):
+        return jnp.abs(xi)
+    count = jnp.size(xi)
+    room = padded_size(max(count, 1), SETTINGS.together)
+    rows = jnp.pad(jnp.ravel(xi), (0, room - count)).reshape(-1, SETTINGS.together)
+    found = _variations(potential_at_rest(potential), rows)
+    return found.ravel()[:count].reshape(jnp.shape(xi))
+
+
+@with_nan
+def K(scene: Any, xi: Any) -> Float[Array, "*xi"]:
+    """`K(xi) = int_0^1 |xi - W'(Y)| dY` in N (eq. 5.4), exact but for rounding.
+
+    `xi`: forces in N, any shape. More than |xi| inside (rho_minus, rho_plus) of the
+    `scene`, |xi| outside: what friction takes at least, of each metre, under the force xi.
+    Differentiable in xi: its slope is the share of a period where W' is below xi, minus
+    that where it is above.
+
+    Raises `ValueError` as `R`.
+
+    >>> print(fx.principle.K(scene, [0.0, 0.1, 0.2]).round(4))
+    [0.0652 0.1044 0.2   ]
+    """
+    (xi,) = numbers_as_given(xi=xi)
+    scene, _ = law_of(scene)
+    return mean_resistance(scene.potential, xi)
+
+
+@with_nan
+def M(scene: Any, v: Any, xi: Any, slack: Any = 0.0) -> Float[Array, "..."]:
+    """`M(v, xi) = |v| K(xi) + chi(xi)` (eq. 5.3) in W, infinite outside the rho interval.
+
+    Velocities `v` in m/s and forces `xi` in N, shapes that broadcast. `M >= v xi`, and
+    both are the same where friction allows the motion v under the force xi, on the graph
+    C_M (eq. 5.5), and nowhere else. The interval is wider by 1e-10 of itself, and by
+    `slack` in N: xi = l - Phi'(z) is a difference, and loads above 1e5 rho leave more of
+    rounding in it than that. K is that of the nearest xi inside.
+
+    Raises `ValueError` as `R`.
+
+    >>> rho = fx.friction(scene).rho_plus
+    >>> print(fx.principle.M(scene, [1.0, 1.0, 0.0], [rho, 0.1, 0.2]).round(4))
+    [0.1204 0.1044    inf]
+    """
+    v, xi, slack = numbers_as_given(v=v, xi=xi, slack=slack)
+    scene, law = law_of(scene)
+    held = jnp.clip(xi, law.rho_minus, law.rho_plus)
+    least = jnp.abs(v) * mean_resistance(scene.potential, held)
+    return jnp.where(is_held(law, xi, slack), least, jnp.inf)
+
+
+@with_nan
+def M_eps(v: Any, xi: Any, eps: Any, gamma: Any) -> Float[Array, "..."]:
+    """`M_eps(v, xi) = R_eps(v) + R_eps*(xi)` (eq. 5.1) in W.
+
+    Velocities `v` in m/s, forces `xi` in N, `eps` in m, `gamma` > 0: shapes that
+    broadcast. `M_eps >= v xi`, the same where `xi = eps^gamma v`, and nowhere else.
+
+    Raises `ValueError` as `R_eps`.
+
+    >>> print(fx.principle.M_eps(2.0, 0.02, eps=0.01, gamma=1.0))
+    0.04
+    """
+    v, xi = numbers_as_given(v=v, xi=xi)
+    viscosity = viscosity_as_given(eps, gamma)
+    return viscosity * v**2 / 2 + xi**2 / (2 * viscosity)
