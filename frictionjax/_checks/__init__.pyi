@@ -37,6 +37,7 @@ from .parts import is_checked as is_checked
 from .parts import mark_checked as mark_checked
 from .results import CodedResult as CodedResult
 from .results import Result as Result
+from .shown_parts import call_text as call_text
 from .shown_parts import exact_text as exact_text
 from .shown_parts import notebook_text as notebook_text
 from .shown_parts import part_text as part_text

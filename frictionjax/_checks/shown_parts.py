@@ -41,6 +41,12 @@ def part_text(part: Any, names: list[str]) -> str:
     return _call(type(part).__name__, given)
 
 
+def call_text(name: str, given: dict[str, Any]) -> str:
+    """A call of another name than the class's, with what of its arguments is not None."""
+    known = {key: _value_text(v) for key, v in given.items() if v is not None}
+    return _call(name, known)
+
+
 def exact_text(value: Any) -> str:
     """Any part with all of its fields, to the last digit of every number."""
     if isinstance(value, eqx.Module):

@@ -103,6 +103,15 @@ def _while(params: dict, operands: list) -> list:
     condition, body = params["cond_nconsts"], params["body_nconsts"]
     fixed = operands[:condition], operands[condition : condition + body]
     carry = operands[condition + body :]
-    while _call(params["cond_jaxpr"], [*fixed[0], *carry])[0]:
-        carry = _call(params["body_jaxpr"], [*fixed[1], *carry])
+    while np.any(goes_on := _call(params["cond_jaxpr"], [*fixed[0], *carry])[0]):
+        moved = _call(params["body_jaxpr"], [*fixed[1], *carry])
+        # Under `vmap` each has an end of its own, and stays where it came to.
+        carry = [_where(goes_on, *pair) for pair in zip(moved, carry, strict=True)]
     return carry
+
+
+def _where(chosen: np.ndarray, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    if np.ndim(chosen) == 0:
+        return one
+    of_each = np.reshape(chosen, chosen.shape + (1,) * (one.ndim - chosen.ndim))
+    return np.where(of_each, one, other)

@@ -1,12 +1,14 @@
 """Friction coefficients of the limit system (Lemma 2, Lemma 3)."""
 
+import dataclasses
+
 import jax.numpy as jnp
 
-from .._checks import ByIdentity, is_concrete
+from .._checks import ByIdentity, Real, is_concrete
 from .._compile import once_a_scene
 from ..coefficients import Coefficients
 from ..numerics import periodic_extrema, slope_of
-from .potentials import AbstractPotential, BristlePotential
+from .potentials import AbstractPotential, BristlePotential, GivenPotential
 from .summed_potential import SummedPotential
 from .tabulated_potential import cancels, potential_at_rest
 
@@ -16,7 +18,9 @@ def coefficients(potential: AbstractPotential) -> Coefficients:
     if not isinstance(potential, BristlePotential):
         slope = slope_of(potential._leading)
         extrema = periodic_extrema(slope, potential.points)
-        return Coefficients(rho_plus=extrema.max, rho_minus=extrema.min)
+        found = Coefficients(rho_plus=extrema.max, rho_minus=extrema.min)
+        alpha = potential.alpha() if isinstance(potential, GivenPotential) else None
+        return found if alpha is None else _with_alpha(found, alpha)
     slope = slope_of(potential.profile)
     extrema = periodic_extrema(slope, potential.points)
     a, alpha = potential.a(), potential.alpha()
@@ -35,6 +39,18 @@ def coefficients(potential: AbstractPotential) -> Coefficients:
         mu_minus=mu_minus,
         normal_plus=alpha - a * rho_plus,  # = F'(0)/(1 + a omega), the steepest place's
         normal_minus=alpha - a * rho_minus,
+    )
+
+
+def _with_alpha(found: Coefficients, alpha: Real) -> Coefficients:
+    """mu_plus > 0 > mu_minus, of rho = alpha mu: alpha < 0 exchanges them (Lemma 2)."""
+    ends = found.rho_plus / alpha, found.rho_minus / alpha
+    pushes = alpha > 0
+    return dataclasses.replace(
+        found,
+        alpha=alpha,
+        mu_plus=jnp.where(pushes, *ends),
+        mu_minus=jnp.where(pushes, *ends[::-1]),
     )
 
 

@@ -16,6 +16,7 @@ from .._checks import (
     Part,
     Real,
     as_plain,
+    call_text,
     checked,
     is_concrete,
     part_text,
@@ -25,7 +26,15 @@ from .._checks import (
     require_x64,
 )
 from ..bristles import AbstractBristle
-from ..numerics import bracketed_root, increment, mean_slope, second_remainder, smallest
+from ..numerics import (
+    LeadingTerm,
+    RestTerm,
+    bracketed_root,
+    increment,
+    mean_slope,
+    second_remainder,
+    smallest,
+)
 from ..profiles import AbstractProfile, require_smooth
 from .settings import SETTINGS
 
@@ -232,6 +241,12 @@ def _takes_two(fn: Callable) -> bool:
     return True
 
 
+def _require_of_two(name: str, fn: Callable) -> None:
+    needs = "a function of (eps, Y)"
+    require(callable(fn) and _takes_two(fn), name, fn, needs)
+    require_function(name, partial(fn, jnp.asarray(1e-3)), needs)
+
+
 class GivenPotential(AbstractPotential):
     """The abstract setting: `W` and `Q` as functions (eq. 2.5), z its own tip coordinate.
 
@@ -261,17 +276,62 @@ class GivenPotential(AbstractPotential):
         self.Q_fn = _nothing if Q is None else Q
         self.points = points
 
+    @classmethod
+    def from_energy(
+        cls,
+        F: Callable[[Real], Real],
+        WW: Callable[[Real], Real],
+        QQ: Callable[[Real, Real], Real] | None = None,
+        points: int = 4096,
+    ) -> "GivenPotential":
+        """`V_eps(z) = F(eps WW(Y) + eps^2 QQ(eps; Y)) - F(0)` (eq. 2.16), by Lemma 2.
+
+        `F(u)` in J, of a length u in m: C^3 around 0, `alpha = F'(0)` not 0, of either
+        sign. `WW(Y)` and `QQ(eps, Y)`, numbers and 1/m: 1-periodic and C^2 in Y. Scalar
+        functions written with `jax.numpy`. `points` samples a period must resolve WW'.
+
+        Returns the potential with `W = alpha WW` and a Q that keeps all digits at any eps:
+        written by hand, as a difference divided by eps^2, it has 4 digits left at eps =
+        1e-6 and none at 1e-8. `friction` of it tells alpha and mu too.
+
+        Raises `ValueError` where a function is none, alpha is 0, or W is no C^2 function
+        that repeats.
+
+        >>> import jax.numpy as jnp
+        >>> spring = lambda u: 0.5 * (1.0 + u) ** 2
+        >>> wave = lambda Y: 0.02 * jnp.sin(2 * jnp.pi * Y)
+        >>> given = fx.GivenPotential.from_energy(spring, wave)
+        >>> print(given.W(0.25), f"{given.Q(1e-8, 0.25):.6f}")
+        0.02 0.000200
+        """
+        require_function("F", F, "a function of a length u")
+        require_function("WW", WW, "a function of Y")
+        if QQ is not None:
+            _require_of_two("QQ", QQ)
+        leading = LeadingTerm(F, WW)
+        alpha = leading.alpha()
+        if is_concrete(alpha):
+            known = bool(jnp.isfinite(alpha)) and float(alpha) != 0.0
+            require(known, "F: alpha = F'(0)", float(alpha), "alpha != 0")
+        return cls(leading, RestTerm(leading, QQ), points)
+
+    def alpha(self) -> Real | None:
+        """`F'(0)` in N of a potential made `from_energy`, None of others."""
+        leading = self.W_fn
+        return leading.alpha() if isinstance(leading, LeadingTerm) else None
+
     def __check_init__(self):
         require_function("potential.W", self.W_fn, "a function of Y")
         if self.Q_fn is not _nothing:
-            what = "a function of (eps, Y)"
-            Q = self.Q_fn
-            require(callable(Q) and _takes_two(Q), "potential.Q", Q, what)
-            require_function("potential.Q", partial(Q, jnp.asarray(1e-3)), what)
+            _require_of_two("potential.Q", self.Q_fn)
         require_whole("potential.points", self.points, 16)
         require_smooth("potential.W", self._leading_inside, self.points)
 
     def __repr__(self) -> str:
+        if isinstance(self.W_fn, LeadingTerm):
+            leading, rest = self.W_fn, getattr(self.Q_fn, "rest", None)
+            given = {"F": leading.energy, "WW": leading.wiggle, "QQ": rest}
+            return call_text("GivenPotential.from_energy", given)
         without = ("Q",) if self.Q_fn is _nothing else ()
         return part_text(self, [n for n in ("W", "Q", "points") if n not in without])
 

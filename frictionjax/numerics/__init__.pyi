@@ -1,4 +1,6 @@
 from .completed_graphs import graph_distance as graph_distance
+from .composed_expansion import LeadingTerm as LeadingTerm
+from .composed_expansion import RestTerm as RestTerm
 from .extrema import Extrema as Extrema
 from .extrema import periodic_extrema as periodic_extrema
 from .extrema import slope_of as slope_of

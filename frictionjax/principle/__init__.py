@@ -6,7 +6,7 @@ eps: `M` with its `K`, and `M_eps`. Along a whole curve: `D` and `D_eps`, of whi
 is never more than what the wiggly systems leave: `D(z) <= liminf D_eps(z_eps)`.
 
 >>> round(float(fx.principle.K(scene, 0.0)), 6)
-0.065246
+0.064709
 """
 
 import lazy_loader

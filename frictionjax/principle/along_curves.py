@@ -48,7 +48,7 @@ def D(scene: Scene, ts: Any, z: Any) -> float:
     >>> limit = fx.solve_limit(scene, ts)
     >>> D = fx.principle.D(scene, ts, limit.z)
     >>> print(f"{D:.4f} J, where friction takes {limit.dissipation[-1]:.4f} J")
-    0.3524 J, where friction takes 0.3524 J
+    0.3796 J, where friction takes 0.3796 J
     """
     scene = scene_for(Engine.PRINCIPLE, scene)
     ts, z = require_curve(scene, ts, z)
@@ -80,14 +80,15 @@ def D_eps(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> float:
     `certify`, of second order in their distance; where they are farther apart, by straight
     lines, slips or not: of a solution that is sampled thinly it is much too large.
 
-    Raises `ValueError` for arguments out of range, a bad curve, one of more than 2 million
-    wells, an eps at which the bristle loses its contact, and for effects that move tips by
-    other laws.
+    Raises `ValueError` for arguments out of range, a bad curve, one of more than half a
+    million wells, an eps at which the bristle loses its contact, and for effects that move
+    tips by other laws.
 
-    >>> ts = np.linspace(0.0, 3.0, 1001)
+    >>> ts = np.linspace(0.0, 3.0, 3001)
     >>> found = fx.solve(scene, eps=0.03, ts=ts)
     >>> D_eps = fx.principle.D_eps(scene, 0.03, 1.0, ts, found.z)
     >>> print(f"{D_eps:.3f} J, where viscosity takes {found.dissipation[-1]:.3f} J")
+    0.429 J, where viscosity takes 0.429 J
     """
     scene = scene_for(Engine.PRINCIPLE, scene)
     require_real("eps", eps, "eps > 0", lambda e: e > 0)
@@ -108,7 +109,8 @@ def _resolved(
     far = gaps > SETTINGS.coarsest
     total = float(np.sum(gaps[far]))
     needs = f"a curve of at most {SETTINGS.most * SETTINGS.pieces:.3g} wells"
-    require(total < SETTINGS.most * SETTINGS.pieces, "z", f"{total:.3g} wells", needs)
+    few = total < SETTINGS.most * SETTINGS.pieces
+    require(few, "z, and wells that it passes", total, needs)
     pieces = np.where(far, np.ceil(gaps / SETTINGS.pieces), 1).astype(int)
     first = np.repeat(np.arange(gaps.size), pieces)
     number = np.arange(first.size) - np.repeat(np.cumsum(pieces) - pieces, pieces)

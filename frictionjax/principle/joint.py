@@ -46,7 +46,7 @@ def K(scene: Any, xi: Any) -> Float[Array, "*xi"]:
     Raises `ValueError` as `R`.
 
     >>> print(fx.principle.K(scene, [0.0, 0.1, 0.2]).round(4))
-    [0.0652 0.1044 0.2   ]
+    [0.0647 0.104  0.2   ]
     """
     (xi,) = numbers_as_given(xi=xi)
     scene, _ = law_of(scene)
@@ -54,26 +54,31 @@ def K(scene: Any, xi: Any) -> Float[Array, "*xi"]:
 
 
 @with_nan
-def M(scene: Any, v: Any, xi: Any, slack: Any = 0.0) -> Float[Array, "..."]:
+def M(
+    scene: Any, v: Any, xi: Any, slack: Any = 0.0, load: Any = 0.0
+) -> Float[Array, "..."]:
     """`M(v, xi) = |v| K(xi) + chi(xi)` (eq. 5.3) in W, infinite outside the rho interval.
 
     Velocities `v` in m/s and forces `xi` in N, shapes that broadcast. `M >= v xi`, and
     both are the same where friction allows the motion v under the force xi, on the graph
-    C_M (eq. 5.5), and nowhere else. The interval is wider by 1e-10 of itself, and by
-    `slack` in N: xi = l - Phi'(z) is a difference, and loads above 1e5 rho leave more of
-    rounding in it than that. K is that of the nearest xi inside.
+    C_M (eq. 5.5), and nowhere else.
+
+    On a slide xi = l - Phi'(z) is rho but for rounding, so the interval is wider by 1e-10
+    of itself, and by `slack` in N. `load`: l in N, of which xi is what is left; above
+    1e5 rho it leaves more of rounding in xi than that, which is allowed for then. K is
+    that of the nearest xi inside.
 
     Raises `ValueError` as `R`.
 
     >>> rho = fx.friction(scene).rho_plus
     >>> print(fx.principle.M(scene, [1.0, 1.0, 0.0], [rho, 0.1, 0.2]).round(4))
-    [0.1204 0.1044    inf]
+    [0.1204 0.104     inf]
     """
-    v, xi, slack = numbers_as_given(v=v, xi=xi, slack=slack)
+    v, xi, slack, load = numbers_as_given(v=v, xi=xi, slack=slack, load=load)
     scene, law = law_of(scene)
     held = jnp.clip(xi, law.rho_minus, law.rho_plus)
     least = jnp.abs(v) * mean_resistance(scene.potential, held)
-    return jnp.where(is_held(law, xi, slack), least, jnp.inf)
+    return jnp.where(is_held(law, xi, slack, load), least, jnp.inf)
 
 
 @with_nan

@@ -33,8 +33,28 @@ def folded(x):
     return jax.lax.reduce(x, jnp.ones(()), lambda a, b: 1.5 * a * b, (0,))
 
 
+def each_to_its_end(x):
+    """Loops whose lanes end apart, each with a number and a pair."""
+
+    def lane(start):
+        def body(at):
+            return 0.5 * at[0], at[1] + jnp.stack([at[0], jnp.ones(())])
+
+        return jax.lax.while_loop(lambda at: at[0] > 0.2, body, (start, jnp.zeros(2)))
+
+    size, pair = jax.vmap(lane)(x)
+    return size + pair[:, 0] * pair[:, 1]
+
+
 @pytest.mark.parametrize(
-    "fn", [mixed, looped, folded, jax.vmap(jax.grad(lambda x: mixed(x[None])[0]))]
+    "fn",
+    [
+        mixed,
+        looped,
+        folded,
+        each_to_its_end,
+        jax.vmap(jax.grad(lambda x: mixed(x[None])[0])),
+    ],
 )
 def test_it_gives_what_jax_gives(fn):
     np.testing.assert_allclose(Interpreted(fn)(X), jax.jit(fn)(X), rtol=4e-15)

@@ -79,6 +79,11 @@ CALLS = {
     Engine.PATH: lambda s: fx.solve(s, 0.05, ts=[0.5, 1.0], method="Kvaerno3"),
     Engine.SWEEP: lambda s: fx.sweep(s, [0.05], [1.0], ts=[0.5, 1.0], key=key_for(s)),
     Engine.CERTIFICATE: lambda s: fx.certify(s, 0.05, 1.0, TS, **curve_for(s)),
+    Engine.LIMIT_CERTIFICATE: lambda s: fx.certify_limit(s, TS, np.clip(TS - 0.1, 0, 1)),
+    Engine.PRINCIPLE: lambda s: (
+        fx.principle.D(s, TS, np.clip(TS - 0.1, 0, 1)),
+        fx.principle.D_eps(s, 0.05, 1.0, TS, np.clip(TS - 0.1, 0, 1)),
+    ),
     Engine.COST: lambda s: fx.predict_cost(s, [0.05], [1.0]),
     Engine.MECHANICS: lambda s: fx.mechanics(s, AT_REST),
     Engine.ENSEMBLE: lambda s: fx.ensemble(noisy(s), 0.05, 1.0, [0.5, 1.0], 2, 0),

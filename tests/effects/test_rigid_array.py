@@ -141,6 +141,16 @@ def test_solvers_by_name_meet_the_sum_itself():
     np.testing.assert_allclose(lanes.z, exact.z, atol=2e-4 * eps)
 
 
+@pytest.mark.parametrize("bristle", [VERTICAL, fx.bristles.SlantedSpring(1, 2.4, 1, 0.5)])
+def test_certificates_know_the_sum(bristle):
+    scene = scene_of(fx.effects.RigidArray(OFFSETS, WEIGHTS), bristle=bristle)
+    scene, ts, eps = scene.replace(duration=1.2), np.linspace(0, 1.2, 6001), 0.05
+    z = np.asarray(fx.solve(scene, eps, ts=ts).z)
+    assert fx.certify(scene, eps, 1.0, ts, z).ok
+    assert not fx.certify(scene, eps, 1.0, ts, z + 0.1 * eps).ok
+    assert not fx.certify(scene.replace(effects=()), eps, 1.0, ts, z).ok
+
+
 def test_every_eps_of_a_sweep_has_its_own_sum():
     scene = scene_of(fx.effects.RigidArray([0.0, 0.1]), bristle=VERTICAL)
     ts = np.linspace(0, 3, 7)

@@ -243,3 +243,73 @@ def test_tips_of_many_states_and_eps_at_once():
         inside, eps[:, 0]
     )
     np.testing.assert_allclose(state, np.broadcast_to(z, (2, 7)), atol=1e-16)
+
+
+def energy_of_height(u):
+    return -0.5 * (1.3 + u) ** 2 + 0.2 * u**3
+
+
+def lopsided(Y):
+    return 0.02 * jnp.sin(2 * jnp.pi * Y) + 0.003 * jnp.cos(4 * jnp.pi * Y + 0.4)
+
+
+def of_second_order(eps, Y):
+    return 0.1 * jnp.cos(2 * jnp.pi * Y) * (1 + eps)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_potential_from_an_energy_by_lemma_2(sign):
+    """`V_eps = F(eps WW + eps^2 QQ) - F(0)`, alpha of either sign, mu and rho."""
+
+    def F(u):
+        return sign * energy_of_height(u)
+
+    given = fx.GivenPotential.from_energy(F, lopsided, of_second_order)
+    alpha, Y = -1.3 * sign, np.linspace(0, 1, 33)[:-1]
+    np.testing.assert_allclose(given.W(Y), alpha * lopsided(Y), rtol=1e-14)
+    for eps in (0.1, 1e-2):
+        u = eps * lopsided(Y) + eps**2 * of_second_order(eps, Y)
+        direct = F(u) - F(0.0)
+        np.testing.assert_allclose(given.energy(eps * Y, eps), direct, atol=1e-15)
+    scene = fx.Scene(
+        potential=given,
+        support=fx.supports.Spring(1.0),
+        load=fx.loads.Ramp(1.0),
+        duration=1.0,
+    )
+    found = fx.friction(scene)
+    slopes = np.asarray(jax.vmap(jax.grad(lopsided))(np.arange(1 << 14) / (1 << 14)))
+    assert float(found.alpha) == pytest.approx(alpha, rel=1e-15)
+    assert float(found.mu_plus) == pytest.approx(np.max(slopes), rel=1e-6)
+    assert float(found.mu_minus) == pytest.approx(np.min(slopes), rel=1e-6)
+    ends = sorted([alpha * np.max(slopes), alpha * np.min(slopes)])
+    told = [float(found.rho_minus), float(found.rho_plus)]
+    np.testing.assert_allclose(told, ends, rtol=1e-6)
+    assert fx.solve(scene, 1e-6, ts=[0.0, 0.5, 1.0]).ok
+    assert "from_energy(F=F, WW=lopsided, QQ=of_second_order)" in repr(given)
+
+
+def test_a_bristle_is_such_a_potential():
+    """A vertical spring: its F over its own surface."""
+    bristle, profile = fx.bristles.VerticalSpring(1.0, 1.8, 1.0), fx.profiles.Sine(0.1)
+    one = fx.potential(profile, bristle)
+    other = fx.GivenPotential.from_energy(bristle.energy, profile)
+    Y = jnp.linspace(-1.2, 1.7, 31)
+    for eps in (0.1, 1e-3, 1e-8):
+        np.testing.assert_allclose(other.W(Y), one.W(Y), atol=1e-16)
+        np.testing.assert_allclose(other.Q(eps, Y), one.Q(eps, Y), rtol=1e-9, atol=1e-16)
+
+
+@pytest.mark.parametrize(
+    ("args", "named"),
+    [
+        ((lambda u: u**2, lopsided), "alpha = F'"),
+        ((1.0, lopsided), "F = 1"),
+        ((energy_of_height, 2.0), "WW = 2"),
+        ((energy_of_height, lopsided, lopsided), "QQ = "),
+        ((energy_of_height, lambda Y: 0.0 * Y), "potential.W"),
+    ],
+)
+def test_from_energy_names_what_is_wrong(args, named):
+    with pytest.raises(ValueError, match=named):
+        fx.GivenPotential.from_energy(*args)

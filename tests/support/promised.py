@@ -12,7 +12,8 @@ import click
 
 FOLDER = Path(__file__).parents[1] / "promised"
 # Spaces of `fx` whose names are public too: classes, of some functions as well.
-SPACES = "bristles", "effects", "loads", "measured", "plot", "profiles", "supports"
+SPACES = "bristles", "effects", "loads", "measured", "plot", "principle", "profiles"
+SPACES += ("supports",)
 _FUNCTIONS = {"plot": ("draw_", "animate"), "measured": ("read_",)}
 
 

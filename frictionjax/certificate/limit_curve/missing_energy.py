@@ -10,7 +10,7 @@ from ...supports import AbstractSupport
 _NODES = np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])  # Gauss on [0, 1]
 _WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18
 
-Column = Float[np.ndarray, " k"]
+_Column = Float[np.ndarray, " k"]
 
 
 @Interpreted
@@ -22,9 +22,9 @@ def forces_at(support: AbstractSupport, states: Array) -> Array:
 def missing_energy(
     support: AbstractSupport,
     z: Float[np.ndarray, " n"],
-    rho: Column,
-    loads: tuple[Column, Column],
-    ends: tuple[Column, Column],
+    rho: _Column,
+    loads: tuple[_Column, _Column],
+    ends: tuple[_Column, _Column],
 ) -> float:
     """`int |Phi'(z) + rho - l| |dz|` in J, l the nearest that there was on the way.
 
@@ -40,7 +40,9 @@ def missing_energy(
     return float(np.sum(over) - np.sum(under))
 
 
-def _between(support: AbstractSupport, start: Column, end: Column, held: Column) -> Column:
+def _between(
+    support: AbstractSupport, start: _Column, end: _Column, held: _Column
+) -> _Column:
     """`int (Phi'(z) - held) dz` from start to end."""
     width = end - start
     places = start[:, None] + width[:, None] * _NODES
