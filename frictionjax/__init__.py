@@ -9,7 +9,8 @@ A scene: `Scene` of parts from `profiles`, `bristles`, `supports`, `loads`, with
 `GivenPotential` in place of the first two; `potential`, `load_scene`, `save_scene`.
 
 - Which friction? `friction`, `nap`, `steady_slide`, `friction_curve`.
-- How does it move? `solve`, `solve_limit`, `mechanics`; with noise `ensemble`, `histogram`.
+- How does it move? `solve`, `solve_limit`, `mechanics`; with noise `ensemble`, `histogram`;
+  two bristles and a spring that breathes: `crawler`.
 - Can I trust it? `Status`, `certify`, `certify_limit`; `principle`, what moving costs.
 - How fast is the limit reached? `sweep`, `study`.
 - What does accuracy cost? `work_precision`, `predict_cost`, `fit_budget`, `order_cost`.

@@ -16,6 +16,7 @@ from .cost import fit_budget as fit_budget
 from .cost import order_cost as order_cost
 from .cost import predict_cost as predict_cost
 from .cost import work_precision as work_precision
+from .crawling import crawler as crawler
 from .design import Target as Target
 from .design import Trace as Trace
 from .design import check_design as check_design

@@ -28,7 +28,7 @@ FLOORS = {
         {"stochastic", "turning", "slide_laws"},
         {"called_for"},
         {"measured", "limit", "wiggly", "certificate"},
-        {"contact", "principle"},
+        {"contact", "principle", "crawling"},
         {"io", "sweeps", "convergence"},
         {"cost", "explain"},
         {"plot"},

@@ -19,6 +19,7 @@ from .parts import draw_forces as draw_forces
 from .parts import draw_parts as draw_parts
 from .results import draw_certificate as draw_certificate
 from .results import draw_cost_prediction as draw_cost_prediction
+from .results import draw_crawler as draw_crawler
 from .results import draw_explanation as draw_explanation
 from .results import draw_order_cost as draw_order_cost
 from .results import draw_steady_slide as draw_steady_slide

@@ -37,7 +37,9 @@ def D(scene: Scene, ts: Any, z: Any) -> float:
     """`D(z) = int M(z', -D_z E) dt` (eq. 4.13) in J of any curve, known by samples.
 
     `ts`: times in s that increase, in [0, duration]; `z`: states in m; shapes (n,), n >= 2.
-    Infinite where a sample is outside the strip of the `scene`, but for rounding. It is
+
+    Returns J: infinite where a sample is outside the strip of the `scene`, but for
+    rounding. It is
     `int K(l - Phi'(z)) |dz|`, by the trapezoidal rule between samples: exact on slides of
     the limit, where it is `int R(z')`, and of second order elsewhere. A curve solves the
     limit system if and only if `E(t2) - E(t1) + int l' z + D = 0`.
@@ -71,8 +73,10 @@ def D(scene: Scene, ts: Any, z: Any) -> float:
 def D_eps(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> float:
     """`D_eps(z) = int M_eps(z', -D_z E_eps) dt` (eq. 4.11) in J of any curve.
 
-    `eps` in m, `gamma` > 0; `ts` in s, increasing, in [0, duration], and `z` in m, shapes
-    (n,), n >= 2. A curve solves the wiggly system if and only if
+    `eps` in m, `gamma` > 0 of the `scene`; `ts` in s, increasing, in [0, duration], and
+    `z` in m, shapes (n,), n >= 2.
+
+    Returns J. A curve solves the wiggly system if and only if
     `E_eps(t2) - E_eps(t1) + int l' z + D_eps = 0` (eq. 4.12), and leaves a positive rest
     there otherwise; of a solution D_eps is what viscosity dissipates, `int eps^gamma z'^2`.
 

@@ -58,8 +58,8 @@ def is_held(
 def R(scene: Scene, v: Any) -> Float[Array, "*v"]:
     """`R(v)` (eq. 2.2): `rho_plus v` for v >= 0, `rho_minus v` for v <= 0.
 
-    What friction of a `scene` dissipates in W at velocities `v` in m/s, any shape;
-    differentiable in both.
+    Returns what friction of a `scene` dissipates in W at velocities `v` in m/s, of their
+    shape, any; differentiable in both.
 
     Raises `ValueError` for velocities that are no finite numbers, and what `friction`
     raises.
@@ -74,9 +74,10 @@ def R(scene: Scene, v: Any) -> Float[Array, "*v"]:
 
 @with_nan
 def R_star(scene: Scene, xi: Any) -> Float[Array, "*xi"]:
-    """`R*(xi)`, the dual of R: 0 for `xi` in [rho_minus, rho_plus], infinite outside.
+    """`R*(xi)`, the dual of R of a `scene`: 0 in [rho_minus, rho_plus], infinite outside.
 
-    `xi`: forces in N, any shape. Inside means but for rounding, 1e-10 of the interval.
+    `xi`: forces in N. Returns W, of their shape, any. Inside means but for rounding, 1e-10
+    of the interval.
 
     Raises `ValueError` as `R`.
 
@@ -92,7 +93,8 @@ def R_star(scene: Scene, xi: Any) -> Float[Array, "*xi"]:
 def R_eps(v: Any, eps: Any, gamma: Any) -> Float[Array, "..."]:
     """`R_eps(v) = eps^gamma v^2/2` in W (eq. 2.7) of velocities `v` in m/s.
 
-    `eps` in m, `gamma` > 0; shapes that broadcast. A motion dissipates twice that.
+    `eps` in m, `gamma` > 0: shapes that broadcast. Returns W; a motion dissipates twice
+    that.
 
     Raises `ValueError` for what are no finite numbers, or not > 0.
 
@@ -107,7 +109,9 @@ def R_eps(v: Any, eps: Any, gamma: Any) -> Float[Array, "..."]:
 def R_eps_star(xi: Any, eps: Any, gamma: Any) -> Float[Array, "..."]:
     """`R_eps*(xi) = xi^2/(2 eps^gamma)` in W, the dual of R_eps (eq. 5.1).
 
-    `xi`: forces in N; else as `R_eps`, which raises the same.
+    `xi`: forces in N, `eps` in m, `gamma` > 0: shapes that broadcast. Returns W.
+
+    Raises `ValueError` as `R_eps`.
 
     >>> print(fx.principle.R_eps_star(0.02, eps=0.01, gamma=1.0))
     0.02

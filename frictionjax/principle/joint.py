@@ -38,10 +38,10 @@ def mean_resistance(
 def K(scene: Any, xi: Any) -> Float[Array, "*xi"]:
     """`K(xi) = int_0^1 |xi - W'(Y)| dY` in N (eq. 5.4), exact but for rounding.
 
-    `xi`: forces in N, any shape. More than |xi| inside (rho_minus, rho_plus) of the
-    `scene`, |xi| outside: what friction takes at least, of each metre, under the force xi.
-    Differentiable in xi: its slope is the share of a period where W' is below xi, minus
-    that where it is above.
+    `xi`: forces in N, any shape. Returns what friction of the `scene` takes at least, of
+    each metre, under the force xi, of its shape: more than |xi| inside (rho_minus,
+    rho_plus), |xi| outside. Differentiable in both: the slope by xi is the share of a
+    period where W' is below xi, minus that where it is above.
 
     Raises `ValueError` as `R`.
 
@@ -59,9 +59,10 @@ def M(
 ) -> Float[Array, "..."]:
     """`M(v, xi) = |v| K(xi) + chi(xi)` (eq. 5.3) in W, infinite outside the rho interval.
 
-    Velocities `v` in m/s and forces `xi` in N, shapes that broadcast. `M >= v xi`, and
-    both are the same where friction allows the motion v under the force xi, on the graph
-    C_M (eq. 5.5), and nowhere else.
+    Velocities `v` in m/s and forces `xi` in N, shapes that broadcast. Returns W, what
+    friction of the `scene` takes at least. `M >= v xi`, and both are the same where
+    friction allows the motion v under the force xi, on the graph C_M (eq. 5.5), and nowhere
+    else.
 
     On a slide xi = l - Phi'(z) is rho but for rounding, so the interval is wider by 1e-10
     of itself, and by `slack` in N. `load`: l in N, of which xi is what is left; above
@@ -86,7 +87,8 @@ def M_eps(v: Any, xi: Any, eps: Any, gamma: Any) -> Float[Array, "..."]:
     """`M_eps(v, xi) = R_eps(v) + R_eps*(xi)` (eq. 5.1) in W.
 
     Velocities `v` in m/s, forces `xi` in N, `eps` in m, `gamma` > 0: shapes that
-    broadcast. `M_eps >= v xi`, the same where `xi = eps^gamma v`, and nowhere else.
+    broadcast. Returns W. `M_eps >= v xi`, the same where `xi = eps^gamma v`, and nowhere
+    else.
 
     Raises `ValueError` as `R_eps`.
 
