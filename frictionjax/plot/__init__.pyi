@@ -16,6 +16,7 @@ from .paper import draw_mu_slanted as draw_mu_slanted
 from .paper import draw_nap as draw_nap
 from .parts import draw_coefficients as draw_coefficients
 from .parts import draw_forces as draw_forces
+from .parts import draw_friction_law as draw_friction_law
 from .parts import draw_parts as draw_parts
 from .results import draw_certificate as draw_certificate
 from .results import draw_cost_prediction as draw_cost_prediction
