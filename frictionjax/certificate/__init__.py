@@ -5,4 +5,3 @@ it comes from elsewhere."""
 
 from .certification import certify as certify
 from .limit_curve import certify_limit as certify_limit
-from .plain_curve import least_residual as least_residual

@@ -31,15 +31,6 @@ def plain_certificate(
     return certificate_under(force, viscosity, scale, ts, z)
 
 
-def least_residual(scene: Scene, eps: float, viscosity: float, ts, z) -> float:
-    """`int (eps^gamma z' + D E)^2/(2 eps^gamma)` in J along the best of three ways to join
-    samples, which resolve wells; `viscosity` is `eps^gamma`.
-    """
-    force = force_in_tables(force_of(scene, jnp.asarray(eps)), ts)
-    _, on = along_curve(force, viscosity, ts, z)
-    return float(np.sum(on.residual))
-
-
 def certificate_under(force: Force, viscosity: float, scale: float, ts, z) -> Certificate:
     """The same under a force that is known."""
     eps = float(force.eps)

@@ -6,14 +6,23 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
+from scipy.interpolate import PchipInterpolator
 
 from .._checks import as_real, require, require_real, with_nan
-from .._compile import Interpreted
-from ..certificate import least_residual
+from .._compile import Interpreted, Program, in_chunks
 from ..effects import Engine
 from ..loads import AbstractPull
-from ..model import Scene, coefficients_jit, require_curve, require_reach, scene_for
+from ..model import (
+    AbstractPotential,
+    Scene,
+    coefficients_jit,
+    potential_in_reach,
+    require_curve,
+    require_reach,
+    scene_for,
+)
 from ..supports import AbstractSupport
+from ..tables import load_table
 from .dissipation import is_held
 from .joint import mean_resistance
 from .settings import SETTINGS
@@ -80,11 +89,11 @@ def D_eps(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> float:
     `E_eps(t2) - E_eps(t1) + int l' z + D_eps = 0` (eq. 4.12), and leaves a positive rest
     there otherwise; of a solution D_eps is what viscosity dissipates, `int eps^gamma z'^2`.
 
-    Samples that come within eps/4 of each other are joined the way that costs least, as in
-    `certify`, of second order in their distance; where they are farther apart, by straight
-    lines, slips or not: of a solution that is sampled thinly it is much too large.
+    Between samples it is that of the monotone cubic through them (PCHIP), slips or not: of
+    a solution whose slips are not sampled it is much too large. From some ten samples a
+    slip on it is of second order in their distance.
 
-    Raises `ValueError` for arguments out of range, a bad curve, one of more than half a
+    Raises `ValueError` for arguments out of range, a bad curve, one of more than a
     million wells, an eps at which the bristle loses its contact, and for effects that move
     tips by other laws.
 
@@ -100,34 +109,48 @@ def D_eps(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> float:
     ts, z = require_curve(scene, ts, z)
     require_reach(scene.potential, jnp.asarray(as_real(eps)))
     eps = float(eps)
-    ts, z = _resolved(ts, z, eps)
-    residual = least_residual(scene, eps, eps ** float(gamma), ts, z)
-    return _released(scene, eps, ts, z) + residual
+    edges = _panels(ts, z, eps)
+    curve = PchipInterpolator(ts, z)
+    times = edges[:-1, None] + _NODES * np.diff(edges)[:, None]
+    states, speeds = curve(times), curve(times, 1)
+    parts = potential_in_reach(scene.potential, eps), scene.support, load_table(scene.load)
+    numbers = np.asarray(eps), np.asarray(eps ** float(gamma))
+    columns = times.ravel(), states.ravel(), speeds.ravel()
+    costs = in_chunks(_costs, SETTINGS.places, (*parts, *numbers), columns)
+    return float(np.diff(edges) @ (costs.reshape(times.shape) @ _WEIGHTS))
 
 
-def _resolved(
-    ts: np.ndarray, z: np.ndarray, eps: float
-) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
-    """The curve with samples that resolve wells, on straight lines where it had none."""
-    gaps = np.abs(np.diff(z)) / eps
-    far = gaps > SETTINGS.coarsest
-    total = float(np.sum(gaps[far]))
-    needs = f"a curve of at most {SETTINGS.most * SETTINGS.pieces:.3g} wells"
-    few = total < SETTINGS.most * SETTINGS.pieces
-    require(few, "z, and wells that it passes", total, needs)
-    pieces = np.where(far, np.ceil(gaps / SETTINGS.pieces), 1).astype(int)
-    first = np.repeat(np.arange(gaps.size), pieces)
-    number = np.arange(first.size) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    share = number / pieces[first]
-    times = ts[first] + share * np.diff(ts)[first]
-    states = z[first] + share * np.diff(z)[first]
-    return np.append(times, ts[-1]), np.append(states, z[-1])
+@Program
+def _costs(
+    potential: AbstractPotential,
+    support: AbstractSupport,
+    load: AbstractPull,
+    eps: Array,
+    viscosity: Array,
+    times: Array,
+    states: Array,
+    speeds: Array,
+) -> Array:
+    """`M_eps` in W along a curve, (n,)."""
+
+    def force(t: Array, z: Array) -> Array:
+        _, inside = potential.tip(z, eps)
+        wiggle, _ = potential.tip_force(inside, eps)
+        return load(t) - support.force(z) - wiggle
+
+    xi = jax.vmap(force)(times, states)
+    return (viscosity * speeds**2 + xi**2 / viscosity) / 2
 
 
-def _released(scene: Scene, eps: float, ts: np.ndarray, z: np.ndarray) -> float:
-    """`E_eps(t1) - E_eps(t2) - int l' z = int (l - Phi' - V_eps') dz`, in J."""
-    nodes = ts[:-1, None] + _NODES * np.diff(ts)[:, None]
-    loads = _loads(scene.load, nodes.ravel()).reshape(nodes.shape) @ _WEIGHTS
-    ends = z[[0, -1]]
-    kept = np.diff(_held(scene.support, ends)[1] + scene.potential.energy(ends, eps))
-    return float(np.dot(loads, np.diff(z)) - kept[0])
+def _panels(ts: np.ndarray, z: np.ndarray, eps: float) -> Float[np.ndarray, " n"]:
+    """Times between which the curve goes through a small part of a well."""
+    wells = np.abs(np.diff(z)) / eps
+    pieces = np.maximum(np.ceil(wells / SETTINGS.pieces), 1.0)
+    total = float(np.sum(pieces))
+    needs = f"at most {SETTINGS.most:.3g}, {1 / SETTINGS.pieces:g} of each well"
+    require(total <= SETTINGS.most, "z, and pieces of its way", total, needs)
+    count = pieces.astype(int)
+    first = np.repeat(np.arange(count.size), count)
+    number = np.arange(first.size) - np.repeat(np.cumsum(count) - count, count)
+    edges = ts[first] + number / pieces[first] * np.diff(ts)[first]
+    return np.append(edges, ts[-1])

@@ -11,11 +11,9 @@ class Settings(NamedTuple):
     together: int = 64  # forces of one compiled call
 
     # Curves (`along_curves.py`).
-    coarsest: float = 0.25  # samples that far apart resolve slips: farther, and
-    # The straight line between them is cut into such pieces. (1/8: 3% too little, as the
-    # way that costs least is taken in each; 1/32: 0.2%.)
-    pieces: float = 2.0**-5
-    most: int = 1 << 24  # of these
+    pieces: float = 0.125  # in which a well is gone through
+    most: int = 1 << 23  # of them
+    places: int = 1 << 12  # of one compiled call
 
 
 SETTINGS = Settings()

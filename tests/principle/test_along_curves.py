@@ -94,16 +94,15 @@ def test_D_eps_of_any_curve_against_quadrature(scene, gamma):
     expected = by_quadrature(scene, eps, gamma, ts, z, speed)
     assert D_eps(scene, eps, gamma, ts, z) == pytest.approx(expected, rel=1e-6)
     few = ts[::50]
-    assert D_eps(scene, eps, gamma, few, smooth(few)) == pytest.approx(expected, rel=5e-3)
+    assert D_eps(scene, eps, gamma, few, smooth(few)) == pytest.approx(expected, rel=1e-4)
 
 
-def test_straight_lines_between_samples_are_cut_into_wells():
+def test_two_samples_are_a_straight_line():
+    """Through 30 wells, with as many places as it takes."""
     eps, ts = 0.02, np.linspace(0.0, 2.0, 40001)
-    corners = np.array([0.0, 0.7, 2.0])
-    states = np.array([0.0, 0.6, -0.4])
-    z, speed = np.interp(ts, corners, states), np.where(ts < 0.7, 0.6 / 0.7, -1.0 / 1.3)
-    expected = by_quadrature(SCENE, eps, 1.0, ts, z, speed)
-    assert D_eps(SCENE, eps, 1.0, corners, states) == pytest.approx(expected, rel=3e-3)
+    expected = by_quadrature(SCENE, eps, 1.0, ts, 0.3 * ts, np.full(ts.size, 0.3))
+    found = D_eps(SCENE, eps, 1.0, [0.0, 2.0], [0.0, 0.6])
+    assert found == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.parametrize("gamma", [0.7, 1.0])
@@ -111,7 +110,7 @@ def test_of_a_solution_D_eps_is_what_viscosity_takes(gamma):
     eps, ts = 0.03, np.linspace(0.0, 3.0, 6001)
     found = fx.solve(SCENE, eps, gamma, ts)
     taken = float(found.dissipation[-1])
-    assert D_eps(SCENE, eps, gamma, ts, found.z) == pytest.approx(taken, rel=1e-4)
+    assert D_eps(SCENE, eps, gamma, ts, found.z) == pytest.approx(taken, rel=3e-4)
     # Another curve costs more than its balance gives.
     z = np.asarray(found.z) + 0.1 * eps
     rest = D_eps(SCENE, eps, gamma, ts, z) + balance_eps(SCENE, eps, ts, z)
@@ -147,7 +146,7 @@ def test_the_limit_dissipates_no_more_than_what_comes_near():
         (lambda: D_eps(SCENE, 0.1, -1.0, [0.0, 1.0], [0.0, 0.0]), "gamma = -1"),
         (
             lambda: D_eps(SCENE, 1e-9, 1.0, [0.0, 1.0], [0.0, 1.0]),
-            "passes = 1e",
+            "pieces of its way = ",
         ),
     ],
 )
