@@ -71,6 +71,15 @@ def test_the_distance_is_that_of_the_nearest_solution():
         assert found == pytest.approx(brute, abs=0.6 * (starts[1] - starts[0]) / WIDTH)
 
 
+def test_at_rest_one_place_has_to_be_near_all_samples():
+    """Where nothing is forgotten: half of the way from the lowest sample to the highest."""
+    still = SCENE.replace(load=fx.loads.Sine(0.02, 3.0))
+    z = np.where(np.arange(TS.size) < 100, 0.004, -0.006)
+    found = fx.certify_limit(still, TS, z)
+    assert found.distance == pytest.approx(0.005 / WIDTH, rel=1e-9)
+    assert found.status.name == "OFF"
+
+
 @pytest.mark.parametrize("size", [0.5, 2.0])
 def test_noise_is_told_by_its_size(size):
     noise = size * 1e-3 * WIDTH * np.random.default_rng(3).choice([-1, 1], TS.size)
