@@ -46,7 +46,7 @@ def test_a_foot_alone_is_the_wiggly_system():
 
 def test_steps_are_of_their_order():
     """One step against many small ones: off by h^6. The spring is stiffer than wells."""
-    of, start = feet(50.0), jnp.asarray([0.1, -0.2, 0.0, 0.0])
+    of, start = feet(10.0), jnp.asarray([0.1, -0.2, 0.0, 0.0])
 
     @jax.jit
     def ends(size, count):
@@ -57,6 +57,6 @@ def test_steps_are_of_their_order():
 
         return jax.lax.fori_loop(0, count, step, start)
 
-    far, near = (np.max(np.abs(ends(s, 1) - ends(s, 64))[:2]) for s in (5e-4, 6.25e-5))
+    far, near = (np.max(np.abs(ends(s, 1) - ends(s, 64))[:2]) for s in (2.5e-4, 3.125e-5))
     order = np.log(far / near) / np.log(8)
-    assert 5.0 < order < 7.0
+    assert 5.5 < order < 8.0
