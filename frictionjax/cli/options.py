@@ -38,15 +38,25 @@ progress_option = click.option(
 
 
 def scene_argument(command: Callable) -> Callable:
-    """The file of a scene, which errors about its scene name."""
+    """The file of a scene, which errors about its scene name.
+
+    With `--functions` functions of Python that the file names may be imported.
+    """
 
     @functools.wraps(command)
-    def named(*args: Any, scene: str | None, **kwargs: Any) -> Any:
+    def named(*args: Any, scene: str | None, functions: bool, **kwargs: Any) -> Any:
+        if functions and scene is not None:
+            from ..io import PathWithFunctions
+
+            scene = PathWithFunctions(scene)
         try:
             return command(*args, scene=scene, **kwargs)
         except ValueError as error:
             raise ValueError(_of_scene(scene, str(error))) from error
 
+    named = click.option(
+        "--functions", is_flag=True, help="Import what SCENE.toml names: runs its code."
+    )(named)
     return click.argument("scene", required=False, metavar="[SCENE.toml]")(named)
 
 

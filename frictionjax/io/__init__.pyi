@@ -2,6 +2,7 @@ from .documents import written as written
 from .example_scenes import example_lines as example_lines
 from .example_scenes import example_text as example_text
 from .example_scenes import schema_text as schema_text
+from .named_functions import PathWithFunctions as PathWithFunctions
 from .part_numbers import MEANINGS as MEANINGS
 from .part_numbers import part_rows as part_rows
 from .part_numbers import part_table as part_table

@@ -5,6 +5,7 @@ from importlib import resources
 
 from .._checks import Part, asked_names, require
 from ..profiles import Fourier
+from .named_functions import FUNCTION_KINDS
 from .registry import EFFECTS, PARTS
 
 _FOLDER, _ENDING = "examples", ".toml"
@@ -24,6 +25,10 @@ _HEIGHTS = """\
   pixel         m, > 0: distance of samples (may be left out: the file says it)
   height_scale  m per unit of the heights, > 0 (may be left out: the file says it)
   length_unit, height_unit, decimal, outliers: texts, as the options of commands"""
+
+_FUNCTIONS = """\
+Parts made of Python functions, "module:function", beside the file or where Python looks;
+read with --functions or functions=True only; [potential] for both profile and bristle:"""
 
 
 def example_lines() -> dict[str, str]:
@@ -57,7 +62,12 @@ def schema_text() -> str:
     sections = [_TOP]
     for table, kinds in tables.items():
         sections += [_kind_text(table, name, kind) for name, kind in kinds.items()]
-    return "\n\n".join(sections)
+    named = [
+        f'[{table}] kind = "{name}": {", ".join(kind.functions)}'
+        for table, kinds in FUNCTION_KINDS.items()
+        for name, kind in kinds.items()
+    ]
+    return "\n\n".join([*sections, "\n".join([_FUNCTIONS, *named])])
 
 
 def _kind_text(table: str, name: str, kind: type[Part]) -> str:

@@ -11,12 +11,19 @@ from typing import Any, NamedTuple
 import numpy as np
 import tomli_w
 
-from .._checks import Asked, Part, asked_names, require, write_whole
+from .._checks import Asked, Part, asked_names, require, require_flags, write_whole
 from ..effects import AbstractEffect
 from ..loads import Pulled
 from ..measured import fit_profile, read_heights
-from ..model import BristlePotential, Scene
+from ..model import BristlePotential, GivenPotential, Scene, no_rest
 from ..profiles import Fourier
+from .named_functions import (
+    FUNCTION_KINDS,
+    FunctionKind,
+    PathWithFunctions,
+    function_of,
+    name_of,
+)
 from .registry import EFFECTS, PARTS, numbers_of_part
 
 _TOP = ("duration", "z0")
@@ -24,12 +31,13 @@ _STUDY = ("eps", "gamma", "accuracy", "effects")
 _EFFECTS = ("all", "auto")  # of a study: those of the scene, or those called for
 _TEXTS = ("length_unit", "height_unit", "decimal", "outliers")
 _READING = ("pixel", "height_scale", *_TEXTS)
-_WHOLE = ("harmonics", "row")
+_WHOLE = ("harmonics", "row", "points")
 _FIT = ("period", "smoothing", *_WHOLE)
 
 
 _SAVE = "save it as UTF-8, which TOML is"
-_SAVED = "a profile and a bristle: what Python functions give cannot be saved"
+_SAVED = "a profile and a bristle, or functions that a module holds by name"
+_NAMED = "functions that a module holds by name"
 
 
 class SceneFile(NamedTuple):
@@ -39,7 +47,14 @@ class SceneFile(NamedTuple):
     study: dict[str, Any]
 
 
-def load_scene(path: Any) -> Scene:
+class _Reading(NamedTuple):
+    """Where a file is, and whether functions that it names may be imported."""
+
+    folder: Path
+    functions: bool
+
+
+def load_scene(path: Any, functions: bool = False) -> Scene:
     """Read the scene of a TOML file, at `path`.
 
     Tables `[profile] [bristle] [support] [load]`, each with `kind` (the class's name) and
@@ -49,6 +64,12 @@ def load_scene(path: Any) -> Scene:
     be there and is not used. A `Fourier` profile may give `heights`, the file of a measured
     surface (relative to this one), with the options of `read_heights` and `fit_profile`.
 
+    Parts made of functions name them, `fn = "module:function"`: `Custom` profiles, bristles
+    (`offset`, `energy`) and loads, `Convex` supports (`energy`), and in place of profile
+    and bristle a table `[potential]` of kind `GivenPotential` (`W`, `Q`). Modules are
+    looked for beside the file, then where Python looks. That runs their code: only with
+    `functions`.
+
     Returns a `Scene`.
 
     Raises `ValueError` naming the file, the table and the key, and what is allowed.
@@ -57,10 +78,10 @@ def load_scene(path: Any) -> Scene:
     >>> fx.load_scene("slanted.toml").bristle
     SlantedSpring(stiffness=1, rest_length=2.4, height=1, angle=1)
     """
-    return load_study(path).scene
+    return load_study(path, functions).scene
 
 
-def load_study(path: Any) -> SceneFile:
+def load_study(path: Any, functions: bool = False) -> SceneFile:
     """Read scene and study of a TOML file; see `load_scene`."""
     try:
         text = Path(path).read_text(encoding="utf-8-sig")  # Windows' editors mark a file
@@ -70,7 +91,9 @@ def load_study(path: Any) -> SceneFile:
         raise ValueError(f"{path}: cannot be read ({_encoding(problem)})") from None
     if "\0" in text:
         raise ValueError(f"{path}: cannot be read (UTF-16 or no text; {_SAVE})")
-    return parse_scene(text, str(path), Path(path).parent)
+    require_flags(functions=functions)
+    functions = functions or isinstance(path, PathWithFunctions)
+    return parse_scene(text, str(path), Path(path).parent, functions)
 
 
 def _encoding(problem: UnicodeDecodeError) -> str:
@@ -90,32 +113,41 @@ def default_study() -> SceneFile:
     return parse_scene(source.read_text(encoding="utf-8"), source.name)
 
 
-def parse_scene(text: str, name: str, folder: Path | None = None) -> SceneFile:
+def parse_scene(
+    text: str, name: str, folder: Path | None = None, functions: bool = False
+) -> SceneFile:
     """Scene and study of the TOML document `text`, called `name` in errors.
 
-    `folder`: where a measured surface that it names is looked for.
+    `folder`: where what it names is looked for, measured surfaces and modules.
+    `functions`: whether these may be imported.
     """
     try:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:
         raise ValueError(f"{name}: not TOML ({problem})") from None
     try:
-        scene = _scene_of(document, folder or Path())
+        scene = _scene_of(document, _Reading(folder or Path(), functions))
         return SceneFile(scene, _study_of(document.get("study", {})))
     except ValueError as problem:
         raise ValueError(f"{name}: {problem}") from None
 
 
-def _scene_of(document: dict[str, Any], folder: Path) -> Scene:
-    known = (*_TOP, *PARTS, "effects", "study")
-    _require_keys("", document, known, ("duration", *PARTS))
-    parts = {table: _part_of(table, document[table], folder) for table in PARTS}
+def _scene_of(document: dict[str, Any], reading: _Reading) -> Scene:
+    tables = _tables("potential" in document)
+    known = (*_TOP, *tables, "effects", "study")
+    _require_keys("", document, known, ("duration", *tables))
+    parts = {table: _part_of(table, document[table], reading) for table in tables}
     effects = _effects_of(document.get("effects", []))
     top = {key: document.get(key, 0.0) for key in _TOP}
     for key, value in top.items():
         _need(not isinstance(value, list), f"{key} = {value!r}", "a number")
     numbers = {key: _numbers(key, value) for key, value in top.items()}
     return Scene(**parts, **numbers, effects=effects)
+
+
+def _tables(given: bool) -> tuple[str, ...]:
+    """Of a scene whose potential is given, or is that of a bristle."""
+    return ("potential", "support", "load") if given else tuple(PARTS)
 
 
 def _effects_of(tables: Any) -> tuple[AbstractEffect, ...]:
@@ -126,20 +158,54 @@ def _effects_of(tables: Any) -> tuple[AbstractEffect, ...]:
     return tuple(_built(n, t, EFFECTS) for n, t in zip(names, tables, strict=True))
 
 
-def _part_of(table: str, entries: Any, folder: Path) -> Any:
+def _part_of(table: str, entries: Any, reading: _Reading) -> Any:
     _need(isinstance(entries, dict), f"{table} = {entries!r}", f"a table [{table}]")
     if entries.get("kind") == "Fourier" and table == "profile" and "heights" in entries:
         given = {key: value for key, value in entries.items() if key != "kind"}
-        return _measured_profile(given, folder)
-    return _built(f"[{table}]", entries, PARTS[table])
+        return _measured_profile(given, reading.folder)
+    of_functions = FUNCTION_KINDS[table]
+    kind = entries.get("kind")
+    if isinstance(kind, str) and kind in of_functions:
+        return _built_of_functions(f"[{table}]", entries, of_functions[kind], reading)
+    others = dict.fromkeys(of_functions)
+    return _built(f"[{table}]", entries, PARTS.get(table, {}), others)
 
 
-def _built(where: str, entries: dict[str, Any], kinds: dict[str, type[Part]]) -> Any:
-    """The part of a table; `where`: the table, as the file writes it."""
+def _built_of_functions(
+    where: str, entries: dict[str, Any], kind: FunctionKind, reading: _Reading
+) -> Any:
+    given = {key: value for key, value in entries.items() if key != "kind"}
+    names = *kind.functions, *kind.numbers
+    needed = [name for name in names if name not in kind.optional]
+    _require_keys(f"{where} ", given, names, needed)
+    for key, value in given.items():
+        if key in kind.functions:
+            given[key] = function_of(f"{where} {key}", value, *reading)
+        elif key in _WHOLE:
+            said = f"{where} {key} = {value!r}"
+            whole = isinstance(value, int) and not isinstance(value, bool)
+            _need(whole, said, "a whole number")
+        else:
+            given[key] = _numbers(f"{where} {key}", value)
+    try:
+        return kind.build(**given)
+    except TypeError as problem:  # of another number of arguments, by the function
+        raise ValueError(f"{where} {problem}") from problem
+
+
+def _built(
+    where: str,
+    entries: dict[str, Any],
+    kinds: dict[str, type[Part]],
+    others: Iterable[str] = (),
+) -> Any:
+    """The part of a table; `where`: the table, as the file writes it. `others`: kinds that
+    it might be too."""
     kind = entries.get("kind")
     known = isinstance(kind, str) and kind in kinds
     said = "no kind" if kind is None else f"kind = {kind!r}"
-    needs = f"a kind that is one of {', '.join(kinds)}{_meant(kind, kinds)}"
+    listed = *kinds, *others
+    needs = f"a kind that is one of {', '.join(listed)}{_meant(kind, listed)}"
     _need(known, f"{where} {said}", needs)
     build = kinds[str(kind)]
     given = {key: value for key, value in entries.items() if key != "kind"}
@@ -246,7 +312,8 @@ def save_scene(scene: Scene, path: Any, study: dict[str, Any] | None = None) -> 
 
     `path`: of the file; `study`: what the table holds, by name. Returns nothing.
     (A spline within a rounding: the file holds its heights, not B-spline coefficients.)
-    Raises `ValueError` for parts given as functions, which a file cannot hold.
+    Parts given as functions are told by their names, `"module:function"`; see `load_scene`.
+    Raises `ValueError` for functions that no module holds by name.
 
     >>> from pathlib import Path
     >>> fx.save_scene(scene, "slanted.toml", study={"eps": [0.1, 0.01], "gamma": [1.0]})
@@ -258,11 +325,13 @@ def save_scene(scene: Scene, path: Any, study: dict[str, Any] | None = None) -> 
 
 def scene_document(scene: Scene, study: dict[str, Any] | None = None) -> str:
     """The TOML document of a scene; see `save_scene`."""
-    known = isinstance(scene.potential, BristlePotential)
+    given = isinstance(scene.potential, GivenPotential)
+    known = given or isinstance(scene.potential, BristlePotential)
     require(known, "scene.potential", type(scene.potential).__name__, _SAVED)
     document: dict[str, Any] = {key: float(getattr(scene, key)) for key in _TOP}
-    for table in PARTS:
-        document[table] = _entries_of(f"scene.{table}", getattr(scene, table), PARTS[table])
+    for table in _tables(given):
+        part = getattr(scene, table)
+        document[table] = _entries_of(f"scene.{table}", part, PARTS.get(table, {}), table)
     if scene.effects:
         entries = [_entries_of("scene.effects", each, EFFECTS) for each in scene.effects]
         document["effects"] = entries
@@ -274,14 +343,38 @@ def scene_document(scene: Scene, study: dict[str, Any] | None = None) -> str:
     return tomli_w.dumps(document)
 
 
-def _entries_of(name: str, part: Part, kinds: dict[str, type[Part]]) -> dict[str, Any]:
+def _entries_of(
+    name: str, part: Any, kinds: dict[str, type[Part]], table: str = ""
+) -> dict[str, Any]:
     kind = type(part).__name__
+    of_functions = FUNCTION_KINDS.get(table, {}).get(kind)
+    if of_functions is not None and of_functions.build is type(part):
+        return {"kind": kind} | _named_functions(name, part, of_functions)
     saved = kinds.get(kind) is type(part)
-    require(saved, name, kind, f"one of {', '.join(kinds)}: no functions")
+    require(saved, name, kind, f"one of {', '.join(kinds)}")
     entries: dict[str, Any] = {"kind": kind}
     for key, value in numbers_of_part(part).items():
         inner = isinstance(value, Part)
         entries[key] = _entries_of(name, value, kinds) if inner else _plain(value)
+    return entries
+
+
+def _named_functions(name: str, part: Any, kind: FunctionKind) -> dict[str, Any]:
+    stored = getattr(part, "_stored", {})
+    entries: dict[str, Any] = {}
+    defaults = inspect.signature(kind.build).parameters
+    for key in kind.functions:
+        fn = getattr(part, stored.get(key, key))
+        if key in kind.optional and fn is no_rest:
+            continue
+        text = name_of(fn)
+        require(text is not None, name, type(part).__name__, f"{_NAMED}: {key} is none")
+        entries[key] = text
+    for key in kind.numbers:
+        value = getattr(part, stored.get(key, key))
+        if np.size(value) == 0 or value is defaults[key].default:
+            continue
+        entries[key] = value if key in _WHOLE else _plain(value)
     return entries
 
 

@@ -12,6 +12,7 @@ from .friction_law import friction as friction
 from .potentials import AbstractPotential as AbstractPotential
 from .potentials import BristlePotential as BristlePotential
 from .potentials import GivenPotential as GivenPotential
+from .potentials import no_rest as no_rest
 from .potentials import potential as potential
 from .potentials import smallest_stretch as smallest_stretch
 from .scene import Scene as Scene

@@ -227,7 +227,8 @@ def _invert(state: Callable[[Real], Real], Y: Real) -> Real:
     return bracketed_root(lambda y: state(y) - Y, centre - 1, centre + 1)
 
 
-def _nothing(eps: Real, Y: Real) -> Real:
+def no_rest(eps: Real, Y: Real) -> Real:
+    """`Q` of a potential that is `eps W` alone."""
     return jnp.zeros_like(Y)
 
 
@@ -273,7 +274,7 @@ class GivenPotential(AbstractPotential):
 
     def __init__(self, W: Callable, Q: Callable | None = None, points: int = 4096):
         self.W_fn = W
-        self.Q_fn = _nothing if Q is None else Q
+        self.Q_fn = no_rest if Q is None else Q
         self.points = points
 
     @classmethod
@@ -322,7 +323,7 @@ class GivenPotential(AbstractPotential):
 
     def __check_init__(self):
         require_function("potential.W", self.W_fn, "a function of Y")
-        if self.Q_fn is not _nothing:
+        if self.Q_fn is not no_rest:
             _require_of_two("potential.Q", self.Q_fn)
         require_whole("potential.points", self.points, 16)
         require_smooth("potential.W", self._leading_inside, self.points)
@@ -332,7 +333,7 @@ class GivenPotential(AbstractPotential):
             leading, rest = self.W_fn, getattr(self.Q_fn, "rest", None)
             given = {"F": leading.energy, "WW": leading.wiggle, "QQ": rest}
             return call_text("GivenPotential.from_energy", given)
-        without = ("Q",) if self.Q_fn is _nothing else ()
+        without = ("Q",) if self.Q_fn is no_rest else ()
         return part_text(self, [n for n in ("W", "Q", "points") if n not in without])
 
     def _leading_inside(self, Y: Real) -> Real:

@@ -137,7 +137,7 @@ def _read_back(path: Path, effects: tuple) -> Coefficients | None:
     bristle of an array, of a rod that has not turned over."""
     if any(isinstance(effect, CompliantArray | NapFlip) for effect in effects):
         return None
-    return friction(load_scene(path))
+    return friction(load_scene(path, functions=True))  # written here, of what is there
 
 
 def _parts(scene: Scene) -> tuple[AbstractProfile, AbstractBristle]:

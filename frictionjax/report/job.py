@@ -127,6 +127,8 @@ def _read_job(
     known = default_study() if path is None else load_study(path)
     study = {**default_study().study, **known.study}
     chosen = known.scene.bristle if bristle is None else named_bristle(bristle)
+    needs = "[profile] and [bristle], of which commands are: its scene is Python's"
+    require(chosen is not None, f"{path}: [potential]", "given", needs)
     assert chosen is not None
     pulls = pulling_note(chosen)
     warned = [f"Note: {pulls}"] if pulls else []
