@@ -20,7 +20,7 @@ from ..model import (
 from ..profiles import AbstractProfile
 from ..wiggly import MAX_STEPS, require_accuracy
 from .crawler_motion import CrawlerMotion
-from .limit_gait import limit_gait
+from .limit_gait import is_alike, limit_gait
 from .spring_between import foot_on_spring
 from .wiggly_gait import CrawlRequest, wiggly_gait
 
@@ -120,10 +120,10 @@ def _request(
 
 def _closed_form(scene: Scene, cycle: float) -> float:
     """Of a foot that friction holds like a rigid-plastic one, in a cycle of one breath."""
-    if not cycle <= float(scene.duration):
-        return np.nan
     law = coefficients_jit(scene.potential)
     plus, minus = float(law.rho_plus), -float(law.rho_minus)
+    if not cycle <= float(scene.duration) or is_alike(plus, minus):
+        return np.nan
     turns = known_turning_points(scene.load, scene.duration, scene.turns)
     times = np.append([0.0, cycle], turns[turns < cycle])
     loads, _, _ = strips_at(scene, plus, -minus, times)

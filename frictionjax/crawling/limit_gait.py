@@ -11,6 +11,11 @@ from .settings import SETTINGS
 _Column = Float[np.ndarray, " n"]
 
 
+def is_alike(plus: float, minus: float) -> bool:
+    """Whether friction (N) is the same both ways, but for rounding."""
+    return abs(plus - minus) <= SETTINGS.alike * (plus + minus)
+
+
 def limit_gait(scene: Scene, ts: Float[np.ndarray, " n"]) -> Gait:
     """Feet from 0 and L(0), where the spring is slack, at sorted times in s.
 
@@ -22,9 +27,7 @@ def limit_gait(scene: Scene, ts: Float[np.ndarray, " n"]) -> Gait:
     law = coefficients_jit(scene.potential)
     plus, minus = float(law.rho_plus), -float(law.rho_minus)
     needs = "rho_plus != -rho_minus: with both the same no foot is held more than the other"
-    told = f"{plus:.6g} N both ways"
-    apart = abs(plus - minus) > SETTINGS.alike * (plus + minus)
-    require(apart, "friction", told, needs)
+    require(not is_alike(plus, minus), "friction", f"{plus:.6g} N both ways", needs)
     least = min(plus, minus)
     turns = known_turning_points(scene.load, scene.duration, scene.turns)
     times = np.union1d(ts, turns)

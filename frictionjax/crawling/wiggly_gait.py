@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from .._compile import padded_size
-from ..model import Scene, known_turning_points, scene_of_tables
+from ..model import Scene, coefficients_jit, known_turning_points, scene_of_tables
 from ..wiggly import Status
 from .gait import Gait
 from .march import CrawlPlan, MarchedFeet, march_feet
@@ -27,7 +27,7 @@ def wiggly_gait(scene: Scene, ts: Float[np.ndarray, " n"], asked: CrawlRequest) 
     """Feet from 0 and L(0), at sorted times in s."""
     tables = scene_of_tables(scene, asked.eps)
     turns = known_turning_points(scene.load, scene.duration, scene.turns)
-    stops = np.union1d(ts, turns)
+    stops = np.union1d(ts, turns[turns < ts[-1]])
     room = padded_size(stops.size, SETTINGS.stops)
     ends = np.append(stops, np.full(room - stops.size, stops[-1]))
     starts = np.append(0.0, ends[:-1])
@@ -47,7 +47,9 @@ def wiggly_gait(scene: Scene, ts: Float[np.ndarray, " n"], asked: CrawlRequest) 
         error = _apart(runs[-2], runs[-1], at, asked.eps)
         if runs[-1].code or error <= asked.accuracy:
             break
-    return _told(runs, error, at, asked)
+    law = coefficients_jit(scene.potential)
+    slip = asked.eps * float(law.rho_plus - law.rho_minus)
+    return _told(runs, error, at, asked, slip)
 
 
 def _apart(rough: MarchedFeet, fine: MarchedFeet, at: np.ndarray, eps: float) -> float:
@@ -61,9 +63,13 @@ def _apart(rough: MarchedFeet, fine: MarchedFeet, at: np.ndarray, eps: float) ->
 
 
 def _told(
-    runs: list[MarchedFeet], error: float, at: np.ndarray, asked: CrawlRequest
+    runs: list[MarchedFeet],
+    error: float,
+    at: np.ndarray,
+    asked: CrawlRequest,
+    slip: float,
 ) -> Gait:
-    """The finest run, and whether it can be believed."""
+    """The finest run, and whether it can be believed; `slip`: energy of one, J."""
     found = runs[-1]
     places, lost, left, tension = (
         np.asarray(column)[at]
@@ -77,7 +83,8 @@ def _told(
     code = int(found.code)
     if code == Status.OK and not error <= asked.accuracy:
         code = int(Status.SENSITIVE)
-    if code == Status.OK and np.max(np.abs(left)) > SETTINGS.balance * lost[-1]:
+    # Of feet that hardly move, nearly nothing is dissipated: a slip's energy beside it.
+    if code == Status.OK and np.max(np.abs(left)) > SETTINGS.balance * (lost[-1] + slip):
         code = int(Status.UNBALANCED)
     return Gait(
         rear=places[:, 0],

@@ -159,6 +159,15 @@ def test_the_last_cycle_is_that_of_the_breathing_or_the_one_asked_for():
     assert math.isnan(fx.crawler(SINE, ROD, 1.0, BREATH, 0.7).step)
 
 
+def test_feet_that_have_nowhere_to_go_are_balanced():
+    """In wells from the start, with no breath: nothing moves, and nothing is lost."""
+    cosine = fx.profiles.Fourier([0.02], [0.0])
+    still = fx.crawler(cosine, UPRIGHT, 1.0, fx.loads.Sine(0.0, 1.0), 1.0, eps=0.05)
+    assert still.ok, still
+    assert abs(still.step) < 1e-9
+    assert math.isnan(still.closed_form)  # friction is the same both ways
+
+
 def test_what_cannot_be_trusted_says_so():
     budget = fx.crawler(SINE, ROD, 1.0, BREATH, 1.0, eps=0.02, max_steps=50)
     assert budget.status.name == "MAX_STEPS"
