@@ -9,13 +9,9 @@ from jaxtyping import Array
 
 from .._checks import Real
 from .._compile import Program
-from ..numerics import concatenated, rows_of
+from ..numerics import THREE_NODES, THREE_WEIGHTS, concatenated, rows_of
 from .forces import AbstractForce, ForceParts
 from .settings import SETTINGS
-
-THREE_NODES = np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])  # Gauss on [0, 1]
-THREE_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18
-
 
 Column = Any
 """An array over samples or intervals: traced inside, NumPy outside."""

@@ -11,8 +11,8 @@ from jaxtyping import Array
 from .._checks import Real
 from .._compile import Program, in_chunks
 from ..model import Scene
-from ..numerics import cubic, cubic_slope
-from .curve import THREE_NODES, THREE_WEIGHTS, every_second
+from ..numerics import THREE_NODES, THREE_WEIGHTS, cubic, cubic_slope
+from .curve import every_second
 from .forces import Force, force_in_tables, force_of
 from .massive_steps import MassiveEquation
 from .sample_gaps import SampleGaps

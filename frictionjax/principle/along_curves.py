@@ -21,14 +21,12 @@ from ..model import (
     require_reach,
     scene_for,
 )
+from ..numerics import THREE_NODES, THREE_WEIGHTS
 from ..supports import AbstractSupport
 from ..tables import load_table
 from .dissipation import is_held
 from .joint import mean_resistance
 from .settings import SETTINGS
-
-_NODES = np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])  # Gauss on [0, 1]
-_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18
 
 
 @Interpreted
@@ -111,13 +109,13 @@ def D_eps(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> float:
     eps = float(eps)
     edges = _panels(ts, z, eps)
     curve = PchipInterpolator(ts, z)
-    times = edges[:-1, None] + _NODES * np.diff(edges)[:, None]
+    times = edges[:-1, None] + THREE_NODES * np.diff(edges)[:, None]
     states, speeds = curve(times), curve(times, 1)
     parts = potential_in_reach(scene.potential, eps), scene.support, load_table(scene.load)
     numbers = np.asarray(eps), np.asarray(eps ** float(gamma))
     columns = times.ravel(), states.ravel(), speeds.ravel()
     costs = in_chunks(_costs, SETTINGS.places, (*parts, *numbers), columns)
-    return float(np.diff(edges) @ (costs.reshape(times.shape) @ _WEIGHTS))
+    return float(np.diff(edges) @ (costs.reshape(times.shape) @ THREE_WEIGHTS))
 
 
 @Program

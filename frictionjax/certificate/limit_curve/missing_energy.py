@@ -5,10 +5,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..._compile import Interpreted
+from ...numerics import THREE_NODES, THREE_WEIGHTS
 from ...supports import AbstractSupport
-
-_NODES = np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])  # Gauss on [0, 1]
-_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18
 
 _Column = Float[np.ndarray, " k"]
 
@@ -45,6 +43,6 @@ def _between(
 ) -> _Column:
     """`int (Phi'(z) - held) dz` from start to end."""
     width = end - start
-    places = start[:, None] + width[:, None] * _NODES
+    places = start[:, None] + width[:, None] * THREE_NODES
     forces = forces_at(support, places.ravel()).reshape(places.shape)
-    return width * ((forces - held[:, None]) @ _WEIGHTS)
+    return width * ((forces - held[:, None]) @ THREE_WEIGHTS)
