@@ -70,13 +70,15 @@ class CrawlerMotion(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
         >>> print(f"{data.position[-1] - data.position[0]:.3f} {data.position.units}")
         -2.428 m
         """
-        ended = {"status": self.status.name, "message": self.message, "step": self.step}
+        ended = {"status": self.status.name, "message": self.message}
+        told = {"step": self.step, "closed_form": self.closed_form, "error": self.error}
+        ended |= {name: value for name, value in told.items() if value is not None}
         return dataset_over_time(self, _COLUMNS, ended)
 
     def _in_words(self) -> str:
         by = "the limit" if self.steps is None else f"{self.steps} steps"
-        step = f"{self.step:.6g} m a cycle"
-        return f"CrawlerMotion({self._ended}: {self.ts.size} times, {step}, {by})"
+        step = f", {self.step:.6g} m a cycle" if np.isfinite(self.step) else ""
+        return f"CrawlerMotion({self._ended}: {self.ts.size} times{step}, {by})"
 
     def _numbers(self) -> list[Named]:
         return [

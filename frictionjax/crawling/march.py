@@ -80,7 +80,7 @@ def march_feet(
     wells, tips = scene.potential.tip(places, eps)
     first = jnp.append(tips, jnp.zeros(2))
     none = jnp.zeros_like(eps)
-    before = feet_at(wells, starts[0]).energy(none, first)
+    before = feet_at(wells, starts[0]).energy(first)
     start = _Going(wells, first, none, none > 0, ControlState(none, none), none, none, none)
 
     def through(going: _Going, stretch: tuple) -> tuple[_Going, FeetAtStops]:
@@ -94,7 +94,7 @@ def march_feet(
         feet, motion = feet_at(going.wells, origin), going.motion
         forces = feet.feet(motion)
         speeds = feet.rates(length, motion)[:2] / plan.pace
-        left = before + motion[3] - feet.energy(length, motion) - motion[2]
+        left = before + motion[3] - feet.energy(motion) - motion[2]
         tension = feet.tension(length, forces)
         found = FeetAtStops(forces.place, speeds, tension, motion[2], left)
         known = going.code == 0

@@ -15,10 +15,9 @@ class Settings(NamedTuple):
     # off by 3e-5, 7.5e-5, 2e-4 eps at most, in 1, 0.87, 0.77 of the steps.)
     share: float = 3.0
     # Tolerances of runs over that, until two after each other agree.
-    finer: tuple[float, ...] = (1.0, 0.3, 0.03, 0.003)
+    finer: tuple[float, ...] = (1.0, 0.3, 0.03, 0.003, 3e-4)
     # Speeds over the fastest slide's: 0.05 eps in 1/200 of a slip's time.
     in_slips: float = 10.0
-    balance: float = 1e-2  # of what is dissipated: what the energies may be off by
     alike: float = 1e-9  # of friction: with the same both ways no foot knows to move first
 
 

@@ -16,7 +16,8 @@ from ..wiggly import Tableau
 
 FeetMotion = Float[Array, "4"]
 """The tips of the rear and of the front foot in periods from their wells, and in J since
-the start `int eps^gamma (x1'^2 + x2'^2)` and `-int T L'`."""
+the start `int eps^gamma (x1'^2 + x2'^2)` and `int l (x2' - x1')`, which needs no slope of
+l, that jumps where l has kinks."""
 
 
 class FootForces(NamedTuple):
@@ -60,14 +61,15 @@ class TwoFeet(eqx.Module):
         force = tension * jnp.array([1.0, -1.0]) - feet.pull
         tips = force / (self.viscosity * self.eps * feet.stretch)
         lost = jnp.sum(force**2) / self.viscosity
-        work = -tension * self.load.slope(self.origin + t) / self.stiffness
+        work = self.load(self.origin + t) * (force[1] - force[0]) / self.viscosity
         return jnp.append(tips, jnp.stack([lost, work]))
 
-    def energy(self, t: Real, motion: FeetMotion) -> Real:
-        """Of the spring and of both feet, in J."""
-        tension = self.tension(t, self.feet(motion))
+    def energy(self, motion: FeetMotion) -> Real:
+        """`k (x2 - x1)^2/2` and of both feet, in J: the load l does the rest."""
+        places = self.feet(motion).place
         wiggle = jax.vmap(lambda y: self.potential.tip_energy_change(y, self.eps))
-        return 0.5 * tension**2 / self.stiffness + jnp.sum(wiggle(motion[:2]))
+        spring = 0.5 * self.stiffness * (places[1] - places[0]) ** 2
+        return spring + jnp.sum(wiggle(motion[:2]))
 
 
 class FeetStep(NamedTuple):
