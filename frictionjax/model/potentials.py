@@ -310,10 +310,13 @@ class GivenPotential(AbstractPotential):
         if QQ is not None:
             _require_of_two("QQ", QQ)
         leading = LeadingTerm(F, WW)
-        alpha = leading.alpha()
+        alpha, beside = leading.alpha(), leading.slopes_beside()
         if is_concrete(alpha):
             known = bool(jnp.isfinite(alpha)) and float(alpha) != 0.0
-            require(known, "F: alpha = F'(0)", float(alpha), "alpha != 0")
+            require(known, "F: alpha = F'(0)", float(alpha), "a finite alpha != 0")
+            kink = float(beside[1] - beside[0])
+            same = abs(kink) <= 1e-9 * abs(float(alpha))
+            require(same, "F: F' at 0 jumps by", kink, "a C^3 function")
         return cls(leading, RestTerm(leading, QQ), points)
 
     def alpha(self) -> Real | None:
@@ -332,6 +335,7 @@ class GivenPotential(AbstractPotential):
         if isinstance(self.W_fn, LeadingTerm):
             leading, rest = self.W_fn, getattr(self.Q_fn, "rest", None)
             given = {"F": leading.energy, "WW": leading.wiggle, "QQ": rest}
+            given |= {} if self.points == 4096 else {"points": self.points}
             return call_text("GivenPotential.from_energy", given)
         without = ("Q",) if self.Q_fn is no_rest else ()
         return part_text(self, [n for n in ("W", "Q", "points") if n not in without])

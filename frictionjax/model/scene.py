@@ -354,6 +354,7 @@ def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " 
 
 def require_instants(scene: Scene, ts: Any) -> Float[np.ndarray, " n"]:
     """Check times of samples that are known: two or more that increase, in the scene."""
+    require(is_known(ts), "ts", "traced times", "known ones")
     times = known_numbers(ts)
     require(times.ndim == 1 and times.size >= 2, "ts", ts, "times, shape (n,), n >= 2")
     times = np.asarray(require_times(scene, times), dtype=float)
@@ -366,6 +367,7 @@ def require_curve(
 ) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
     """Check a curve that is known by samples: times as above, and states in m."""
     times = require_instants(scene, ts)
+    require(is_known(z), "z", "traced states", "known ones")
     states, needs = known_numbers(z), f"real states of the shape {times.shape} of ts"
     require(states.shape == times.shape, "z", z, needs)
     states = states.astype(float)

@@ -18,8 +18,18 @@ class LeadingTerm(eqx.Module):
 
     def alpha(self) -> Real:
         """`F'(0)`."""
-        zero = jnp.zeros(())
-        return jax.jvp(self.energy, (zero,), (jnp.ones_like(zero),))[1]
+        return self._slope(jnp.zeros(()))
+
+    def slopes_beside(self) -> tuple[Real, Real]:
+        """F' just below and just above 0: those of a kink differ."""
+        near = jnp.asarray(1e-300)
+        return self._slope(-near), self._slope(near)
+
+    def _slope(self, u: Real) -> Real:
+        def energy(u: Real) -> Real:
+            return jnp.asarray(self.energy(u), dtype=float)
+
+        return jax.jvp(energy, (u,), (jnp.ones_like(u),))[1]
 
     def __call__(self, Y: Real) -> Real:
         return self.alpha() * self.wiggle(Y)

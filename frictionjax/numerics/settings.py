@@ -32,6 +32,7 @@ class Settings(NamedTuple):
 
     # Differences and their integrals (`taylor.py`).
     cancelled: float = 8 * float(np.finfo(np.float64).eps)  # rounding of a difference
+    settled: float = 1e-13  # of a quadrature, against one of half as many nodes
 
     # Distances of graphs (`completed_graphs.py`).
     halvings: int = 30  # of the largest difference: 1e-9 of it is left

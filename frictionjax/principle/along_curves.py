@@ -16,6 +16,7 @@ from ..model import (
     AbstractPotential,
     Scene,
     coefficients_jit,
+    known_turning_points,
     potential_in_reach,
     require_curve,
     require_reach,
@@ -51,7 +52,7 @@ def D(scene: Scene, ts: Any, z: Any) -> float:
     the limit, where it is `int R(z')`, and of second order elsewhere. A curve solves the
     limit system if and only if `E(t2) - E(t1) + int l' z + D = 0`.
 
-    Raises `ValueError` for a bad curve, and for effects that move tips by other laws.
+    Raises `ValueError` for a bad curve, and for effects whose limit is another.
 
     >>> ts = np.linspace(0.0, 3.0, 3001)
     >>> limit = fx.solve_limit(scene, ts)
@@ -59,12 +60,14 @@ def D(scene: Scene, ts: Any, z: Any) -> float:
     >>> print(f"{D:.4f} J, where friction takes {limit.dissipation[-1]:.4f} J")
     0.3796 J, where friction takes 0.3796 J
     """
-    scene = scene_for(Engine.PRINCIPLE, scene)
+    scene = scene_for(Engine.LIMIT_CERTIFICATE, scene)
     ts, z = require_curve(scene, ts, z)
     law = coefficients_jit(scene.potential)
-    load = _loads(scene.load, ts)
-    xi = load - _held(scene.support, z)[0]
-    if not np.all(is_held(law, jnp.asarray(xi), load=jnp.asarray(load))):
+    load, held = _loads(scene.load, ts), _held(scene.support, z)[0]
+    xi = load - held
+    # A load near its zero carries the rounding of its largest values.
+    largest = max(float(np.max(np.abs(load))), float(np.max(np.abs(held))))
+    if not np.all(is_held(law, jnp.asarray(xi), load=jnp.asarray(largest))):
         return float("inf")
     low, high = float(law.rho_minus), float(law.rho_plus)
     moves = np.abs(np.diff(z))
@@ -91,9 +94,9 @@ def D_eps(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> float:
     a solution whose slips are not sampled it is much too large. From some ten samples a
     slip on it is of second order in their distance.
 
-    Raises `ValueError` for arguments out of range, a bad curve, one of more than a
-    million wells, an eps at which the bristle loses its contact, and for effects that move
-    tips by other laws.
+    Raises `ValueError` for arguments out of range, a bad curve, one of more than
+    8 million pieces of wells, an eps at which the bristle loses its contact, and for
+    effects that move tips by other laws.
 
     >>> ts = np.linspace(0.0, 3.0, 3001)
     >>> found = fx.solve(scene, eps=0.03, ts=ts)
@@ -107,8 +110,8 @@ def D_eps(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> float:
     ts, z = require_curve(scene, ts, z)
     require_reach(scene.potential, jnp.asarray(as_real(eps)))
     eps = float(eps)
-    edges = _panels(ts, z, eps)
     curve = PchipInterpolator(ts, z)
+    edges = _panels(scene, ts, curve, eps)
     times = edges[:-1, None] + THREE_NODES * np.diff(edges)[:, None]
     states, speeds = curve(times), curve(times, 1)
     parts = potential_in_reach(scene.potential, eps), scene.support, load_table(scene.load)
@@ -140,15 +143,26 @@ def _costs(
     return (viscosity * speeds**2 + xi**2 / viscosity) / 2
 
 
-def _panels(ts: np.ndarray, z: np.ndarray, eps: float) -> Float[np.ndarray, " n"]:
-    """Times between which the curve goes through a small part of a well."""
-    wells = np.abs(np.diff(z)) / eps
-    pieces = np.maximum(np.ceil(wells / SETTINGS.pieces), 1.0)
+def _panels(
+    scene: Scene, ts: np.ndarray, curve: PchipInterpolator, eps: float
+) -> Float[np.ndarray, " n"]:
+    """Times between which load, curve and wells change little: samples, the load's edges
+    with places between them, and more where the curve goes through wells, or through a
+    surface whose harmonics are finer than these."""
+    turns = known_turning_points(scene.load, scene.duration, scene.turns)
+    inside = turns[(turns > ts[0]) & (turns < ts[-1])]
+    stretches = np.concatenate([ts[:1], inside, ts[-1:]])
+    shares = np.arange(SETTINGS.of_load) / SETTINGS.of_load
+    between = (stretches[:-1, None] + np.diff(stretches)[:, None] * shares).ravel()
+    known = np.union1d(ts, between)
+    finest = max(SETTINGS.of_wells, scene.potential.points / SETTINGS.samples)
+    wells = np.abs(np.diff(curve(known))) / eps
+    pieces = np.maximum(np.ceil(wells * finest), 1.0)
     total = float(np.sum(pieces))
-    needs = f"at most {SETTINGS.most:.3g}, {1 / SETTINGS.pieces:g} of each well"
+    needs = f"at most {SETTINGS.most:.3g}, {finest:g} of each well"
     require(total <= SETTINGS.most, "z, and pieces of its way", total, needs)
     count = pieces.astype(int)
     first = np.repeat(np.arange(count.size), count)
     number = np.arange(first.size) - np.repeat(np.cumsum(count) - count, count)
-    edges = ts[first] + number / pieces[first] * np.diff(ts)[first]
-    return np.append(edges, ts[-1])
+    edges = known[first] + number / pieces[first] * np.diff(known)[first]
+    return np.append(edges, known[-1])

@@ -6,10 +6,16 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._checks import Real, require_numbers, require_x64, with_nan
+from .._checks import Real, require, require_numbers, require_x64, with_nan
 from ..coefficients import Coefficients
-from ..effects import Engine
-from ..model import SETTINGS, Scene, coefficients_jit, dissipation_potential, scene_for
+from ..model import (
+    SETTINGS,
+    Scene,
+    coefficients_jit,
+    composed,
+    dissipation_potential,
+    known_scene,
+)
 
 _SPACING = float(np.finfo(np.float64).eps)
 
@@ -22,18 +28,29 @@ def numbers_as_given(**given: Any) -> list[Array]:
     return [jnp.asarray(value, dtype=float) for value in given.values()]
 
 
+def require_shapes(**given: Any) -> None:
+    """Raise `ValueError` for arguments whose shapes do not broadcast."""
+    shapes = {name: np.shape(value) for name, value in given.items()}
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        told = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        require(False, "shapes", told, "shapes that broadcast")
+
+
 def viscosity_as_given(eps: Any, gamma: Any) -> Array:
     """`eps^gamma` in N s/m of one eps and gamma, or of arrays that broadcast."""
     for name, value in (("eps", eps), ("gamma", gamma)):
         allowed = f"{name} > 0, a number or an array"
         require_numbers(name, value, allowed, lambda v: v > 0)
+    require_shapes(eps=eps, gamma=gamma)
     eps, gamma = numbers_as_given(eps=eps, gamma=gamma)
     return eps**gamma
 
 
 def law_of(scene: Any) -> tuple[Scene, Coefficients]:
     """A scene as its limit sees it, and its coefficients of friction."""
-    scene = scene_for(Engine.LIMIT, scene)
+    scene = composed(known_scene(scene))
     return scene, coefficients_jit(scene.potential)
 
 
@@ -102,6 +119,7 @@ def R_eps(v: Any, eps: Any, gamma: Any) -> Float[Array, "..."]:
     0.02
     """
     viscosity, (v,) = viscosity_as_given(eps, gamma), numbers_as_given(v=v)
+    require_shapes(v=v, eps=eps, gamma=gamma)
     return viscosity * v**2 / 2
 
 
@@ -117,4 +135,5 @@ def R_eps_star(xi: Any, eps: Any, gamma: Any) -> Float[Array, "..."]:
     0.02
     """
     viscosity, (xi,) = viscosity_as_given(eps, gamma), numbers_as_given(xi=xi)
+    require_shapes(xi=xi, eps=eps, gamma=gamma)
     return xi**2 / (2 * viscosity)

@@ -6,10 +6,16 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from .._checks import is_concrete, with_nan
+from .._checks import is_concrete, require_numbers, with_nan
 from .._compile import once_a_scene, padded_size
 from ..model import AbstractPotential, cancels, potential_at_rest
-from .dissipation import is_held, law_of, numbers_as_given, viscosity_as_given
+from .dissipation import (
+    is_held,
+    law_of,
+    numbers_as_given,
+    require_shapes,
+    viscosity_as_given,
+)
 from .settings import SETTINGS
 from .well_variation import well_variation
 
@@ -40,7 +46,7 @@ def K(scene: Any, xi: Any) -> Float[Array, "*xi"]:
 
     `xi`: forces in N, any shape. Returns what friction of the `scene` takes at least, of
     each metre, under the force xi, of its shape: more than |xi| inside (rho_minus,
-    rho_plus), |xi| outside. Differentiable in both: the slope by xi is the share of a
+    rho_plus), |xi| outside. Differentiable in both, once: the slope by xi is the share of a
     period where W' is below xi, minus that where it is above.
 
     Raises `ValueError` as `R`.
@@ -76,6 +82,8 @@ def M(
     [0.1204 0.104     inf]
     """
     v, xi, slack, load = numbers_as_given(v=v, xi=xi, slack=slack, load=load)
+    require_shapes(v=v, xi=xi, slack=slack, load=load)
+    require_numbers("slack", slack, "slack >= 0", lambda s: s >= 0)
     scene, law = law_of(scene)
     held = jnp.clip(xi, law.rho_minus, law.rho_plus)
     least = jnp.abs(v) * mean_resistance(scene.potential, held)
@@ -97,4 +105,5 @@ def M_eps(v: Any, xi: Any, eps: Any, gamma: Any) -> Float[Array, "..."]:
     """
     v, xi = numbers_as_given(v=v, xi=xi)
     viscosity = viscosity_as_given(eps, gamma)
+    require_shapes(v=v, xi=xi, eps=eps, gamma=gamma)
     return viscosity * v**2 / 2 + xi**2 / (2 * viscosity)

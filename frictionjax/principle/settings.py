@@ -11,7 +11,11 @@ class Settings(NamedTuple):
     together: int = 64  # forces of one compiled call
 
     # Curves (`along_curves.py`).
-    pieces: float = 0.125  # in which a well is gone through
+    # Pieces: of a well at least, and samples that resolve its surface in each; of the load
+    # from one edge to the next.
+    of_wells: int = 8
+    samples: int = 8
+    of_load: int = 16
     most: int = 1 << 23  # of them
     places: int = 1 << 12  # of one compiled call
 

@@ -305,6 +305,9 @@ def test_a_bristle_is_such_a_potential():
     [
         ((lambda u: u**2, lopsided), "alpha = F'"),
         ((1.0, lopsided), "F = 1"),
+        ((lambda u: u + jnp.abs(u), lopsided), "F' at 0 jumps by"),
+        ((lambda u: jnp.log(u), lopsided), "a finite alpha"),
+        ((lambda u: 2, lopsided), "alpha = F'"),
         ((energy_of_height, 2.0), "WW = 2"),
         ((energy_of_height, lopsided, lopsided), "QQ = "),
         ((energy_of_height, lambda Y: 0.0 * Y), "potential.W"),

@@ -39,6 +39,19 @@ def test_all_digits_at_any_eps(eps, rest):
         assert found == pytest.approx(float(exact), rel=1e-12, abs=1e-15)
 
 
+@pytest.mark.parametrize("eps", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_energies_that_cancel_inside_keep_their_digits(eps):
+    """F(0) = 0 out of a difference: what it loses, no bound knows."""
+    term = RestTerm(LeadingTerm(lambda u: 0.5 * (1 + u) ** 2 - 0.5, wave), None)
+    found = float(term(jnp.asarray(eps), jnp.asarray(0.23)))
+    assert found == pytest.approx(0.5 * float(wave(0.23)) ** 2, rel=1e-12)
+    term = RestTerm(LeadingTerm(lambda u: jnp.exp(u) - 1, wave), None)
+    found, WW = float(term(jnp.asarray(eps), jnp.asarray(0.23))), float(wave(0.23))
+    u = eps * WW
+    series = 0.5 + u / 6 + u**2 / 24 + u**3 / 120 + u**4 / 720
+    assert found == pytest.approx(WW**2 * series, rel=1e-11)
+
+
 def test_it_has_derivatives():
     term = RestTerm(LeadingTerm(energy, wave), second)
     Y, h = 0.3, 1e-5

@@ -135,6 +135,52 @@ def test_the_limit_dissipates_no_more_than_what_comes_near():
     assert limit < found[-1] < 1.05 * limit
 
 
+def test_loads_that_change_while_nothing_moves_are_seen():
+    """At rest f = l - Phi' - V' goes up and down with the load alone."""
+    still = SCENE.replace(load=fx.loads.Sine(0.05, 0.5))
+    fine = np.linspace(0, 3, 300001)
+    held = np.full(fine.size, -0.0125)
+    expected = by_quadrature(still, 0.05, 1.0, fine, held, 0 * fine)
+    for count in (2, 7, 13, 301):
+        ts = np.linspace(0, 3, count)
+        found = D_eps(still, 0.05, 1.0, ts, np.full(count, -0.0125))
+        assert found == pytest.approx(expected, rel=1e-6)
+
+
+def test_surfaces_of_many_harmonics_are_seen():
+    n = np.arange(1, 61)
+    sharp = fx.profiles.Fourier(0 * n, 0.02 * np.exp(-((n / 40.0) ** 2)) / n)
+    scene = SCENE.replace(profile=sharp, bristle=fx.bristles.Homothetic(1.0))
+    fine = np.linspace(0.0, 2.0, 400001)
+    speed = np.full(fine.size, 0.3)
+    expected = by_quadrature(scene, 0.05, 1.0, fine, 0.3 * fine, speed)
+    for count in (2, 11, 101):
+        ts = np.linspace(0.0, 2.0, count)
+        assert D_eps(scene, 0.05, 1.0, ts, 0.3 * ts) == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize("amplitude", [1e5, 1e7])
+def test_large_loads_near_their_zeros_carry_their_rounding(amplitude):
+    large = SCENE.replace(load=fx.loads.Sine(amplitude, 3.0))
+    ts = np.linspace(0, 3, 301)
+    assert np.isfinite(D(large, ts, fx.solve_limit(large, ts).z))
+
+
+@pytest.mark.parametrize("effect", [fx.effects.Inertia(1e-3), fx.effects.Noise(1e-6)])
+def test_the_limit_of_a_scene_with_effects(effect):
+    """Mass vanishes in it; noise has friction, and no curve of the limit."""
+    scene = SCENE.replace(effects=(effect,))
+    assert float(K(scene, 0.05)) == float(K(SCENE, 0.05))
+    if isinstance(effect, fx.effects.Inertia):
+        found = fx.solve_limit(scene, TS)
+        assert D(scene, TS, found.z) == pytest.approx(
+            float(found.dissipation[-1]), rel=1e-5
+        )
+    else:
+        with pytest.raises(ValueError, match=r"principle.D does not do Noise"):
+            D(scene, TS, 0 * TS)
+
+
 @pytest.mark.parametrize(
     ("call", "named"),
     [

@@ -147,6 +147,9 @@ def test_M_eps_is_both_parts_and_bounds_the_power():
         (lambda p, s: p.R_eps_star(1.0, 0.1, 0.0), "gamma = 0"),
         (lambda p, s: p.M_eps(1.0, 1.0, [0.1, 0.0], 1.0), "eps = "),
         (lambda p, s: p.K(s.profile, 0.1), "scene"),
+        (lambda p, s: p.M(s, [1.0, 2.0], [0.1, 0.1, 0.1]), "shapes that broadcast"),
+        (lambda p, s: p.M_eps([1.0, 2.0], 0.1, [0.1, 0.1, 0.1], 1.0), "shapes that"),
+        (lambda p, s: p.M(s, 1.0, 0.1, slack=-1.0), "slack = -1"),
     ],
 )
 def test_bad_arguments_are_named(call, named):

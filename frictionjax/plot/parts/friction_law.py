@@ -9,7 +9,7 @@ from ...model import Scene, coefficients_jit
 from ...principle import K
 from ..style import GUIDE, LIMIT, STRIP, colour, new_figure, styled
 
-_BEYOND = 0.25  # of the interval of friction, on both sides
+_BEYOND = 0.4  # of the interval of friction, on both sides
 _FORCES = 241
 
 

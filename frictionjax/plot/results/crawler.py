@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from ..._checks import require
 from ..style import GUIDE, axes_of, colour, styled
 
 
@@ -16,12 +17,16 @@ def draw_crawler(motion: Any, ax: Any = None) -> Any:
     Shaded: what is between the feet, which the spring pushes apart and pulls together;
     dashed: their middle. The title says how far it gets in a cycle.
 
+    Raises `ValueError` for what is no such motion.
+
     >>> breathing = fx.loads.Sine(amplitude=0.5, period=1.0)
     >>> found = fx.crawler(scene.profile, scene.bristle, 1.0, breathing, duration=3.0)
     >>> figure = fx.plot.draw_crawler(found)
     >>> figure.axes[0].get_legend_handles_labels()[1]
     ['front foot', 'rear foot', 'middle']
     """
+    known = hasattr(motion, "rear")
+    require(known, "motion", type(motion).__name__, "what crawler returns")
     drawn, axes = axes_of(ax, 7.2, 4.4)
     ts = np.asarray(motion.ts)
     axes.fill_between(ts, motion.rear, motion.front, color=colour(0), alpha=0.12, lw=0)
