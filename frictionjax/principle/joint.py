@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .._checks import is_concrete, require_numbers, with_nan
-from .._compile import once_a_scene, padded_size
+from .._compile import Program, padded_size
 from ..model import AbstractPotential, cancels, potential_at_rest
 from .dissipation import (
     is_held,
@@ -20,7 +20,7 @@ from .settings import SETTINGS
 from .well_variation import well_variation
 
 
-@once_a_scene
+@Program
 def _variations(
     potential: AbstractPotential, xi: Float[Array, "rows together"]
 ) -> Float[Array, "rows together"]:

@@ -9,6 +9,8 @@ class Settings(NamedTuple):
     # K (`well_variation.py`, `joint.py`).
     newton: int = 6  # sweeps: H' is a parabola at worst, where xi is close to rho
     together: int = 64  # forces of one compiled call
+    # One in so many cells has a turn at most: a wave is seen in 16 places, halved twice.
+    cells_a_turn: int = 8
 
     # Curves (`along_curves.py`).
     # Pieces: of a well at least, and samples that resolve its surface in each; of the load

@@ -17,57 +17,71 @@ def well_variation(potential: AbstractPotential, xi: Real) -> Real:
 
     In the tip coordinate the integrand is `|xi (1 + a w') - alpha w'|`, whose inside is
     the derivative of `H = xi (y + a w) - alpha w`. So this is the variation of H: summed
-    over a grid that holds the inflections of H, so that H turns once in a cell at most,
-    with the few cells in which it does split at the turning point.
+    over a grid that holds the inflections of H, which are those of w whatever xi is, so
+    that H turns once in a cell at most; with the few cells in which it does split at the
+    turning point. (All of them split: eight times the Newton steps.)
     """
-    if isinstance(potential, BristlePotential):
-        a, alpha, profile = potential.a(), potential.alpha(), potential.profile
+    height, a, alpha = _height_of(potential)
 
-        def primitive(y: Real) -> Real:
-            w = profile(y)
-            return xi * (y + a * w) - alpha * w
-    else:
-
-        def primitive(y: Real) -> Real:
-            return xi * y - potential.W(y)
+    def primitive(y: Real) -> Real:
+        w = height(y)
+        return xi * (y + a * w) - alpha * w
 
     slope = jax.grad(primitive)
-    edges = _with_inflections(slope, 2 * potential.points)
-    values, slopes = jax.vmap(jax.value_and_grad(primitive))(edges)
-
-    def variation(
-        left: Array,
-        right: Array,
-        start: Array,
-        end: Array,
-        slope_start: Array,
-        slope_end: Array,
-    ) -> Array:
-        turns = slope_start * slope_end < 0
-        share = slope_start / jnp.where(turns, slope_start - slope_end, 1.0)
-        secant = left + (right - left) * jnp.clip(share, 0.0, 1.0)
-
-        def newton(_: Any, y: Real) -> Real:
-            value, bend = jax.jvp(slope, (y,), (jnp.ones_like(y),))
-            return jnp.clip(y - value / jnp.where(bend == 0, 1.0, bend), left, right)
-
-        # H' is zero at the turn, so what is left of its place enters squared.
-        place = jax.lax.stop_gradient(jax.lax.fori_loop(0, SETTINGS.newton, newton, secant))
-        turn = primitive(place)
-        split = jnp.abs(turn - start) + jnp.abs(end - turn)
-        return jnp.where(turns, split, jnp.abs(end - start))
-
-    pieces = jax.vmap(variation)(
-        edges[:-1], edges[1:], values[:-1], values[1:], slopes[:-1], slopes[1:]
+    edges = _with_inflections(height, 2 * potential.points)
+    heights, climbs = jax.vmap(jax.value_and_grad(height))(edges)
+    values = xi * (edges + a * heights) - alpha * heights
+    slopes = xi * (1 + a * climbs) - alpha * climbs
+    turns = slopes[:-1] * slopes[1:] < 0
+    whole = jnp.sum(jnp.abs(jnp.diff(values)))
+    room = max(turns.size // SETTINGS.cells_a_turn, 2)
+    cells = jnp.nonzero(turns, size=room, fill_value=turns.size)[0]
+    there = cells < turns.size
+    first = jnp.minimum(cells, turns.size - 1)
+    ends = (edges[first], edges[first + 1]), (values[first], values[first + 1])
+    steep = slopes[first], slopes[first + 1]
+    extra = jax.vmap(lambda *cell: _by_splitting(primitive, slope, *cell))(
+        *ends[0], *ends[1], *steep
     )
-    return jnp.sum(pieces)
+    return whole + jnp.sum(jnp.where(there, extra, 0.0))
 
 
-def _with_inflections(slope: Callable[[Real], Real], cells: int) -> Array:
-    """Grid of a period, each cell halved: where `slope'` has its zero, if it has one."""
+def _height_of(potential: AbstractPotential) -> tuple[Callable[[Real], Real], Any, Any]:
+    """w, a and alpha; of what has no bristle W itself, with a = 0 and alpha = 1."""
+    if isinstance(potential, BristlePotential):
+        return potential.profile, potential.a(), potential.alpha()
+    return potential.W, 0.0, 1.0
+
+
+def _by_splitting(
+    primitive: Callable[[Real], Real],
+    slope: Callable[[Real], Real],
+    left: Real,
+    right: Real,
+    start: Real,
+    end: Real,
+    slope_start: Real,
+    slope_end: Real,
+) -> Real:
+    """How much the variation grows when a cell in which H turns is split there."""
+    apart = slope_start - slope_end
+    share = slope_start / jnp.where(apart == 0, 1.0, apart)
+    secant = left + (right - left) * jnp.clip(share, 0.0, 1.0)
+
+    def newton(_: Any, y: Real) -> Real:
+        value, bend = jax.jvp(slope, (y,), (jnp.ones_like(y),))
+        return jnp.clip(y - value / jnp.where(bend == 0, 1.0, bend), left, right)
+
+    # H' is zero at the turn, so what is left of its place enters squared.
+    place = jax.lax.stop_gradient(jax.lax.fori_loop(0, SETTINGS.newton, newton, secant))
+    turn = primitive(place)
+    return jnp.abs(turn - start) + jnp.abs(end - turn) - jnp.abs(end - start)
+
+
+def _with_inflections(height: Callable[[Real], Real], cells: int) -> Array:
+    """Grid of a period, each cell halved: at the inflection of w, if it has one."""
     edges = jnp.arange(cells + 1) / cells
-    bend = jax.grad(slope)
-    bends = jax.vmap(bend)(edges)
+    bends = jax.vmap(jax.grad(jax.grad(height)))(edges)
     turns = bends[:-1] * bends[1:] < 0
     share = bends[:-1] / jnp.where(turns, bends[:-1] - bends[1:], 1.0)
     middle = edges[:-1] + jnp.where(turns, share, 0.5) / cells
