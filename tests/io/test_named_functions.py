@@ -204,6 +204,7 @@ def test_commands_import_functions_when_told(files):
     assert "[potential]" in given
 
 
+@pytest.mark.slow  # 18 s: parts that the suite does not know
 def test_a_study_of_functions_leaves_a_scene_that_reads_back(files):
     folder, _ = files
     made = folder / "study"

@@ -285,8 +285,16 @@ def test_a_potential_from_an_energy_by_lemma_2(sign):
     ends = sorted([alpha * np.max(slopes), alpha * np.min(slopes)])
     told = [float(found.rho_minus), float(found.rho_plus)]
     np.testing.assert_allclose(told, ends, rtol=1e-6)
-    assert fx.solve(scene, 1e-6, ts=[0.0, 0.5, 1.0]).ok
     assert "from_energy(F=F, WW=lopsided, QQ=of_second_order)" in repr(given)
+
+
+@pytest.mark.slow  # programs of their own, as of all given functions
+def test_it_moves_at_any_eps():
+    given = fx.GivenPotential.from_energy(energy_of_height, lopsided, of_second_order)
+    parts = {"support": fx.supports.Spring(1.0), "load": fx.loads.Ramp(1.0)}
+    scene = fx.Scene(potential=given, duration=1.0, **parts)
+    for eps in (1e-2, 1e-6):
+        assert fx.solve(scene, eps, ts=[0.0, 0.5, 1.0]).ok
 
 
 def test_a_bristle_is_such_a_potential():

@@ -31,7 +31,13 @@ def balance(scene, ts, z):
     return float(np.diff(energy(z[[0, -1]]))[0] - work)
 
 
-@pytest.mark.parametrize("scene", [SCENE, OTHER], ids=["slanted", "angular"])
+BOTH = [
+    pytest.param(SCENE, id="slanted"),
+    pytest.param(OTHER, id="angular", marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize("scene", BOTH)
 def test_of_a_solution_of_the_limit_D_is_what_friction_takes(scene):
     found = fx.solve_limit(scene, TS)
     dissipated = float(found.dissipation[-1])
@@ -105,7 +111,7 @@ def test_two_samples_are_a_straight_line():
     assert found == pytest.approx(expected, rel=1e-6)
 
 
-@pytest.mark.parametrize("gamma", [0.7, 1.0])
+@pytest.mark.parametrize("gamma", [pytest.param(0.7, marks=pytest.mark.slow), 1.0])
 def test_of_a_solution_D_eps_is_what_viscosity_takes(gamma):
     eps, ts = 0.03, np.linspace(0.0, 3.0, 6001)
     found = fx.solve(SCENE, eps, gamma, ts)
@@ -147,6 +153,7 @@ def test_loads_that_change_while_nothing_moves_are_seen():
         assert found == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.slow  # tables of 64 harmonics
 def test_surfaces_of_many_harmonics_are_seen():
     n = np.arange(1, 61)
     sharp = fx.profiles.Fourier(0 * n, 0.02 * np.exp(-((n / 40.0) ** 2)) / n)
@@ -201,6 +208,7 @@ def test_bad_curves_are_named(call, named):
         call()
 
 
+@pytest.mark.slow
 def test_parts_of_any_kind():
     for kind in ("custom", "vertical", "homothetic"):
         profile, bristle = pair("spline", kind, 1, 2)

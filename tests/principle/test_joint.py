@@ -75,7 +75,14 @@ def test_loads_far_above_rho_are_told_by_the_load(rate, stiffness):
     assert np.all(np.isinf(wrong))
 
 
-@pytest.mark.parametrize("kind", ["angular", "slanted", "given", "array"])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "slanted",
+        "given",
+        *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("angular", "array")),
+    ],
+)
 def test_K_of_a_scene_is_that_of_its_potential(kind):
     """Of tables, in one program, at any number of forces of any shape."""
     if kind == "given":
