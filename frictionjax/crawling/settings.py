@@ -9,7 +9,7 @@ class Settings(NamedTuple):
     """Counts, unless said otherwise."""
 
     tableau: Tableau = RODAS5P
-    stops: int = 64  # of one compiled call; more are in rooms four times as large
+    stops: int = 256  # of one compiled call; more are in rooms four times as large
     # Of the tolerance of a tip whose spring is held. (18 random crawlers, gamma 0.6 to 1.5,
     # eps 0.005 to 0.05, accuracy 1e-3, against runs at a thousandth of it: 1, 3, 10 are
     # off by 3e-5, 7.5e-5, 2e-4 eps at most, in 1, 0.87, 0.77 of the steps.)

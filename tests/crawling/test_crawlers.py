@@ -75,9 +75,10 @@ def test_values_do_not_depend_on_which_times_are_asked():
     np.testing.assert_allclose(few.rear, whole.rear[::97], atol=1e-14)
     np.testing.assert_allclose(few.front, whole.front[::97], atol=1e-14)
     assert few.step == pytest.approx(whole.step, abs=1e-14)
-    wiggly = fx.crawler(SINE, ROD, 1.0, BREATH, 3.0, TS, eps=0.05)
-    others = fx.crawler(SINE, ROD, 1.0, BREATH, 3.0, TS[::97], eps=0.05)
-    np.testing.assert_allclose(others.rear, wiggly.rear[::97], atol=2e-3 * 0.05)
+    some = TS[::3]  # as many as fit into one program
+    wiggly = fx.crawler(SINE, ROD, 1.0, BREATH, 3.0, some, eps=0.05)
+    others = fx.crawler(SINE, ROD, 1.0, BREATH, 3.0, some[::31], eps=0.05)
+    np.testing.assert_allclose(others.rear, wiggly.rear[::31], atol=2e-3 * 0.05)
 
 
 def by_scipy(eps, gamma, stiffness, amplitude, ts):
@@ -120,10 +121,10 @@ def test_slips_of_both_feet_are_those_of_another_integrator(eps, gamma):
 
 
 def test_its_steps_tend_to_those_of_the_limit():
-    limit = fx.crawler(SINE, LEANING, 1.0, BREATH, 3.0, TS)
+    limit = fx.crawler(SINE, LEANING, 1.0, BREATH, 3.0, TS[::3])
     off, lost = [], []
     for eps in (0.05, 0.01, 2e-3):
-        found = fx.crawler(SINE, LEANING, 1.0, BREATH, 3.0, TS, eps=eps)
+        found = fx.crawler(SINE, LEANING, 1.0, BREATH, 3.0, TS[::3], eps=eps)
         assert found.ok
         assert found.error <= 1e-3
         assert np.max(found.residual) < 1e-4 * found.dissipation[-1]
