@@ -30,8 +30,9 @@ class CrawlerMotion(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
     since t = 0 in J, of both feet. `step`: how far the middle of the feet gets in the last
     cycle, in m, positive forwards; NaN where no cycle is known or it has not ended.
     `closed_form`: the step of a rigid-plastic foot in a cycle that grows and shrinks once,
-    `(dl - 2 rho_f/k)` or 0, with the sign of the motion; NaN where there is no cycle, or
-    friction is the same both ways.
+    `(dl - 2 rho_f/k)` or 0, with the sign of the motion; NaN where there is no such cycle,
+    as L does not come back or goes up and down more often, and where friction is the same
+    both ways.
 
     At finite eps also `residual` in J, what is left of the energy balance, and `error`: how
     far in eps two runs at different tolerances are apart, at times outside slips; None of

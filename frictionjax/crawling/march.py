@@ -15,7 +15,8 @@ from .two_feet import FeetStep, TwoFeet, step_of_feet
 
 
 class CrawlPlan(NamedTuple):
-    """`eps` in m, `gamma`, tolerance of a step over that of the plan, most steps."""
+    """`eps` in m, `gamma`, the accuracy in eps that steps are planned for, their tolerance
+    over that of the plan, and most steps."""
 
     eps: Any
     gamma: Any
@@ -44,7 +45,6 @@ class _Going(NamedTuple):
     arrived: Bool[Array, ""]
     control: ControlState
     steps: Real
-    rejected: Real
     code: Real
 
 
@@ -53,7 +53,6 @@ class MarchedFeet(NamedTuple):
 
     stops: FeetAtStops
     steps: Any
-    rejected: Any
     code: Any
 
 
@@ -81,7 +80,7 @@ def march_feet(
     first = jnp.append(tips, jnp.zeros(2))
     none = jnp.zeros_like(eps)
     before = feet_at(wells, starts[0]).energy(first)
-    start = _Going(wells, first, none, none > 0, ControlState(none, none), none, none, none)
+    start = _Going(wells, first, none, none > 0, ControlState(none, none), none, none)
 
     def through(going: _Going, stretch: tuple) -> tuple[_Going, FeetAtStops]:
         origin, length = stretch
@@ -101,7 +100,7 @@ def march_feet(
         return going, jax.tree_util.tree_map(lambda v: jnp.where(known, v, jnp.nan), found)
 
     going, stops = jax.lax.scan(through, start, (starts, lengths))
-    return MarchedFeet(stops, going.steps, going.rejected, going.code)
+    return MarchedFeet(stops, going.steps, going.code)
 
 
 def _stepped(
@@ -140,7 +139,6 @@ def _after(going: _Going, step: FeetStep, good: Bool[Array, ""]) -> _Going:
         wells=jnp.where(good, going.wells + turns, going.wells),
         motion=jnp.where(good, end, going.motion),
         steps=going.steps + 1,
-        rejected=going.rejected + ~good,
     )
 
 

@@ -62,17 +62,17 @@ def function_of(where: str, text: Any, folder: Path, allowed: bool) -> Callable:
     said = f"{where} = {text!r}"
     module, _, name = str(text).partition(":")
     known = isinstance(text, str) and module and name
-    _need(bool(known), said, 'a function by name, "module:function"')
-    _need(allowed, said, f"the reader's word for it, {_ALLOW}")
+    need(bool(known), said, 'a function by name, "module:function"')
+    need(allowed, said, f"the reader's word for it, {_ALLOW}")
     with _beside(folder):
         try:
             found: Any = importlib.import_module(module)
         except Exception as problem:  # whatever the module does
             raise ValueError(f"{said}: {_one_line(problem)}") from problem
     for part in name.split("."):
-        _need(hasattr(found, part), said, f"a name that {module} has")
+        need(hasattr(found, part), said, f"a name that {module} has")
         found = getattr(found, part)
-    _need(callable(found), said, "a function")
+    need(callable(found), said, "a function")
     with suppress(TypeError):  # of some kinds there are no weak references
         _NAMES.put(found, text)
     return found
@@ -107,6 +107,7 @@ def _one_line(problem: Exception) -> str:
     return f"{type(problem).__name__}: {said}" if said else type(problem).__name__
 
 
-def _need(condition: bool, said: str, allowed: str) -> None:
+def need(condition: Any, said: str, allowed: str) -> None:
+    """Like `require`, in the words of the file rather than of a constructor."""
     if not condition:
         raise ValueError(f"{said}: needs {allowed}")

@@ -23,6 +23,7 @@ from .named_functions import (
     PathWithFunctions,
     function_of,
     name_of,
+    need,
 )
 from .registry import EFFECTS, PARTS, numbers_of_part
 
@@ -140,7 +141,7 @@ def _scene_of(document: dict[str, Any], reading: _Reading) -> Scene:
     effects = _effects_of(document.get("effects", []))
     top = {key: document.get(key, 0.0) for key in _TOP}
     for key, value in top.items():
-        _need(not isinstance(value, list), f"{key} = {value!r}", "a number")
+        need(not isinstance(value, list), f"{key} = {value!r}", "a number")
     numbers = {key: _numbers(key, value) for key, value in top.items()}
     return Scene(**parts, **numbers, effects=effects)
 
@@ -152,14 +153,14 @@ def _tables(given: bool) -> tuple[str, ...]:
 
 def _effects_of(tables: Any) -> tuple[AbstractEffect, ...]:
     good = isinstance(tables, list) and all(isinstance(table, dict) for table in tables)
-    _need(good, f"effects = {tables!r}", "tables [[effects]]")
+    need(good, f"effects = {tables!r}", "tables [[effects]]")
     names = [f"[[effects]] no. {i}" for i in range(1, len(tables) + 1)]
     names = ["[[effects]]"] if len(tables) == 1 else names
     return tuple(_built(n, t, EFFECTS) for n, t in zip(names, tables, strict=True))
 
 
 def _part_of(table: str, entries: Any, reading: _Reading) -> Any:
-    _need(isinstance(entries, dict), f"{table} = {entries!r}", f"a table [{table}]")
+    need(isinstance(entries, dict), f"{table} = {entries!r}", f"a table [{table}]")
     if entries.get("kind") == "Fourier" and table == "profile" and "heights" in entries:
         given = {key: value for key, value in entries.items() if key != "kind"}
         return _measured_profile(given, reading.folder)
@@ -184,7 +185,7 @@ def _built_of_functions(
         elif key in _WHOLE:
             said = f"{where} {key} = {value!r}"
             whole = isinstance(value, int) and not isinstance(value, bool)
-            _need(whole, said, "a whole number")
+            need(whole, said, "a whole number")
         else:
             given[key] = _numbers(f"{where} {key}", value)
     try:
@@ -206,7 +207,7 @@ def _built(
     said = "no kind" if kind is None else f"kind = {kind!r}"
     listed = *kinds, *others
     needs = f"a kind that is one of {', '.join(listed)}{_meant(kind, listed)}"
-    _need(known, f"{where} {said}", needs)
+    need(known, f"{where} {said}", needs)
     build = kinds[str(kind)]
     given = {key: value for key, value in entries.items() if key != "kind"}
     names = asked_names(build, {})
@@ -220,7 +221,7 @@ def _argument(where: str, key: str, value: Any, asked: Asked) -> Any:
     if key != "position":
         return _numbers(f"{where} {key}", value, _needed(asked))
     # Of the end that a load is pulled by: a part too, but not pulled again.
-    _need(isinstance(value, dict), f"{where} {key} = {value!r}", "a table [load.position]")
+    need(isinstance(value, dict), f"{where} {key} = {value!r}", "a table [load.position]")
     return _built("[load.position]", value, _without(PARTS["load"], Pulled))
 
 
@@ -243,7 +244,7 @@ def _measured_profile(given: dict[str, Any], folder: Path) -> Fourier:
     _require_keys("[profile] ", given, ("heights", *_FIT, *_READING), ())
     name = given["heights"]
     text = isinstance(name, str)
-    _need(text, f"[profile] heights = {name!r}", "the name of a file")
+    need(text, f"[profile] heights = {name!r}", "the name of a file")
     options = {key: _option(key, given[key]) for key in given if key != "heights"}
     reading = {key: options.pop(key) for key in _READING if key in options}
     measured = read_heights(folder / name, **reading)
@@ -255,34 +256,28 @@ def _measured_profile(given: dict[str, Any], folder: Path) -> Fourier:
 
 def _option(key: str, value: Any) -> Any:
     if key in _TEXTS:
-        _need(isinstance(value, str), f"[profile] {key} = {value!r}", "a text")
+        need(isinstance(value, str), f"[profile] {key} = {value!r}", "a text")
         return value
     whole = isinstance(value, int) and not isinstance(value, bool)
     said = f"[profile] {key} = {value!r}"
-    _need(whole or key not in _WHOLE, said, "a whole number")
-    _need(not isinstance(value, list), said, "a number")
+    need(whole or key not in _WHOLE, said, "a whole number")
+    need(not isinstance(value, list), said, "a number")
     return value if key in _WHOLE else _numbers(f"[profile] {key}", value)
 
 
 def _require_keys(where: str, entries: dict, known, needed) -> None:
     for key in entries:
         needs = f"one of {', '.join(known)}{_meant(key, known)}" if known else "no key"
-        _need(key in known, f"{where}{key} is unknown", needs)
+        need(key in known, f"{where}{key} is unknown", needs)
     for key in needed:
-        _need(key in entries, f"{where}{key} is missing", f"all of {', '.join(needed)}")
-
-
-def _need(condition: Any, said: str, allowed: str) -> None:
-    """Like `require`, in the words of the file rather than of a constructor."""
-    if not condition:
-        raise ValueError(f"{said}: needs {allowed}")
+        need(key in entries, f"{where}{key} is missing", f"all of {', '.join(needed)}")
 
 
 def _numbers(name: str, value: Any, needed: str = "a number or a list of numbers") -> Any:
     """A number or a list of them, as floats; the constructor looks at how many."""
     rows = value if isinstance(value, list) else [value]
     plain = all(isinstance(v, int | float) and not isinstance(v, bool) for v in rows)
-    _need(plain, f"{name} = {value!r}", needed)
+    need(plain, f"{name} = {value!r}", needed)
     try:
         numbers = [float(v) for v in rows]
     except OverflowError:
@@ -291,19 +286,19 @@ def _numbers(name: str, value: Any, needed: str = "a number or a list of numbers
 
 
 def _study_of(entries: Any) -> dict[str, Any]:
-    _need(isinstance(entries, dict), f"study = {entries!r}", "a table [study]")
+    need(isinstance(entries, dict), f"study = {entries!r}", "a table [study]")
     _require_keys("[study] ", entries, _STUDY, ())
     study = dict(entries)
     if "effects" in study:
         said = f"[study] effects = {study['effects']!r}"
-        _need(study["effects"] in _EFFECTS, said, f"one of {', '.join(_EFFECTS)}")
+        need(study["effects"] in _EFFECTS, said, f"one of {', '.join(_EFFECTS)}")
     numbers = {key: value for key, value in entries.items() if key != "effects"}
     for key, given in numbers.items():
         study[key] = value = _numbers(f"[study] {key}", given)
         good = np.size(value) > 0 and np.all(np.isfinite(value)) and np.min(value) > 0
         single = key != "accuracy" or np.ndim(value) == 0
         needs = "a number > 0" if key == "accuracy" else "one or more numbers > 0"
-        _need(good and single, f"[study] {key} = {value!r}", needs)
+        need(good and single, f"[study] {key} = {value!r}", needs)
     return study
 
 

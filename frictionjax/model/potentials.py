@@ -293,7 +293,7 @@ class GivenPotential(AbstractPotential):
 
         Returns the potential with `W = alpha WW` and a Q that keeps all digits at any eps:
         written by hand, as a difference divided by eps^2, it has 4 digits left at eps =
-        1e-6 and none at 1e-8. `friction` of it tells alpha and mu too.
+        1e-6 and hardly one at 1e-8. `friction` of it tells alpha and mu too.
 
         Raises `ValueError` where a function is none, alpha is 0, or W is no C^2 function
         that repeats.

@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 from scipy.interpolate import PchipInterpolator
 
 from .._checks import as_real, require, require_real, with_nan
-from .._compile import Interpreted, Program, in_chunks
+from .._compile import Program, in_chunks
 from ..effects import Engine
 from ..loads import AbstractPull
 from ..model import (
@@ -25,19 +25,16 @@ from ..model import (
 from ..numerics import THREE_NODES, THREE_WEIGHTS
 from ..supports import AbstractSupport
 from ..tables import load_table
+from ..wiggly import pulls_at
 from .dissipation import is_held
 from .joint import mean_resistance
 from .settings import SETTINGS
 
 
-@Interpreted
-def _loads(load: AbstractPull, times: Array) -> Array:
-    return jax.vmap(load)(times)
-
-
-@Interpreted
-def _held(support: AbstractSupport, states: Array) -> tuple[Array, Array]:
-    return jax.vmap(support.force)(states), jax.vmap(support.energy)(states)
+def _finite_curve(scene: Scene, ts: Any, z: Any) -> tuple[np.ndarray, np.ndarray]:
+    ts, z = require_curve(scene, ts, z)
+    require(np.all(np.isfinite(z)), "z", z, "finite states")
+    return ts, z
 
 
 @with_nan
@@ -47,10 +44,9 @@ def D(scene: Scene, ts: Any, z: Any) -> float:
     `ts`: times in s that increase, in [0, duration]; `z`: states in m; shapes (n,), n >= 2.
 
     Returns J: infinite where a sample is outside the strip of the `scene`, but for
-    rounding. It is
-    `int K(l - Phi'(z)) |dz|`, by the trapezoidal rule between samples: exact on slides of
-    the limit, where it is `int R(z')`, and of second order elsewhere. A curve solves the
-    limit system if and only if `E(t2) - E(t1) + int l' z + D = 0`.
+    rounding. It is `int K(l - Phi'(z)) |dz|`, by the trapezoidal rule between samples:
+    exact on slides of the limit, where it is `int R(z')`, and of second order elsewhere. A
+    curve solves the limit system if and only if `E(t2) - E(t1) + int l' z + D = 0`.
 
     Raises `ValueError` for a bad curve, and for effects whose limit is another.
 
@@ -61,9 +57,9 @@ def D(scene: Scene, ts: Any, z: Any) -> float:
     0.3796 J, where friction takes 0.3796 J
     """
     scene = scene_for(Engine.LIMIT_CERTIFICATE, scene)
-    ts, z = require_curve(scene, ts, z)
+    ts, z = _finite_curve(scene, ts, z)
     law = coefficients_jit(scene.potential)
-    load, held = _loads(scene.load, ts), _held(scene.support, z)[0]
+    load, held, _ = pulls_at(scene, ts, z)
     xi = load - held
     # A load near its zero carries the rounding of its largest values.
     largest = max(float(np.max(np.abs(load))), float(np.max(np.abs(held))))
@@ -107,7 +103,7 @@ def D_eps(scene: Scene, eps: Any, gamma: Any, ts: Any, z: Any) -> float:
     scene = scene_for(Engine.PRINCIPLE, scene)
     require_real("eps", eps, "eps > 0", lambda e: e > 0)
     require_real("gamma", gamma, "gamma > 0", lambda g: g > 0)
-    ts, z = require_curve(scene, ts, z)
+    ts, z = _finite_curve(scene, ts, z)
     require_reach(scene.potential, jnp.asarray(as_real(eps)))
     eps = float(eps)
     curve = PchipInterpolator(ts, z)

@@ -137,9 +137,7 @@ def test_functions_without_a_name_are_not_written(tmp_path):
 def test_numbers_of_loads_are_kept(files):
     folder, _ = files
     text = (folder / "bristle.toml").read_text()
-    turns = [np.pi / 4, 3 * np.pi / 4 - 1e-300]
-    turns = [t for t in turns if t < 2.0]
-    (folder / "listed.toml").write_text(f"{text}turning_points = {turns}\n")
+    (folder / "listed.toml").write_text(f"{text}turning_points = [{np.pi / 4}]\n")
     one = fx.load_scene(folder / "listed.toml", functions=True)
     fx.save_scene(one, folder / "again.toml")
     again = fx.load_scene(folder / "again.toml", functions=True)

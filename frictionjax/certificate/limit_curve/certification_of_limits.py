@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from ..._checks import is_known, known_numbers, require, require_real, with_nan
+from ..._checks import require_real, with_nan
 from ...effects import Engine
 from ...model import (
     Scene,
     coefficients_jit,
     known_turning_points,
-    require_instants,
+    require_curve,
     scene_for,
     strips_at,
 )
@@ -55,11 +55,7 @@ def certify_limit(
     """
     scene = scene_for(Engine.LIMIT_CERTIFICATE, scene)
     require_real("tolerance", tolerance, "tolerance > 0", lambda share: share > 0)
-    times = require_instants(scene, ts)
-    require(is_known(z), "z", "traced states", "known ones")
-    states, needs = known_numbers(z), f"real states of the shape {times.shape} of ts"
-    require(states.shape == times.shape, "z", z, needs)
-    return _certificate(scene, times, states.astype(float), float(tolerance))
+    return _certificate(scene, *require_curve(scene, ts, z), float(tolerance))
 
 
 def _certificate(
