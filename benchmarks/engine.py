@@ -15,7 +15,8 @@ the least of a few runs, of
               process: without a cache, then with every program kept
     certificates  of curves of scenes of 18 kinds, each for the first time
     others    a solver of diffrax, and a fit to a trace, of three scenes of other kinds
-              (and a `solve` with a load, and a support, as one of three functions)
+              (and a `solve` with a load, a support, a C^2 profile, a W as one of three
+              functions)
     times     a `solve` with another number of times than before
 """
 
@@ -216,11 +217,11 @@ def others(fx, options):
             taken.append(time.process_time() - begin)
         figures[f"{name}, the first, s"] = taken[0]
         figures[f"{name}, of other kinds, the longest, s"] = max(taken[1:])
-    for name, scenes in functions(fx).items():
+    for name, (exchanged, given) in functions(fx).items():
         taken = []
-        for scene in scenes:
+        for fn in given:
             begin = time.process_time()
-            fx.solve(scene, 0.02, 1.0, ts)
+            fx.solve(exchanged(fn), 0.02, 1.0, ts)
             taken.append(time.process_time() - begin)
         figures[f"solve with a {name} as a function, the first, s"] = taken[0]
         figures[f"solve with another {name} as a function, the longest, s"] = max(taken[1:])
@@ -228,27 +229,50 @@ def others(fx, options):
 
 
 def functions(fx):
-    """Three loads and three supports as functions, in scenes of a sine."""
+    """Parts as functions, three of each: how scenes are made of them, and which."""
     import jax.numpy as jnp
 
-    scene, loads, supports = scene_of(fx, fx.profiles.Sine(0.1)), fx.loads, fx.supports
+    scene = scene_of(fx, fx.profiles.Sine(0.1))
+    spring, load = scene.support, scene.load
+
+    def wave(y):
+        return jnp.sin(2 * jnp.pi * y)
+
     return {
-        "load": [
-            scene.replace(load=loads.Custom(fn))
-            for fn in (
+        "load": (
+            lambda fn: scene.replace(load=fx.loads.Custom(fn)),
+            [
                 lambda t: 1.2 * jnp.sin(2 * t),
                 lambda t: jnp.sin(2 * t) + 0.2 * t,
                 lambda t: 1.5 * t * jnp.exp(-t),
-            )
-        ],
-        "support": [
-            scene.replace(support=supports.Convex(fn))
-            for fn in (
+            ],
+        ),
+        "support": (
+            lambda fn: scene.replace(support=fx.supports.Convex(fn)),
+            [
                 lambda z: 0.5 * z**2 + 0.01 * z**4,
                 lambda z: 0.4 * z**2 + 0.01 * jnp.cosh(z),
                 lambda z: 0.6 * z**2 + 0.01 * z**3,
-            )
-        ],
+            ],
+        ),
+        "C^2 profile": (
+            lambda fn: scene.replace(profile=fx.profiles.Custom(fn)),
+            [
+                lambda y: 0.02 * jnp.abs(wave(0.5 * y)) ** 3,
+                lambda y: 0.02 * jnp.tanh(wave(y - 0.12) / 0.1),
+                lambda y: 0.02 * wave(y) + 0.003 * jnp.abs(wave(y - 0.37)) ** 3,
+            ],
+        ),
+        "potential W": (
+            lambda fn: fx.Scene(
+                potential=fx.GivenPotential(fn), support=spring, load=load, duration=3.0
+            ),
+            [
+                lambda Y: 0.1 * wave(Y),
+                lambda Y: 0.08 * wave(Y) + 0.02 * wave(2 * Y + 0.1),
+                lambda Y: 0.1 * jnp.abs(wave(Y)) ** 3,
+            ],
+        ),
     }
 
 

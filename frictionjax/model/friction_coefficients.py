@@ -4,7 +4,7 @@ import dataclasses
 
 import jax.numpy as jnp
 
-from .._checks import ByIdentity, Real, is_concrete
+from .._checks import ByIdentity, is_concrete
 from .._compile import once_a_scene
 from ..coefficients import Coefficients
 from ..numerics import periodic_extrema, slope_of
@@ -19,8 +19,7 @@ def coefficients(potential: AbstractPotential) -> Coefficients:
         slope = slope_of(potential._leading)
         extrema = periodic_extrema(slope, potential.points)
         found = Coefficients(rho_plus=extrema.max, rho_minus=extrema.min)
-        alpha = potential.alpha() if isinstance(potential, GivenPotential) else None
-        return found if alpha is None else _with_alpha(found, alpha)
+        return _with_alpha(found, potential)
     slope = slope_of(potential.profile)
     extrema = periodic_extrema(slope, potential.points)
     a, alpha = potential.a(), potential.alpha()
@@ -42,8 +41,11 @@ def coefficients(potential: AbstractPotential) -> Coefficients:
     )
 
 
-def _with_alpha(found: Coefficients, alpha: Real) -> Coefficients:
+def _with_alpha(found: Coefficients, potential: AbstractPotential) -> Coefficients:
     """mu_plus > 0 > mu_minus, of rho = alpha mu: alpha < 0 exchanges them (Lemma 2)."""
+    alpha = potential.alpha() if isinstance(potential, GivenPotential) else None
+    if alpha is None:
+        return found
     ends = found.rho_plus / alpha, found.rho_minus / alpha
     pushes = alpha > 0
     return dataclasses.replace(
@@ -68,6 +70,7 @@ def coefficients_jit(potential: AbstractPotential) -> Coefficients:
         found = _of_tables(potential_at_rest(potential))
         if isinstance(potential, SummedPotential):  # of no bristle
             found = Coefficients(found.rho_plus, found.rho_minus)
+        found = _with_alpha(found, potential)
         if is_concrete(potential):
             _FOUND.put(potential, found)
     return found

@@ -2,13 +2,50 @@
 
 from typing import Any
 
-from .._checks import is_concrete
-from ..tables import bristle_at_rest, bristle_series, profile_tables
-from .potentials import AbstractPotential, BristlePotential
+import jax.numpy as jnp
+from jaxtyping import Array, ArrayLike, Float
+
+from .._checks import ByIdentity, exchanged, is_concrete
+from ..profiles import AbstractProfile
+from ..tables import (
+    ProfileTables,
+    bristle_at_rest,
+    bristle_series,
+    energy_of_height,
+    profile_tables,
+)
+from .potentials import AbstractPotential, BristlePotential, GivenPotential, no_rest
 from .summed_potential import SummedPotential
 from .summed_series import leaves_nothing, surface_of_sum
 
 _MARGIN = 1.01  # heights beyond those of the samples
+
+
+class _LeadingHeight(AbstractProfile):
+    """W of a given potential, as the height of a surface."""
+
+    given: GivenPotential
+
+    def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
+        y = jnp.asarray(y)
+        return jnp.asarray(self.given.W_fn(y - jnp.floor(y)))
+
+    @property
+    def points(self) -> int:
+        return self.given.points
+
+
+_HEIGHTS = ByIdentity()  # of given potentials: tables of W, None where none holds it
+
+
+def _tables_of(given: GivenPotential) -> ProfileTables | None:
+    """Tables of its W."""
+    known = _HEIGHTS.get(given)
+    if known is None:
+        tables = profile_tables(_LeadingHeight(given))
+        known = (tables if tables.is_table else None,)
+        _HEIGHTS.put(given, known)
+    return known[0]
 
 
 def potential_at_rest(potential: AbstractPotential) -> AbstractPotential:
@@ -18,6 +55,13 @@ def potential_at_rest(potential: AbstractPotential) -> AbstractPotential:
     if isinstance(potential, SummedPotential):
         one = surface_of_sum(potential, potential_at_rest(potential.single), 0.0)
         return potential_at_rest(one)
+    if isinstance(potential, GivenPotential):
+        tables = _tables_of(potential)
+        if tables is None:
+            return potential
+        points = tables.planning.points
+        of_table = {"W_fn": tables.planning, "Q_fn": no_rest, "points": points}
+        return exchanged(potential, of_table)
     if not isinstance(potential, BristlePotential):
         return potential
     tables = profile_tables(potential.profile)
@@ -36,19 +80,22 @@ def tabulated_potentials(
 ) -> tuple[AbstractPotential, AbstractPotential]:
     """A known potential for eps up to `highest` (m): as planning evaluates it, and lanes.
 
-    Itself where it is given. A sum of several tips' is that at `highest`, and at no other
-    eps.
+    `eps W` is the energy of a tip that its height moves nowhere; what is given with a Q is
+    itself. A sum of several tips' is that at `highest`, and at no other eps.
     """
     if isinstance(potential, SummedPotential):
         single, _ = tabulated_potentials(potential.single, highest)
         potential = surface_of_sum(potential, single, highest)
-    if not isinstance(potential, BristlePotential):
+    tables: ProfileTables | None = None
+    if isinstance(potential, BristlePotential):
+        tables = profile_tables(potential.profile)
+        bristle = bristle_series(potential.bristle, _MARGIN * highest * tables.height)
+    elif isinstance(potential, GivenPotential) and potential.Q_fn is no_rest:
+        tables, bristle = _tables_of(potential), energy_of_height()
+    if tables is None:
         return potential, potential
-    tables = profile_tables(potential.profile)
-    bristle = bristle_series(potential.bristle, _MARGIN * highest * tables.height)
-    return BristlePotential(tables.planning, bristle), BristlePotential(
-        tables.lanes, bristle
-    )
+    planning, lanes = (BristlePotential(p, bristle) for p in tables[:2])
+    return planning, lanes
 
 
 def potential_in_reach(potential: AbstractPotential, highest: Any) -> AbstractPotential:

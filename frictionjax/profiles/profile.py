@@ -3,13 +3,13 @@
 import abc
 from collections.abc import Callable
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Part, Real, in_64_bits, is_concrete, require, with_nan
+from .._compile import Interpreted
 from .settings import SETTINGS
 
 
@@ -37,7 +37,7 @@ class AbstractProfile(Part):
         """How many samples a period resolve `w'`."""
 
 
-@eqx.filter_jit
+@Interpreted
 def _derivatives(fn: Callable, y):
     first = jax.vmap(jax.grad(fn))
     second = jax.vmap(jax.grad(jax.grad(fn)))
@@ -58,7 +58,7 @@ def require_smooth(name: str, fn: Callable[[Real], Real], points: int) -> None:
         return
     inside = SETTINGS.inside
     y = jnp.asarray(np.concatenate([np.arange(points) / points, [1.0 - inside]]))
-    values = [np.asarray(v) for v in _derivatives(fn, y)]
+    values = _derivatives(fn, y)
     for value in values[:3]:
         require(np.all(np.isfinite(value)), name, "not finite", "finite w, w', w''")
     sizes = [max(float(np.max(np.abs(v))), 1e-300) for v in values]

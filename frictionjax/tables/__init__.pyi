@@ -1,6 +1,7 @@
 from .bristles import SeriesBristle as SeriesBristle
 from .bristles import bristle_at_rest as bristle_at_rest
 from .bristles import bristle_series as bristle_series
+from .bristles import energy_of_height as energy_of_height
 from .bristles import in_one_size as in_one_size
 from .loads import SumOfLoads as SumOfLoads
 from .loads import bent_part as bent_part
@@ -8,6 +9,7 @@ from .loads import load_table as load_table
 from .loads import straight_part as straight_part
 from .loads_on_edges import load_on_edges as load_on_edges
 from .pieces import PiecewiseProfile as PiecewiseProfile
+from .pieces import unsampled as unsampled
 from .piecewise_loads import PiecewiseLoad as PiecewiseLoad
 from .piecewise_loads import load_in_pieces as load_in_pieces
 from .profiles import ProfileTables as ProfileTables

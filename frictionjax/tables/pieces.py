@@ -7,10 +7,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float, Int
 
+from .._checks import exchanged
 from ..profiles import AbstractProfile
 from .settings import SETTINGS, size_for
-
-_DEGREE = 4  # at least: of a corner of a polyline; a spline has 3
 
 
 class Pieces(NamedTuple):
@@ -59,28 +58,35 @@ class PiecewiseProfile(AbstractProfile):
         return Binned(self.rows, self.first)(y - jnp.floor(y))
 
 
-def binned(pieces: Pieces, for_each: int = SETTINGS.bins) -> Binned | None:
+def unsampled(profile: AbstractProfile) -> AbstractProfile:
+    """The same profile for programs that take no samples of it."""
+    if not isinstance(profile, PiecewiseProfile):
+        return profile
+    return exchanged(profile, {"points": SETTINGS.points_a_period[0]})
+
+
+def binned(pieces: Pieces, sizes: tuple[int, ...], for_each: int) -> Binned | None:
     """Pieces in a table; None where they are too many, or too short for its bins.
 
     `for_each`: bins for each piece that there is room for.
     """
-    size = size_for(pieces.left.size + SETTINGS.few, SETTINGS.pieces)
-    if size is None:
-        return None
-    bins = for_each * size
-    left = np.pad(pieces.left, (0, size - pieces.left.size), constant_values=np.inf)
-    first = np.searchsorted(pieces.left, np.arange(bins) / bins, side="right") - 1
-    ends = np.append(first[1:], pieces.left.size - 1)
-    if np.max(ends - first) > SETTINGS.few:
-        return None
-    rows = np.zeros((size, 1 + max(1 + _DEGREE, pieces.terms.shape[1])))
-    rows[:, 0] = left
-    rows[: pieces.left.size, 1 : 1 + pieces.terms.shape[1]] = pieces.terms
-    return Binned(jnp.asarray(rows), jnp.asarray(first))
+    count, terms = pieces.terms.shape
+    columns = 1 + (size_for(terms, SETTINGS.terms) or terms)
+    for size in sizes:
+        bins = for_each * size
+        first = np.searchsorted(pieces.left, np.arange(bins) / bins, side="right") - 1
+        ends = np.append(first[1:], count - 1)
+        if count + SETTINGS.few <= size and np.max(ends - first) <= SETTINGS.few:
+            rows = np.zeros((size, columns))
+            rows[count:, 0] = np.inf
+            rows[:count, 0] = pieces.left
+            rows[:count, 1 : 1 + terms] = pieces.terms
+            return Binned(jnp.asarray(rows), jnp.asarray(first))
+    return None
 
 
 def piecewise(pieces: Pieces, points: int) -> PiecewiseProfile | None:
     """Pieces as a profile; None as of `binned`."""
-    table = binned(pieces)
+    table = binned(pieces, (SETTINGS.pieces,), SETTINGS.bins)
     samples = size_for(points, SETTINGS.points_a_period) or points
     return None if table is None else PiecewiseProfile(*table, samples)

@@ -11,9 +11,7 @@ from ..loads import AbstractPull, PiecewiseLinear
 from .fitted_pieces import fitted_pieces
 from .loads import SumOfLoads, load_table
 from .pieces import Binned, binned
-from .settings import SETTINGS
-
-_GOLDEN = 0.5 * (5**0.5 - 1)  # places so far apart fill a stretch evenly
+from .settings import GOLDEN, SETTINGS
 
 
 class PiecewiseLoad(AbstractPull):
@@ -55,7 +53,11 @@ def load_in_pieces(
     inside = [steepest] if 0 < steepest < duration else []
     edges = np.unique([0.0, *turning_points, *inside, duration]) / duration
     pieces = fitted_pieces(values, edges)
-    found = None if pieces is None else binned(pieces, SETTINGS.function_bins)
+    found = (
+        None
+        if pieces is None
+        else binned(pieces, SETTINGS.load_pieces, SETTINGS.function_bins)
+    )
     if found is None:
         return table
     load = PiecewiseLoad(*found, jnp.asarray(duration), jnp.asarray(steepest))
@@ -64,6 +66,6 @@ def load_in_pieces(
 
 def _say_the_same(load: AbstractPull, pieces: AbstractPull, duration: float) -> bool:
     """Whether they do at times that pieces were not made of, all over the duration."""
-    times = duration * np.mod(_GOLDEN * np.arange(SETTINGS.times), 1.0)
+    times = duration * np.mod(GOLDEN * np.arange(SETTINGS.times), 1.0)
     one, other = _values(load, times), _values(pieces, times)
     return bool(np.max(np.abs(one - other)) <= SETTINGS.same * np.max(np.abs(one)))

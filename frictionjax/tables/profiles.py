@@ -14,6 +14,7 @@ from .._compile import Interpreted
 from ..profiles import AbstractProfile, Fourier, Polyline, Sine, Spline
 from .pieces import Pieces, PiecewiseProfile, piecewise
 from .polyline_pieces import polyline_pieces
+from .profile_pieces import profile_in_pieces
 from .settings import SETTINGS, size_for
 from .waves import SeriesProfile, Waves
 
@@ -53,9 +54,9 @@ def profile_tables(profile: AbstractProfile) -> ProfileTables:
     known = _TABLES.get(profile)
     if known is None:
         known = _found(profile)
-        if known.is_table:  # a note must not refer to what it is on
-            _TABLES.put(profile, known)
-    return known
+        # A note must not refer to what it is on.
+        _TABLES.put(profile, known if known.is_table else known.height)
+    return ProfileTables(profile, profile, known) if isinstance(known, float) else known
 
 
 def _found(profile: AbstractProfile) -> ProfileTables:
@@ -63,8 +64,8 @@ def _found(profile: AbstractProfile) -> ProfileTables:
     shape = _shape_of(profile)
     if isinstance(shape, Series):
         return _in_series(shape, height)
-    table = None if shape is None else piecewise(shape, profile.points)
-    found: AbstractProfile = profile if table is None else table
+    pieces = None if shape is None else piecewise(shape, profile.points)
+    found = pieces or profile_in_pieces(profile) or profile
     return ProfileTables(found, found, height)
 
 
@@ -88,7 +89,7 @@ def _pieces_of(series: Series, profile: SeriesProfile) -> PiecewiseProfile | Non
     What is left out is (pi n/pieces)^9/9! of harmonic n, 5e-18 for 64, and 1e-13 of its
     second derivative.
     """
-    size, count = profile.cos.shape[0], SETTINGS.pieces[-1] - SETTINGS.few
+    size, count = profile.cos.shape[0], SETTINGS.pieces - SETTINGS.few
     if not SETTINGS.written_out < size <= SETTINGS.harmonics[-1]:
         return None
     turn = 2j * np.pi * np.arange(1, series.cos.size + 1)
@@ -100,7 +101,7 @@ def _pieces_of(series: Series, profile: SeriesProfile) -> PiecewiseProfile | Non
         middle[power] = np.fft.irfft(count * spectrum, count)
     middle[0] += series.mean
     terms = _moved(middle, -0.5 / count)
-    return piecewise(Pieces(_places(count), terms.T), SETTINGS.pieces[-1])
+    return piecewise(Pieces(_places(count), terms.T), SETTINGS.pieces)
 
 
 def _moved(

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+GOLDEN = 0.5 * (5**0.5 - 1)  # places so far apart fill a stretch evenly
+
 
 class Settings(NamedTuple):
     """Of series, of pieces, of points of loads."""
@@ -25,18 +27,25 @@ class Settings(NamedTuple):
     met: float = 4e-14  # of the largest value: how well samples between must be met
 
     # Pieces of a profile (`pieces.py`) and bins that find them.
-    pieces: tuple[int, ...] = (64, 512, 4096)
-    bins: int = 2  # for each piece of the room, at least
+    pieces: int = 4096
+    bins: int = 2  # for each piece of the room
+    terms: tuple[int, ...] = (5, 9)
     few: int = 2  # pieces that may end within a bin
     # Of the largest value: how well pieces of a function meet it between their nodes. (Ten
     # roundings: at one, sines are never met.)
     fitted: float = 2e-15
+    # The same of w'', whose own rounding is that of derivatives; and how far w, w' and w''
+    # may be off at other places.
+    bent: float = 2e-14
+    alike: tuple[float, float, float] = (4e-14, 1e-13, 1e-10)
     place_rounding: float = 2.0**-51  # four of a share's: what their places are moved by
     # Samples a period, which are static: few sizes, few programs.
     points_a_period: tuple[int, ...] = (256, 1024, 4096, 8192)
 
     # Points of a load (`loads.py`).
     points: tuple[int, ...] = (8, 64, 1024)
+    # (With a step between them loads by chance were of three kinds, for a tenth of a step.)
+    load_pieces: tuple[int, ...] = (64, 4096)
     few_edges: int = 128  # that are all compared with a time
     times: int = 1024  # of a function, asked at once
     same: float = 1e-10  # of the largest: how far pieces may be off at other times

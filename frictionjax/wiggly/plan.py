@@ -5,10 +5,10 @@ from typing import NamedTuple
 import jax
 import numpy as np
 
-from .._checks import Real, viscosity_of
+from .._checks import Real, exchanged, viscosity_of
 from .._compile import Program, in_chunks, once_a_scene
-from ..model import AbstractPotential, TabulatedScene
-from ..tables import bent_part
+from ..model import AbstractPotential, BristlePotential, TabulatedScene
+from ..tables import bent_part, unsampled
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
 from .enclosure import CellBounds, Requirements, forgotten_after, resting_after, wells_of
 from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps
@@ -103,9 +103,13 @@ def _relaxation(scene: TabulatedScene, path: Path, eps: np.ndarray, gamma: np.nd
 
 
 def lane_scene(scene: TabulatedScene) -> LaneScene:
-    """The scene as lanes see it."""
+    """The scene as lanes see it, who take no samples: one loop, however many it needs."""
+    potential = scene.lane_potential
+    if isinstance(potential, BristlePotential):
+        profile = unsampled(potential.profile)
+        potential = exchanged(potential, {"profile": profile})
     rho = np.asarray(scene.rho_plus), np.asarray(scene.rho_minus)
-    return LaneScene(scene.lane_potential, scene.support, bent_part(scene.load), *rho)
+    return LaneScene(potential, scene.support, bent_part(scene.load), *rho)
 
 
 def _needs(

@@ -269,7 +269,7 @@ def test_sums_of_tips_are_a_surface_of_their_own_at_each_eps():
 def test_what_no_table_holds_is_told():
     assert tabulated_scene(scene_of("spline", "angular"), 1e-2).untabulated == ""
     own = scene_of().replace(
-        profile=P.Custom(lambda y: 0.02 * jax.numpy.abs(jax.numpy.sin(np.pi * y)) ** 3),
+        profile=P.Custom(lambda y: 0.02 * jax.numpy.abs(jax.numpy.sin(np.pi * y)) ** 2.5),
         support=fx.supports.Convex(lambda z: z**2 + 0.01 * jax.numpy.abs(z) ** 3.5),
         load=BENT,
     )
@@ -281,6 +281,43 @@ def test_what_no_table_holds_is_told():
     found = fx.solve(own, 0.05, 1.0, [1.0], **values)
     assert found.stats["values"].endswith(f"compiled for {said}")
     assert "compiled_for" not in fx.sweep(scene_of(), [0.05], [1.0]).attrs
+
+
+def wave(Y):
+    return 0.3 * jax.numpy.sin(2 * np.pi * Y)
+
+
+@pytest.mark.parametrize(
+    "W",
+    [wave, lambda Y: 0.1 + wave(Y) + 0.1 * jax.numpy.abs(wave(Y - 0.3)) ** 3],
+    ids=["a series", "pieces"],
+)
+def test_a_given_w_is_a_table(W):
+    given = fx.GivenPotential(W)
+    parts = {"support": fx.supports.Spring(2.0), "load": LOADS["sine"], "duration": 2.0}
+    scene = fx.Scene(potential=given, **parts)
+    tables = tabulated_scene(scene, 1e-2)
+    assert tables.untabulated == ""
+    y = np.linspace(-2, 2, 401)
+    for table in (tables.potential, tables.lane_potential):
+        for eps in (1e-2, 1e-5):
+            for name, size in (("tip_energy", 1e-14 * eps), ("tip_force", 1e-12)):
+                found, expected = (
+                    np.asarray(jax.vmap(getattr(of, name), (0, None))(y, eps))
+                    for of in (table, given)
+                )
+                np.testing.assert_allclose(found, expected, rtol=0, atol=size)
+    law = fx.friction(scene)
+    slope = jax.vmap(jax.grad(W))(np.linspace(0, 1, 4001))
+    assert law.rho_plus == pytest.approx(float(slope.max()), rel=1e-6)
+
+
+def test_a_given_w_with_q_is_not_and_has_the_friction_of_w():
+    given = fx.GivenPotential(wave, lambda eps, Y: wave(Y) ** 2)
+    parts = {"support": fx.supports.Spring(2.0), "load": LOADS["sine"], "duration": 2.0}
+    scene = fx.Scene(potential=given, **parts)
+    assert tabulated_scene(scene, 1e-2).untabulated == "potential GivenPotential"
+    assert fx.friction(scene).rho_plus == pytest.approx(0.6 * np.pi, rel=1e-14)
 
 
 def test_tables_are_kept_for_the_last_eps():
@@ -299,8 +336,7 @@ def test_turning_points_and_rooms_for_them():
 def test_what_no_table_holds_is_compiled_for_itself():
     scene = scene_of().replace(load=BENT)
     assert tabulated_scene(scene, 1e-3).load is scene.load
-    given = fx.potentials.GivenPotential if hasattr(fx, "potentials") else fx.GivenPotential
-    other = given(lambda Y: jax.numpy.sin(2 * np.pi * Y))
+    other = fx.GivenPotential(wave, lambda eps, Y: wave(Y) ** 2)
     tables = tabulated_scene(
         fx.Scene(potential=other, support=scene.support, load=LOADS["sine"], duration=2.0),
         1e-3,
