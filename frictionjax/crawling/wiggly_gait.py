@@ -54,7 +54,8 @@ def wiggly_gait(scene: Scene, ts: Float[np.ndarray, " n"], asked: CrawlRequest) 
     # Feet that are held alike both ways: rounding may decide which of them slips, and runs
     # that agree are a coin that fell the same way. (Runs that set off aside of each other
     # agreed as well: starts are forgotten before.)
-    if found.code == Status.OK and is_alike(float(law.rho_plus), -float(law.rho_minus)):
+    whole = found.code in (Status.OK, Status.UNBALANCED)
+    if whole and is_alike(float(law.rho_plus), -float(law.rho_minus)):
         return found._replace(code=int(Status.SENSITIVE))
     return found
 

@@ -79,8 +79,10 @@ def _in_series(series: Series, height: float) -> ProfileTables:
     cos, sin = (jnp.asarray(np.pad(c, (0, size - count))) for c in (series.cos, series.sin))
     parts = jnp.asarray(series.mean), cos, sin
     alone = SeriesProfile(*parts)
-    planning = Waves(*parts) if size <= SETTINGS.waves else alone
-    return ProfileTables(_pieces_of(series, alone) or alone, planning, height)
+    if size <= SETTINGS.written_out:
+        return ProfileTables(alone, Waves(*parts), height)
+    pieces = _pieces_of(series, alone) or alone
+    return ProfileTables(pieces, pieces, height)
 
 
 def _pieces_of(series: Series, profile: SeriesProfile) -> PiecewiseProfile | None:
@@ -90,7 +92,7 @@ def _pieces_of(series: Series, profile: SeriesProfile) -> PiecewiseProfile | Non
     second derivative.
     """
     size, count = profile.cos.shape[0], SETTINGS.pieces - SETTINGS.few
-    if not SETTINGS.written_out < size <= SETTINGS.harmonics[-1]:
+    if size > SETTINGS.harmonics[-1]:
         return None
     turn = 2j * np.pi * np.arange(1, series.cos.size + 1)
     waves = 0.5 * (series.cos - 1j * series.sin) * np.exp(turn * 0.5 / count)
@@ -101,7 +103,7 @@ def _pieces_of(series: Series, profile: SeriesProfile) -> PiecewiseProfile | Non
         middle[power] = np.fft.irfft(count * spectrum, count)
     middle[0] += series.mean
     terms = _moved(middle, -0.5 / count)
-    return piecewise(Pieces(_places(count), terms.T), SETTINGS.pieces)
+    return piecewise(Pieces(_places(count), terms.T), profile.points)
 
 
 def _moved(

@@ -14,12 +14,10 @@ class Settings(NamedTuple):
     # (A larger loop until the right one is there: last digits would depend on what has run
     # before.)
     harmonics: tuple[int, ...] = (4, 8, 16, 64)
-    # Longer ones as pieces of this degree in lanes: 0.21 us for 0.25 with 16, 0.58 with 64.
+    # Longer ones as pieces of this degree: 0.21 us for 0.25 with 16, 0.58 with 64. Plans
+    # take as long as with series, and share their programs with functions in pieces.
     written_out: int = 8
     degree: int = 8
-    # In planning: up to so many as an axis (`waves.py`), more as lanes do. A plan of 64
-    # cells takes 3, 4, 12 and 36 ms for 4, 8, 16 and 64.
-    waves: int = 8
     # Samples of a function that may be a series: twice what 64 harmonics need, and as many
     # between them, which the series must meet.
     samples: int = 256
@@ -29,6 +27,9 @@ class Settings(NamedTuple):
     # Pieces of a profile (`pieces.py`) and bins that find them.
     pieces: int = 4096
     bins: int = 2  # for each piece of the room
+    # Of their polynomials: 4 is the degree of a corner of a polyline, a spline has 3. (One
+    # size: 10 to 25% more for a step on a spline. Rooms for 64 and 512 pieces beside that
+    # for 4096: 3% less at most, within what two runs differ by.)
     terms: tuple[int, ...] = (5, 9)
     few: int = 2  # pieces that may end within a bin
     # Of the largest value: how well pieces of a function meet it between their nodes. (Ten
@@ -44,7 +45,7 @@ class Settings(NamedTuple):
 
     # Points of a load (`loads.py`).
     points: tuple[int, ...] = (8, 64, 1024)
-    # (With a step between them loads by chance were of three kinds, for a tenth of a step.)
+    # (4096 pieces alone: 10 to 20% more for a step.)
     load_pieces: tuple[int, ...] = (64, 4096)
     few_edges: int = 128  # that are all compared with a time
     times: int = 1024  # of a function, asked at once

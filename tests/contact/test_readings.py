@@ -151,9 +151,12 @@ def test_what_a_model_does_not_have_is_nan_and_says_why():
     assert "Phi(z) - l z" in data.energy_support.note
     given = fx.GivenPotential(lambda Y: jnp.sin(2 * jnp.pi * Y) / 60)
     abstract = fx.Scene(
-        potential=given, support=convex, load=fx.loads.Sine(1.0, 3.0), duration=3.0
+        potential=given,
+        support=fx.supports.Spring(1.2),
+        load=fx.loads.Sine(1.0, 3.0),
+        duration=3.0,
     )
-    found = fx.solve(abstract, 0.1, ts=T, method="Kvaerno3", accuracy=1e-4)
+    found = fx.solve(abstract, 0.1, ts=T, accuracy=1e-4)
     data = fx.mechanics(abstract, found, eps=0.1)
     assert np.all(np.isnan(data.normal_force))
     assert "no bristle" in data.normal_force.missing

@@ -66,7 +66,8 @@ def test_more_bristles_than_are_integrated_at_once(monkeypatch):
     assert parts.stats["steps"] == whole.stats["steps"]
 
 
-def test_ripple_falls_with_the_root_of_their_number(monkeypatch):
+@pytest.mark.parametrize("many", [64, pytest.param(256, marks=pytest.mark.slow)])
+def test_ripple_falls_with_the_root_of_their_number(monkeypatch, many):
     """On a slide at constant speed bristles do the same, one after the other."""
     # So few bristles and times fit into the loop of lanes that the other tests run.
     monkeypatch.setattr(arrays, "SETTINGS", arrays.SETTINGS._replace(bristles=32))
@@ -80,7 +81,7 @@ def test_ripple_falls_with_the_root_of_their_number(monkeypatch):
         return np.std(z - np.polyval(np.polyfit(ts, z, 1), ts))
 
     one = ripple(1, 0)
-    for count in (16, 256):
+    for count in (16, many):
         shares = [ripple(count, seed) ** 2 * count / one**2 for seed in range(8)]
         # Of independent phases each is spread exponentially with the mean 1.
         assert 0.4 < np.mean(shares) < 2.0, shares

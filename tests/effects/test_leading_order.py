@@ -97,6 +97,7 @@ def test_a_given_potential_loses_its_rest():
     np.testing.assert_allclose(*pair, atol=1e-9)
 
 
+@pytest.mark.slow  # a trajectory's program for these parts
 def test_derivatives_go_through():
     def end(alpha):
         scene = scene_of(fx.bristles.Homothetic(alpha), profile=fx.profiles.Sine(0.1))

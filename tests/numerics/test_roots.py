@@ -72,6 +72,7 @@ def test_multiple_roots(power):
     np.testing.assert_allclose(root, at, atol=1e-12)
 
 
+@pytest.mark.slow  # programs for this support
 def test_a_support_with_a_bump_in_its_stiffness():
     """Rest positions, and so the limit, were 0.1 m off where Phi'' rises from 1 to 6."""
 

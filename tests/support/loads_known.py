@@ -17,5 +17,10 @@ LOADS = {
 }
 
 
+def at_times(fn, times):
+    """In one program: step by step is a program for each step of each load."""
+    return np.asarray(jax.jit(jax.vmap(fn))(times))
+
+
 def shapes(table):
     return type(table), *(np.shape(leaf) for leaf in jax.tree_util.tree_leaves(table))

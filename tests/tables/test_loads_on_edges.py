@@ -3,7 +3,7 @@
 import jax
 import numpy as np
 import pytest
-from loads_known import LOADS, L, T, shapes
+from loads_known import LOADS, L, T, at_times, shapes
 
 from frictionjax.model import known_turning_points, padded_edges
 from frictionjax.tables import (
@@ -22,12 +22,17 @@ def on_edges(load, duration=3.0):
 def test_lines_between_edges_are_the_load_with_its_slopes_from_the_right(name):
     load, found = LOADS[name], on_edges(LOADS[name])
     times = np.concatenate([T, found.edges, np.nextafter(found.edges, 9.0)])
-    size = np.abs(jax.vmap(load)(times)).max()
+    size = np.abs(at_times(load, times)).max()
     np.testing.assert_allclose(
-        jax.vmap(found)(times), jax.vmap(load)(times), atol=4e-15 * max(size, 1.0)
+        at_times(found, times),
+        at_times(load, times),
+        atol=4e-15 * max(size, 1.0),
     )
     np.testing.assert_allclose(
-        jax.vmap(found.slope)(times), jax.vmap(load.slope)(times), rtol=1e-14, atol=1e-14
+        at_times(found.slope, times),
+        at_times(load.slope, times),
+        rtol=1e-14,
+        atol=1e-14,
     )
     count = found.edges.size - 1
     assert found.turning_count(3.0) == count
@@ -44,7 +49,7 @@ def test_lines_between_edges_are_of_one_kind_whatever_the_load():
 def test_functions_stay_functions_between_edges_and_their_steepest_times_known():
     load = L.Custom(lambda t: jax.numpy.sin(2 * t)).prepared(3.0)
     found = on_edges(load)
-    np.testing.assert_allclose(jax.vmap(found)(T), np.sin(2 * T), atol=1e-15)
+    np.testing.assert_allclose(at_times(found, T), np.sin(2 * T), atol=1e-15)
     assert found.steepest == load.steepest
     assert on_edges(LOADS["sine"]).steepest is None
 
@@ -54,4 +59,4 @@ def test_many_edges_are_searched_not_compared_with_the_same_values():
     turns = known_turning_points(load, 3.0, 1024)
     found = load_on_edges(load_table(load), padded_edges(turns, 3.0))
     assert found.edges.size > 512
-    np.testing.assert_allclose(jax.vmap(found)(T), jax.vmap(load)(T), atol=1e-12)
+    np.testing.assert_allclose(at_times(found, T), at_times(load, T), atol=1e-12)

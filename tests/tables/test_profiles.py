@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.tables import PiecewiseProfile, SeriesProfile, Waves, profile_tables
+from frictionjax.tables import PiecewiseProfile, Waves, profile_tables
 
 P = fx.profiles
 RNG = np.random.default_rng(5)
@@ -67,13 +67,14 @@ def shapes(table):
 def test_few_classes_and_sizes_stand_for_all():
     lanes = {shapes(profile_tables(p).lanes) for p in PROFILES.values()}
     planning = {shapes(profile_tables(p).planning) for p in PROFILES.values()}
-    assert len(lanes) == 3  # 4 and 8 harmonics; pieces
-    assert len(planning) == 5  # 4 and 8 as an axis, 16 and 64; pieces
+    assert len(lanes) == 4  # 4 and 8 harmonics; pieces of degree 4 and 8
+    assert len(planning) == 4  # 4 and 8 as an axis; pieces as in lanes
     assert isinstance(profile_tables(series(3)).planning, Waves)
     assert shapes(profile_tables(series(3)).lanes) == shapes(
         profile_tables(PROFILES["sine"]).lanes
     )
-    assert isinstance(profile_tables(PROFILES["nine"]).planning, SeriesProfile)
+    assert isinstance(profile_tables(PROFILES["nine"]).planning, PiecewiseProfile)
+    assert profile_tables(PROFILES["nine"]).planning.points == 1024
     assert isinstance(profile_tables(PROFILES["spline"]).lanes, PiecewiseProfile)
 
 

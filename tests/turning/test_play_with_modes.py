@@ -38,7 +38,7 @@ def test_nothing_is_lost_but_what_it_says(stiffness, bending):
     ts = np.linspace(0, 8, 1001)
     found = fx.solve_limit(one, ts)
     assert found.ok
-    load = np.asarray(jax.vmap(one.load)(ts))
+    load = np.asarray(jax.jit(jax.vmap(one.load))(ts))
     z, mode = np.asarray(found.z), np.asarray(found.mode)
     # The tip of a turning is where the rod before it has left it.
     tip = np.where(mode == 1, z, np.where(mode == -1, z + 2 * REACH, np.nan))
@@ -59,7 +59,7 @@ def test_slides_go_on_after_twice_the_reach():
     found = fx.solve_limit(scene(), ts)
     z, mode = np.asarray(found.z), np.asarray(found.mode)
     law = fx.nap(SURFACE, ROD)
-    load = np.asarray(jax.vmap(scene().load)(ts))
+    load = np.asarray(jax.jit(jax.vmap(scene().load))(ts))
     slides = np.abs(load - z + law.rho_flipped) < 1e-9
     turned = np.flatnonzero(slides & (mode == -1))[0]
     before = np.max(z[:turned])
@@ -72,7 +72,7 @@ def test_it_slides_with_its_nap_both_ways():
     one = scene()
     found, law = fx.solve_limit(one, ts), fx.nap(SURFACE, ROD)
     z, mode = np.asarray(found.z), np.asarray(found.mode)
-    force = np.asarray(jax.vmap(one.load)(ts)) - z
+    force = np.asarray(jax.jit(jax.vmap(one.load))(ts)) - z
     moves = np.diff(z, append=np.nan)
     for way, friction in ((1, law.rho_with), (-1, -law.rho_flipped)):
         slides = (mode == way) & (way * moves > 1e-5)
@@ -92,7 +92,7 @@ def test_it_turns_where_its_compression_is_the_critical_load():
         ts = np.linspace(*coarse[cell : cell + 2], 101)
         found = fx.solve_limit(one, ts)
         mode = np.asarray(found.mode)
-        force = np.asarray(jax.vmap(one.load)(ts)) - np.asarray(found.z)
+        force = np.asarray(jax.jit(jax.vmap(one.load))(ts)) - np.asarray(found.z)
         at = np.flatnonzero(mode)[-1]
         alpha = (np.pi / 4 - mode[at] * 0.3) / 1.0
         # At rest with the force f on its root: `N = alpha - f cot`, here cot = 1.

@@ -27,6 +27,7 @@ def test_plain_numbers_have_the_derivatives_of_arrays():
     assert slope == float(jax.grad(end)(jnp.asarray(0.1)))
 
 
+@pytest.mark.slow  # two programs of their own: 14 s
 def test_places_alone_have_the_derivatives_that_they_have_beside_energies():
     """Of z alone, what goes with the steps is not gone through again."""
 

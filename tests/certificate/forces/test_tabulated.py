@@ -94,7 +94,9 @@ def test_a_table_of_another_surface_is_not_used(monkeypatch, wrong):
 
 
 def test_parts_that_no_table_holds_are_gone_by_themselves():
-    given = fx.GivenPotential(lambda Y: 0.1 * jnp.sin(2 * jnp.pi * Y))
+    given = fx.GivenPotential(
+        lambda Y: 0.1 * jnp.sin(2 * jnp.pi * Y), lambda eps, Y: jnp.cos(2 * jnp.pi * Y)
+    )
     load = fx.loads.Custom(
         lambda t: 0.7 * jnp.sin(t**2), turning_points=[np.sqrt(np.pi / 2)]
     )
@@ -105,6 +107,7 @@ def test_parts_that_no_table_holds_are_gone_by_themselves():
     assert asked.force_in_tables(exact, TS[TS < 1.5]) is exact
 
 
+@pytest.mark.slow  # programs for the parts
 def test_certificates_are_those_by_the_parts(monkeypatch):
     scene = fx.Scene(
         PROFILES["series"], BRISTLES["angular"], fx.supports.Spring(1.1), LOADS["sine"], 2.0

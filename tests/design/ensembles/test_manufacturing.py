@@ -89,6 +89,7 @@ def test_wrong_arguments_are_named(change, words):
         fx.tolerance(**given)
 
 
+@pytest.mark.slow  # derivatives of slides
 def test_slides_at_an_eps_spread_with_the_numbers():
     profile, bristle = fx.profiles.Sine(0.1), fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
     spreads = {"profile.slope": 0.01}

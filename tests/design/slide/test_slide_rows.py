@@ -68,8 +68,11 @@ def test_a_row_is_what_it_is_alone_whatever_stands_beside_it():
         assert found.least[n] == alone.least[0]
 
 
+@pytest.mark.slow  # programs for the parts
 def test_what_no_table_holds_goes_as_it_is():
-    own = fx.profiles.Custom(lambda y: 0.02 * jax.numpy.abs(jax.numpy.sin(np.pi * y)) ** 5)
+    own = fx.profiles.Custom(
+        lambda y: 0.02 * jax.numpy.abs(jax.numpy.sin(np.pi * y)) ** 2.5
+    )
     potential = fx.potential(own, SLANTED)
     table = slide_table(potential, 1e-2)
     sides = find_slides([table], rows_of_slides(0, 1e-2, 1.0, 1.0, 1.0, BOTH)).sides

@@ -276,6 +276,7 @@ def test_contradictory_targets_give_the_best_compromise():
     assert f"rms residual {np.sqrt(chi2 / 4):.3g}" in fit.message
 
 
+@pytest.mark.slow  # fits of other bristles, a program of their own
 def test_compromises_of_other_bristles_are_stationary():
     targets = [fx.Target(SLANTED, 0.3, -0.2), fx.Target(ANGULAR, 0.1, -0.1)]
     fit = fx.fit_profile(targets, starts=2)

@@ -57,6 +57,7 @@ def test_free_parameters_make_the_surface_gentler(fit, freed):
     assert max(energies) / min(energies) < 1 + 1e-4
 
 
+@pytest.mark.slow  # fits with the angle held are a program of their own
 def test_no_angle_nearby_bends_less(freed):
     """The angle found, against fits with the angle held: an independent scan."""
     energies = []

@@ -42,6 +42,7 @@ def plan_of(scene, tolerance, reach=None) -> StepPlan:
     return plan._replace(tolerance=jnp.asarray(tolerance), reach=reach)
 
 
+@pytest.mark.slow  # a program without the guard
 def test_guard_keeps_the_well_where_tolerance_does_not(scene):
     """With an error estimate that accepts anything, only the guard holds."""
     ts = jnp.linspace(0.1, 3.0, 30)

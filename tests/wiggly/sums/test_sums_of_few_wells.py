@@ -110,7 +110,10 @@ def test_what_is_dissipated_on_a_support_stiffer_than_wells(method):
 
 
 @pytest.mark.parametrize("creep", [1e-6, 1e-3, 1e-2, 3e-2])
-@pytest.mark.parametrize("through", ["lanes", "diffrax"])
+@pytest.mark.parametrize(
+    "through",
+    ["lanes", pytest.param("diffrax", marks=pytest.mark.slow)],  # its program: 9 s
+)
 def test_a_start_that_falls_into_its_well(creep, through):
     """Next to no load, no slip: direct sums were up to 90 times the accuracy off.
 
