@@ -9,6 +9,7 @@ from samples import pair
 from scipy import integrate
 
 import frictionjax as fx
+from frictionjax.crawling import wiggly_gait
 
 SINE = fx.profiles.Sine(0.1)
 ROD = fx.bristles.AngularSpring(1.0, length=1.414, height=1.0, rest_angle=0.3)
@@ -164,6 +165,18 @@ def test_what_rounding_decides_is_not_trusted(accuracy):
         eps=0.01, gamma=1.5, accuracy=accuracy,
     )  # fmt: skip
     assert found.status.name == "SENSITIVE"
+
+
+@pytest.mark.parametrize("said", ["OK", "UNBALANCED", "MAX_STEPS"])
+def test_a_coin_is_one_whatever_runs_say(monkeypatch, said):
+    told = wiggly_gait._told
+    code = int(fx.Status[said])
+    monkeypatch.setattr(wiggly_gait, "_told", lambda *runs: told(*runs)._replace(code=code))
+    parts = 10.0, fx.loads.Sine(0.1, 1.0), 2.0
+    alike = fx.crawler(SINE, UPRIGHT, *parts, eps=0.01, gamma=1.5)
+    assert alike.status.name == ("MAX_STEPS" if said == "MAX_STEPS" else "SENSITIVE")
+    unlike = fx.crawler(SINE, LEANING, *parts, eps=0.01, gamma=1.5)
+    assert unlike.status.name == said
 
 
 @pytest.mark.parametrize("gamma", [1.0, 2.0])

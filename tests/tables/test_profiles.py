@@ -1,11 +1,15 @@
 """Profiles as tables: exact to rounding, a few classes of a few sizes."""
 
+import gc
+import weakref
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax._compile import programs
 from frictionjax.tables import PiecewiseProfile, Waves, profile_tables
 
 P = fx.profiles
@@ -105,6 +109,18 @@ def test_what_no_table_meets_stays_itself(fn):
     tables = profile_tables(profile)
     assert not tables.is_table
     assert tables.lanes is profile
+
+
+@pytest.mark.parametrize("power", [3.0, 2.5])
+def test_what_is_known_of_a_profile_does_not_keep_it_alive(power):
+    profile = P.Custom(lambda y: 0.02 * jnp.abs(jnp.sin(2 * jnp.pi * (y - 0.1))) ** power)
+    assert profile_tables(profile).is_table == (power == 3.0)
+    assert profile_tables(profile).height == pytest.approx(0.02, rel=1e-5)
+    gone = weakref.ref(profile)
+    programs._FLAT._known.clear()  # leaves of the last parts are kept, on purpose
+    del profile
+    gc.collect()
+    assert gone() is None
 
 
 def test_more_harmonics_than_any_size_have_one_of_their_own():

@@ -1,5 +1,6 @@
 """What brackets are told of slides before anything runs."""
 
+import jax
 import numpy as np
 import pytest
 from flat_folds import SCENES, VERTICAL, scene_of
@@ -9,7 +10,7 @@ import frictionjax as fx
 from frictionjax._checks import viscosity_of
 from frictionjax.model import tabulated_scene
 from frictionjax.wiggly.enclosure import SETTINGS
-from frictionjax.wiggly.plan import planned
+from frictionjax.wiggly.plan import lane_scene, planned
 from frictionjax.wiggly.slip_map import steady_lags
 
 
@@ -56,3 +57,15 @@ def test_pieces_need_what_their_direction_does():
     scene, path = tabulated_scene(abrupt, eps), path_of(abrupt)
     needs = planned(scene, path, eps, gamma, 3, 1e-3, "auto").needs
     assert np.all(needs.share == 1.0)
+
+
+def test_lanes_of_surfaces_in_pieces_are_of_one_kind_however_many_samples():
+    """Which planning takes: 256 a period of 12 heights, 4096 of 200."""
+    splines = (
+        fx.profiles.Spline(0.01 * np.sin(2 * np.pi * np.arange(n) / n)) for n in (12, 200)
+    )
+    tables = [tabulated_scene(scene_of(spline, VERTICAL), 1e-2) for spline in splines]
+    points = [one.potential.profile.points for one in tables]
+    assert points == [256, 4096]
+    one, other = (jax.tree_util.tree_structure(lane_scene(table)) for table in tables)
+    assert one == other
