@@ -94,7 +94,8 @@ def tabulated_potentials(
         tables, bristle = _tables_of(potential), energy_of_height()
     if tables is None:
         return potential, potential
-    planning, lanes = (BristlePotential(p, bristle) for p in tables[:2])
+    shapes = tables.planning, tables.lanes
+    planning, lanes = (BristlePotential(shape, bristle) for shape in shapes)
     return planning, lanes
 
 

@@ -165,10 +165,11 @@ def _heights(profile: AbstractProfile, places: Array) -> Array:
 
 
 def _series_of(profile: AbstractProfile) -> Series | None:
-    """The series that meets a profile at twice the places that it is made of."""
+    """The series that meets a profile at all its samples, twice its own at least."""
     count = SETTINGS.samples
-    values = _heights(profile, _places(2 * count))
-    waves = np.fft.rfft(values[::2]) / count
+    finer = max(2, -(-profile.points // count))
+    values = _heights(profile, _places(finer * count))
+    waves = np.fft.rfft(values[::finer]) / count
     waves[1:] *= 2
     sizes, largest = np.abs(waves), max(float(np.max(np.abs(values))), 1e-300)
     used = int(np.max(np.flatnonzero(sizes > SETTINGS.negligible * largest), initial=1))
@@ -176,7 +177,7 @@ def _series_of(profile: AbstractProfile) -> Series | None:
         return None
     short = np.where(np.arange(waves.size) <= used, waves, 0)
     short[1:] /= 2
-    fine = np.fft.irfft(np.pad(short, (0, count - waves.size + 1)) * 2 * count, 2 * count)
+    fine = np.fft.irfft(short * finer * count, finer * count)
     if np.max(np.abs(fine - values)) > SETTINGS.met * largest:
         return None
     return Series(float(waves[0].real), waves.real[1 : used + 1], -waves.imag[1 : used + 1])

@@ -17,7 +17,7 @@ from frictionjax.model import (
     scene_of_tables,
     tabulated_scene,
 )
-from frictionjax.tables import PiecewiseProfile, SeriesBristle
+from frictionjax.tables import PiecewiseProfile, SeriesBristle, SeriesProfile, Waves
 from frictionjax.wiggly import limit_path
 from frictionjax.wiggly.sequential.rosenbrock_solvers import Rodas5P
 
@@ -319,6 +319,18 @@ def test_a_given_w_with_q_is_not_and_has_the_friction_of_w():
     scene = fx.Scene(potential=given, **parts)
     assert tabulated_scene(scene, 1e-2).untabulated == "potential GivenPotential"
     assert fx.friction(scene).rho_plus == pytest.approx(0.6 * np.pi, rel=1e-14)
+
+
+@pytest.mark.parametrize("potential", [None, fx.GivenPotential(wave)])
+def test_lanes_go_through_harmonics_and_plans_have_them_as_an_axis(potential):
+    """The other way about a step takes half as long again."""
+    scene = scene_of()
+    if potential is not None:
+        rest = {"support": scene.support, "load": scene.load, "duration": 2.0}
+        scene = fx.Scene(potential=potential, **rest)
+    tables = tabulated_scene(scene, 1e-2)
+    assert type(tables.lane_potential.profile) is SeriesProfile
+    assert type(tables.potential.profile) is Waves
 
 
 def test_tables_are_kept_for_the_last_eps():

@@ -111,6 +111,22 @@ def test_what_no_table_meets_stays_itself(fn):
     assert tables.lanes is profile
 
 
+@pytest.mark.parametrize("wide", [3e-3, 1e-3, 3e-4])
+@pytest.mark.parametrize("at", [0.37123, 0.70031])
+def test_a_bump_beside_a_sine_is_not_stepped_over(wide, at):
+    """The narrowest that 4096 samples resolve: a narrower one is refused."""
+
+    def fn(y):
+        bump = jnp.exp(-(((y - at) / wide) ** 2))
+        return 0.02 * jnp.sin(2 * jnp.pi * y) + 0.1 * wide * bump
+
+    profile = P.Custom(fn)
+    y = at + wide * np.linspace(-3, 3, 201)
+    found = np.asarray(jax.jit(jax.vmap(profile_tables(profile).lanes))(y))
+    expected = np.asarray(jax.jit(jax.vmap(profile))(y))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-15)
+
+
 @pytest.mark.parametrize("power", [3.0, 2.5])
 def test_what_is_known_of_a_profile_does_not_keep_it_alive(power):
     profile = P.Custom(lambda y: 0.02 * jnp.abs(jnp.sin(2 * jnp.pi * (y - 0.1))) ** power)
