@@ -52,12 +52,8 @@ def load_in_pieces(
     steepest = float("nan" if known is None else known)
     inside = [steepest] if 0 < steepest < duration else []
     edges = np.unique([0.0, *turning_points, *inside, duration]) / duration
-    pieces = fitted_pieces(values, edges)
-    found = (
-        None
-        if pieces is None
-        else binned(pieces, SETTINGS.load_pieces, SETTINGS.function_bins)
-    )
+    pieces, room = fitted_pieces(values, edges), SETTINGS.load_pieces
+    found = pieces and binned(pieces, room, SETTINGS.function_bins)
     if found is None:
         return table
     load = PiecewiseLoad(*found, jnp.asarray(duration), jnp.asarray(steepest))

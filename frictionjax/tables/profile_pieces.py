@@ -68,9 +68,9 @@ def _with_kinks(fn: Callable[[np.ndarray], np.ndarray]) -> Pieces | None:
     if pieces is None:
         return None
     kinks = _shortest(np.append(pieces.left, 1.0))
-    return (
-        fitted_pieces(fn, np.array([0.0, *kinks, 1.0]), *fitting) if kinks.size else pieces
-    )
+    if kinks.size:
+        pieces = fitted_pieces(fn, np.array([0.0, *kinks, 1.0]), *fitting)
+    return pieces
 
 
 def _shortest(edges: Float[np.ndarray, " n"]) -> Float[np.ndarray, " m"]:
