@@ -68,7 +68,7 @@ def coefficients_jit(potential: AbstractPotential) -> Coefficients:
         _FOUND.put(potential, found)
     if found is None:
         found = _of_tables(potential_at_rest(potential))
-        if isinstance(potential, SummedPotential):  # of no bristle
+        if isinstance(potential, SummedPotential | GivenPotential):  # of no bristle
             found = Coefficients(found.rho_plus, found.rho_minus)
         found = _with_alpha(found, potential)
         if is_concrete(potential):

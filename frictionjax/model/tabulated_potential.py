@@ -5,7 +5,7 @@ from typing import Any
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import ByIdentity, exchanged, is_concrete
+from .._checks import ByIdentity, is_concrete
 from ..profiles import AbstractProfile
 from ..tables import (
     ProfileTables,
@@ -59,9 +59,7 @@ def potential_at_rest(potential: AbstractPotential) -> AbstractPotential:
         tables = _tables_of(potential)
         if tables is None:
             return potential
-        points = tables.planning.points
-        of_table = {"W_fn": tables.planning, "Q_fn": no_rest, "points": points}
-        return exchanged(potential, of_table)
+        return BristlePotential(tables.planning, bristle_at_rest(energy_of_height()))
     if not isinstance(potential, BristlePotential):
         return potential
     tables = profile_tables(potential.profile)
