@@ -194,7 +194,7 @@ def largest_eps(potential: AbstractPotential, upper: float) -> float:
     return low
 
 
-@once_a_scene
+@Interpreted
 def _range_and_convexity(support: AbstractSupport, low: Real, high: Real):
     ends = jax.vmap(support.state_of)(jnp.stack([low, high]))
     width = (ends[1] - ends[0]) / 1024

@@ -32,7 +32,7 @@ from .._checks import (
     require_real,
     require_x64,
 )
-from .._compile import once_a_scene
+from .._compile import Interpreted
 from .._text import ResultTable, SelfDrawn
 from ..bristles import AbstractBristle, pulling_text
 from ..effects import AbstractEffect, require_bristle, require_together
@@ -230,7 +230,7 @@ def _edges(scene: Scene) -> np.ndarray:
     return padded_edges(turns, scene.duration)
 
 
-@once_a_scene
+@Interpreted
 def _forces_met(
     load: AbstractPull, support: AbstractSupport, edges: Array, z0: Real
 ) -> tuple[Real, Real, Real]:
@@ -261,7 +261,7 @@ def _require_hypotheses(scene: Scene) -> None:
     require_convex(scene.support, low, high)
 
 
-@once_a_scene
+@Interpreted
 def _farthest(load: AbstractPull, support: AbstractSupport, edges: Array) -> Real:
     """Largest |z| in m that the load reaches on the flat surface."""
     values = jax.vmap(load)(edges)
