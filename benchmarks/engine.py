@@ -217,11 +217,11 @@ def others(fx, options):
             taken.append(time.process_time() - begin)
         figures[f"{name}, the first, s"] = taken[0]
         figures[f"{name}, of other kinds, the longest, s"] = max(taken[1:])
-    for name, (exchanged, given) in functions(fx).items():
+    for name, (scene_with, given) in functions(fx).items():
         taken = []
         for fn in given:
             begin = time.process_time()
-            fx.solve(exchanged(fn), 0.02, 1.0, ts)
+            fx.solve(scene_with(fn), 0.02, 1.0, ts)
             taken.append(time.process_time() - begin)
         figures[f"solve with a {name} as a function, the first, s"] = taken[0]
         figures[f"solve with another {name} as a function, the longest, s"] = max(taken[1:])

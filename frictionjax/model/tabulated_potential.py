@@ -39,7 +39,7 @@ _HEIGHTS = ByIdentity()  # of given potentials: tables of W, None where none hol
 
 
 def _tables_of(given: GivenPotential) -> ProfileTables | None:
-    """Tables of its W."""
+    """Tables of its W, whatever its Q; None where no table holds it."""
     known = _HEIGHTS.get(given)
     if known is None:
         tables = profile_tables(_LeadingHeight(given))
@@ -49,7 +49,7 @@ def _tables_of(given: GivenPotential) -> ProfileTables | None:
 
 
 def potential_at_rest(potential: AbstractPotential) -> AbstractPotential:
-    """A known potential as its coefficients see it, eps -> 0; itself where it is given."""
+    """A known potential as its coefficients see it, eps -> 0; itself without a table."""
     if not is_concrete(potential):
         return potential
     if isinstance(potential, SummedPotential):

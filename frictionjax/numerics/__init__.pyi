@@ -7,6 +7,7 @@ from .extrema import slope_of as slope_of
 from .extrema import smallest as smallest
 from .gauss import THREE_NODES as THREE_NODES
 from .gauss import THREE_WEIGHTS as THREE_WEIGHTS
+from .golden_section import even_places as even_places
 from .hermite import cubic as cubic
 from .hermite import cubic_slope as cubic_slope
 from .power_series import power_integral as power_integral

@@ -8,10 +8,11 @@ from jaxtyping import Array, Float, Int
 from .._checks import Real
 from .._compile import Interpreted, in_chunks
 from ..loads import AbstractPull, PiecewiseLinear
+from ..numerics import even_places
 from .fitted_pieces import fitted_pieces
 from .loads import SumOfLoads, load_table
 from .pieces import Binned, binned
-from .settings import GOLDEN, SETTINGS
+from .settings import SETTINGS
 
 
 class PiecewiseLoad(AbstractPull):
@@ -62,6 +63,6 @@ def load_in_pieces(
 
 def _say_the_same(load: AbstractPull, pieces: AbstractPull, duration: float) -> bool:
     """Whether they do at times that pieces were not made of, all over the duration."""
-    times = duration * np.mod(GOLDEN * np.arange(SETTINGS.times), 1.0)
+    times = duration * even_places(SETTINGS.times)
     one, other = _values(load, times), _values(pieces, times)
     return bool(np.max(np.abs(one - other)) <= SETTINGS.same * np.max(np.abs(one)))

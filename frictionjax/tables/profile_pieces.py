@@ -8,11 +8,11 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._compile import Interpreted, in_chunks
-from ..numerics import slope_of
+from ..numerics import even_places, slope_of
 from ..profiles import AbstractProfile
 from .fitted_pieces import fitted_pieces
 from .pieces import Pieces, PiecewiseProfile, piecewise
-from .settings import GOLDEN, SETTINGS
+from .settings import SETTINGS
 
 
 @Interpreted
@@ -53,7 +53,7 @@ def _say_the_same(profile: AbstractProfile, table: AbstractProfile) -> bool:
 
     At as many as the profile is sampled at, as a bump between few is seen by none.
     """
-    places = np.mod(GOLDEN * np.arange(max(SETTINGS.times, profile.points)), 1.0)
+    places = even_places(max(SETTINGS.times, profile.points))
     pairs = zip(_at(profile, places), _at(table, places), SETTINGS.alike, strict=True)
     return all(
         bool(np.max(np.abs(one - other)) <= allowed * np.max(np.abs(one)))

@@ -2,8 +2,6 @@
 
 from typing import NamedTuple
 
-GOLDEN = 0.5 * (5**0.5 - 1)  # places so far apart fill a stretch evenly
-
 
 class Settings(NamedTuple):
     """Of series, of pieces, of points of loads."""

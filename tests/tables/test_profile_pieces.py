@@ -29,7 +29,7 @@ def waves(y):
     return jnp.sum(heights * jnp.abs(jnp.sin(jnp.pi * orders * y)) ** 3)
 
 
-# Each with places where w'' has kinks.
+# Each with the places where w'' has kinks.
 FUNCTIONS = {
     "kinks at halves": (lambda y: 0.02 * jnp.abs(jnp.sin(2 * jnp.pi * y)) ** 3, [0, 0.5]),
     "kinks elsewhere": (
@@ -75,7 +75,7 @@ def test_pieces_are_the_function_and_its_derivatives(name):
         assert np.all(np.array(off(profile, table, places)) <= [4e-14, 1e-13, 1e-11])
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("name", [name for name, (_, kinks) in FUNCTIONS.items() if kinks])
 def test_pieces_end_at_kinks(name):
     fn, kinks = FUNCTIONS[name]
     left = np.asarray(profile_in_pieces(fx.profiles.Custom(fn)).rows[:, 0])

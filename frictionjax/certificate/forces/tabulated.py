@@ -8,11 +8,10 @@ from jaxtyping import Array, Float
 from ..._compile import Interpreted, in_chunks
 from ...loads import AbstractPull
 from ...model import tabulated_potentials
+from ...numerics import even_places
 from ...tables import load_table
 from .force import AbstractForce, Force
 from .settings import SETTINGS
-
-_GOLDEN = 0.5 * (5**0.5 - 1)  # of a period: places so far apart fill it evenly
 
 
 def force_in_tables(force: Force, ts: Float[np.ndarray, " n"]) -> Force:
@@ -43,7 +42,7 @@ def _at_times(load: AbstractPull, ts: Array) -> Array:
 
 
 def _say_the_same(force: Force, tables: Force, ts: np.ndarray) -> bool:
-    y = np.mod(_GOLDEN * np.arange(SETTINGS.places), 1.0)
+    y = even_places(SETTINGS.places)
     of_places = zip(_at_places(force, y), _at_places(tables, y), strict=True)
     of_times = [
         in_chunks(_at_times, SETTINGS.chunk, (load,), (ts,))
