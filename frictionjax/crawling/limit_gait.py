@@ -4,11 +4,10 @@ import numpy as np
 from jaxtyping import Float
 
 from .._checks import require
+from ..limit import play_operator
 from ..model import Scene, coefficients_jit, known_turning_points, strips_at
 from .gait import Gait
 from .settings import SETTINGS
-
-_Column = Float[np.ndarray, " n"]
 
 
 def is_alike(plus: float, minus: float) -> bool:
@@ -34,7 +33,7 @@ def limit_gait(scene: Scene, ts: Float[np.ndarray, " n"]) -> Gait:
     loads, lower, upper = strips_at(scene, least, -least, times)
     stiffness = float(scene.support.stiffness_at(0.0))
     slack = loads[0] / stiffness
-    lengths = _held_between(lower, upper, slack)
+    lengths = play_operator(lower, upper, slack)
     grown = np.diff(lengths, prepend=slack)
     longer, shorter = np.maximum(grown, 0.0), np.minimum(grown, 0.0)
     # Forwards: the front foot goes where it grows, the rear one where it shrinks.
@@ -44,11 +43,3 @@ def limit_gait(scene: Scene, ts: Float[np.ndarray, " n"]) -> Gait:
     at = np.searchsorted(times, ts)
     tension = stiffness * lengths - loads
     return Gait(rear[at], slack + front[at], tension[at], lost[at])
-
-
-def _held_between(lower: _Column, upper: _Column, start: float) -> _Column:
-    """The play operator: one clip after the other."""
-    length, found = start, np.empty_like(lower)
-    for index, (low, high) in enumerate(zip(lower.tolist(), upper.tolist(), strict=True)):
-        length = found[index] = min(max(length, low), high)
-    return found

@@ -19,25 +19,22 @@ from .._checks import (
     require,
     with_nan,
 )
-from .._compile import Program, padded_size
+from .._compile import Program
 from .._text import Named, SelfDrawn, ShownNumbers, dataset_over_time
 from ..coefficients import Coefficients
 from ..effects import Engine, NapFlip, nap_flip_among
 from ..loads import AbstractPull
 from ..model import (
-    SETTINGS,
     Scene,
     coefficients_jit,
     dissipation_potential,
     known_turning_points,
-    padded_edges,
     require_times,
     scene_for,
     strip_of,
     strips_at,
 )
 from ..supports import AbstractSupport
-from ..tables import load_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -166,19 +163,36 @@ def _limit_at(
     return z[back] * poison, dissipation[back] * poison
 
 
+def play_operator(
+    lower: Float[np.ndarray, " n"], upper: Float[np.ndarray, " n"], z0: float
+) -> Float[np.ndarray, " n"]:
+    """The play operator on known strips: one clip after the other, from `z0`.
+
+    NaN from the first strip on that is NaN.
+    """
+    z, found = z0, np.empty_like(lower)
+    for index, (low, high) in enumerate(zip(lower.tolist(), upper.tolist(), strict=True)):
+        z = found[index] = min(max(z, low), high)
+    found[np.maximum.accumulate(np.isnan(lower) | np.isnan(upper))] = np.nan
+    return found
+
+
 def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSolution:
     if not is_concrete(scene, ts):
         parts = scene.load, scene.support, scene.z0, scene.turning_points()
         return LimitSolution(ts, *_limit_at(*parts, found, ts))
+    # Known numbers compile nothing, whatever the parts.
     turns = known_turning_points(scene.load, scene.duration, scene.turns)
-    edges = padded_edges(turns, scene.duration)
-    # Rooms for times: another number of them compiles nothing.
-    times = np.full(padded_size(ts.size, SETTINGS.times), float(scene.duration))
-    times[: ts.size] = ts
-    law = Coefficients(jnp.asarray(found.rho_plus), jnp.asarray(found.rho_minus))
-    table = load_table(scene.load)
-    z, dissipation = _limit_at(table, scene.support, scene.z0, edges, law, times)
-    return LimitSolution(ts, z[: ts.size], dissipation[: ts.size])
+    grid = np.concatenate([ts, turns])
+    order, z0 = np.argsort(grid, kind="stable"), float(scene.z0)
+    rho_plus, rho_minus = float(found.rho_plus), float(found.rho_minus)
+    _, lower, upper = strips_at(scene, rho_plus, rho_minus, grid[order])
+    z, back = play_operator(lower, upper, z0), np.argsort(order)[: ts.size]
+    moves = np.diff(z, prepend=z0)
+    spent = np.cumsum(np.where(moves >= 0, rho_plus * moves, rho_minus * moves))
+    if np.any(np.isnan(turns)):  # more than there is room for
+        z, spent = np.full_like(z, np.nan), np.full_like(z, np.nan)
+    return LimitSolution(ts, jnp.asarray(z[back]), jnp.asarray(spent[back]))
 
 
 def require_start_in_strip(scene: Scene) -> None:

@@ -57,7 +57,9 @@ class Settings(NamedTuple):
 
     # Potentials and strips (`potentials.py`, `strip.py`).
     zoom: int = 256  # samples between two neighbours of a scan: its minimum to 1e-8
-    times: int = 512  # of one compiled call
+    # Times that are gone through at once: rooms from the first on, by fours.
+    times: int = 256
+    most_times: int = 4096
 
 
 SETTINGS = Settings()

@@ -5,7 +5,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real
-from .._compile import in_chunks, once_a_scene
+from .._compile import Interpreted, in_chunks, padded_size
 from ..loads import AbstractPull
 from ..supports import AbstractSupport
 from ..tables import load_table
@@ -21,7 +21,7 @@ def strip_of(
     return support.state_of(load - rho_plus), support.state_of(load - rho_minus)
 
 
-@once_a_scene
+@Interpreted
 def _strips(
     load: AbstractPull,
     support: AbstractSupport,
@@ -46,5 +46,6 @@ def strips_at(
     rho = np.asarray(rho_plus, dtype=float), np.asarray(rho_minus, dtype=float)
     load = load_table(scene.load) if isinstance(scene, Scene) else scene.load
     fixed = load, scene.support, *rho
-    loads, lower, upper = in_chunks(_strips, SETTINGS.times, fixed, (times,))
+    room = min(padded_size(times.size, SETTINGS.times), SETTINGS.most_times)
+    loads, lower, upper = in_chunks(_strips, room, fixed, (times,))
     return loads, lower, upper
