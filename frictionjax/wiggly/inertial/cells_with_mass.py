@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ..._checks import quiet_where_extreme, viscosity_of
-from ..._compile import Program, in_chunks, once_a_scene, padded_size
+from ..._compile import Program, in_chunks, once_a_scene
 from ...called_for import inertia_numbers
 from ...effects import Inertia
 from ...model import Scene, SummedPotential, TabulatedScene, padded_edges, tabulated_scene
@@ -23,10 +23,12 @@ from ..equation import (
 )
 from ..stepping import Control
 from .lanes_with_mass import (
-    MarchedRow,
+    MassAtStops,
     MassiveLane,
     MassiveScene,
     Stretches,
+    SupremaSoFar,
+    at_start,
     march_with_mass,
 )
 from .settings import SETTINGS
@@ -55,6 +57,16 @@ class CellsWithMass(NamedTuple):
     steps: np.ndarray
     rejected: np.ndarray
     tolerance: np.ndarray
+
+
+class MarchedRow(NamedTuple):
+    """What a row of lanes has found, and how each has ended."""
+
+    stops: MassAtStops
+    suprema: SupremaSoFar
+    steps: Any
+    rejected: Any
+    code: Any
 
 
 class _Course(NamedTuple):
@@ -114,7 +126,7 @@ def _course(
     checks = np.linspace(0.0, last, SETTINGS.checks if suprema else 2)
     stops = np.unique(np.concatenate([checks, ts, turns[turns < last]]))
     starts = stops[:-1]
-    room = padded_size(max(starts.size, 1), SETTINGS.stops)
+    room = SETTINGS.stops * -(-max(starts.size, 1) // SETTINGS.stops)
     start, length = np.full(room, stops[-1]), np.zeros(room)
     start[: starts.size], length[: starts.size] = starts, np.diff(stops)
     parts = MassiveScene(
@@ -261,23 +273,28 @@ def _marched(
     has the same bits in any company."""
     order = np.argsort(-lanes.eps, kind="stable")
     sorted_lanes, size = rows_of(lanes, order), SETTINGS.lanes
-    fixed = course.scene, course.segments, course.with_suprema
     rows = []
     for at in range(0, order.size, size):
         row = rows_of(sorted_lanes, slice(at, at + size))
-        rows.append(_march_row(fixed, row))
+        rows.append(_march_row(course, row))
         report(min(at + size, order.size) / order.size)
     return rows_of(concatenated(rows), np.argsort(order, kind="stable"))
 
 
-def _march_row(fixed: tuple, row: MassiveLane) -> MarchedRow:
-    leaves, structure = jax.tree_util.tree_flatten(row)
-
-    def march(*args: Any) -> Any:
-        lanes = jax.tree_util.tree_unflatten(structure, args[len(fixed) :])
-        return march_with_mass(*args[: len(fixed)], lanes)
-
-    return in_chunks(march, SETTINGS.lanes, fixed, tuple(leaves))
+def _march_row(course: _Course, row: MassiveLane) -> MarchedRow:
+    """Some stops at a call: another number of them compiles nothing."""
+    count, size = row.eps.size, SETTINGS.stops
+    lanes = rows_of(row, np.minimum(np.arange(SETTINGS.lanes), count - 1))
+    state, found = at_start(lanes, float(course.scene.z0)), []
+    for at in range(0, course.segments.start.size, size):
+        segments = rows_of(course.segments, slice(at, at + size))
+        parts = course.scene, segments, course.with_suprema
+        state, stops = march_with_mass(*parts, lanes, state)
+        found.append(stops)
+    stops = MassAtStops(*(np.concatenate(c, axis=1) for c in zip(*found, strict=True)))
+    going = state.going
+    whole = MarchedRow(stops, going.suprema, going.steps, going.rejected, going.code)
+    return rows_of(whole, slice(count))
 
 
 def _compared(

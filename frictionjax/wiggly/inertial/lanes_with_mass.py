@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool
 
 from ..._checks import Real
@@ -98,14 +99,29 @@ class _Going(NamedTuple):
     code: Real
 
 
-class MarchedRow(NamedTuple):
-    """What a row of lanes has found, and how each has ended."""
+class OnTheWay(NamedTuple):
+    """Lanes at a stop, with the limit system's state (m) and dissipation (J) there."""
 
-    stops: MassAtStops
-    suprema: SupremaSoFar
-    steps: Any
-    rejected: Any
-    code: Any
+    going: Any
+    limit: Any
+    limit_lost: Any
+
+
+def at_start(lanes: MassiveLane, z0: float) -> OnTheWay:
+    """Lanes, (lanes,) each, at rest."""
+    none = np.zeros_like(lanes.eps)
+    going = _Going(
+        well=lanes.well,
+        motion=TipMotion(lanes.tip, none, none, none),
+        time=none,
+        arrived=none > 0,
+        control=ControlState(none, none),
+        suprema=SupremaSoFar(none, none, none),
+        steps=none,
+        rejected=none,
+        code=none,
+    )
+    return OnTheWay(going, np.asarray(z0), np.zeros(()))
 
 
 @Program
@@ -114,8 +130,9 @@ def march_with_mass(
     segments: Stretches,
     with_suprema: bool,
     lanes: MassiveLane,
-) -> MarchedRow:
-    """Lanes, (lanes,) each, from z0 at rest through all segments."""
+    before: OnTheWay,
+) -> tuple[OnTheWay, MassAtStops]:
+    """Lanes, (lanes,) each, through some segments, from where they are."""
 
     def of_row(fn: Callable) -> Callable:
         return jax.vmap(fn, in_axes=(0, 0, None))
@@ -123,7 +140,7 @@ def march_with_mass(
     step = of_row(lambda lane, going, at: _stepped(scene, lane, going, at, with_suprema))
     report = of_row(lambda lane, going, at: _at_stop(scene, lane, going, at))
 
-    def through(before: tuple, segment: Stretches) -> tuple[tuple, MassAtStops]:
+    def through(before: OnTheWay, segment: Stretches) -> tuple[OnTheWay, MassAtStops]:
         going, limit, limit_lost = before
         at = _Stretch(*segment, limit, limit_lost)
         there = jnp.broadcast_to(at.length <= 0, going.arrived.shape)
@@ -134,31 +151,14 @@ def march_with_mass(
             going,
         )
         _, limit, limit_lost = _limit_in(scene, at, at.length, at.limit)
-        return (going, limit, limit_lost), report(lanes, going, at)
+        return OnTheWay(going, limit, limit_lost), report(lanes, going, at)
 
-    start = jax.vmap(_at_start)(lanes), scene.z0, jnp.zeros_like(scene.z0)
-    (going, *_), found = jax.lax.scan(through, start, segments)
-    stops = MassAtStops(*(jnp.moveaxis(column, 0, -1) for column in found))
-    return MarchedRow(stops, going.suprema, going.steps, going.rejected, going.code)
+    after, found = jax.lax.scan(through, before, segments)
+    return after, MassAtStops(*(jnp.moveaxis(column, 0, -1) for column in found))
 
 
 def _active(going: _Going) -> Bool[Array, "..."]:
     return (going.code == 0) & ~going.arrived
-
-
-def _at_start(lane: MassiveLane) -> _Going:
-    none = jnp.zeros_like(lane.eps)
-    return _Going(
-        well=lane.well,
-        motion=TipMotion(lane.tip, none, none, none),
-        time=none,
-        arrived=none > 0,
-        control=ControlState(none, none),
-        suprema=SupremaSoFar(none, none, none),
-        steps=none,
-        rejected=none,
-        code=none,
-    )
 
 
 def _tip_of(scene: MassiveScene, lane: MassiveLane, well: Real, origin: Real) -> MassiveTip:

@@ -10,7 +10,7 @@ class Settings(NamedTuple):
 
     tableau: Tableau = RODAS5P  # L-stable: beta may be as small as it likes
     lanes: int = 8  # side by side: one vector; the slowest decides how long all take
-    stops: int = 64  # of one compiled call; more are in rooms four times as large
+    stops: int = 64  # of one compiled call
     shares: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0)  # of a step, looked at for suprema
     # Of the tolerance of lanes without mass: slips are not forgotten.
     share: float = 1.0

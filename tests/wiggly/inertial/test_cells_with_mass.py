@@ -211,3 +211,19 @@ def test_traced_numbers_are_refused():
 
     with pytest.raises(ValueError, match=r"effects\.Inertia has no derivatives"):
         jax.grad(lambda e: fx.solve(massive_scene(1e-4), e).z[-1])(0.05)
+
+
+def test_another_number_of_times_compiles_nothing():
+    """Stops go in groups of one size: five times, and seven groups of them."""
+    eps, compiled = 0.05, []
+
+    def note(event, seconds, **_):
+        compiled.extend([event] if event.endswith("backend_compile_duration") else [])
+
+    scene = massive_scene(mass_for(1.0, eps, 1.0), 1.5)
+    few = fx.solve(scene, eps, 1.0, ts=np.linspace(0, 1.5, 5))
+    jax.monitoring.register_event_duration_secs_listener(note)
+    many = fx.solve(scene, eps, 1.0, ts=np.linspace(0, 1.5, 401))
+    assert compiled == []
+    np.testing.assert_allclose(many.z[::100], few.z, atol=2e-3 * eps)
+    np.testing.assert_allclose(many.dissipation[::100], few.dissipation, rtol=2e-3)
