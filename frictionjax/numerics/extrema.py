@@ -64,11 +64,16 @@ def _summits(
     """Places of the largest maxima of `fn` and `-fn`: the highest bumps, each polished.
 
     `values`: of both on the grid. Samples of two bumps can stand in the wrong order by a
-    part in 1000.
+    part in 1000, tops of parabolas through three of them by one in 1e5. (In the order of
+    samples the highest of 100 bumps was none of eight.)
     """
     right, left = jnp.roll(values, -1, axis=1), jnp.roll(values, 1, axis=1)
     bump = (values >= left) & (values >= right)
-    heights, best = _highest(jnp.where(bump, values, -jnp.inf))
+    bent = 2 * values - left - right
+    top = values + (right - left) ** 2 / (8 * jnp.where(bent > 0, bent, jnp.inf))
+    tops, best = _highest(jnp.where(bump, top, -jnp.inf))
+    known = jnp.take_along_axis(values, best, axis=1)
+    heights = jnp.where(jnp.isfinite(tops), known, -jnp.inf)
     # What is no bump has no root to be found: 45 halvings that all others wait for.
     scanned, width = grid[best], jnp.where(jnp.isfinite(heights), 1 / grid.shape[0], 0.0)
     side = jnp.array([[1.0], [-1.0]])

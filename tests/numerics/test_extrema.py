@@ -54,6 +54,18 @@ def test_two_bumps_a_few_points_apart_are_told_apart():
         low, high = 512 / 1024, 512 / 1024 + apart + 0.5 / 1024
         return bump(low) + 1.01 * bump(high)
 
-    found = periodic_extrema(fn, 1024)
+    found = jax.jit(lambda: periodic_extrema(fn, 1024))()
     assert float(found.argmax) == pytest.approx(0.5 + apart + 0.5 / 1024, abs=1e-9)
     assert float(found.max) == pytest.approx(1.01, rel=1e-9)
+
+
+def test_the_highest_of_a_hundred_bumps_between_samples():
+    """By samples the highest was none of eight: 4e-4 of it were lost."""
+
+    def fn(y):
+        return jnp.cos(200 * jnp.pi * y) - 0.01 * jnp.sin(2 * jnp.pi * y)
+
+    found, values = jax.jit(lambda: (periodic_extrema(fn, 4096), jax.vmap(fn)(DENSE)))()
+    most = (200 * np.pi) ** 2 / 2**37
+    assert abs(float(found.max) - float(values.max())) < most
+    assert abs(float(found.min) - float(values.min())) < most
