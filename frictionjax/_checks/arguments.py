@@ -2,7 +2,7 @@
 
 import decimal
 import inspect
-from types import CellType
+from types import CellType, ModuleType
 from typing import Any
 
 import equinox as eqx
@@ -18,6 +18,8 @@ Real = Float[Array, ""]
 
 _EMPTY = CellType()
 _nothing = jax.jit(lambda: False)  # a compiled call: 10 us, `jnp.zeros` takes 38
+# Of functions and of partial ones: what they were given beforehand.
+_GIVEN = "__defaults__", "__kwdefaults__", "func", "args", "keywords"
 _CLOSURES = 4  # functions inside functions that are looked into for traced numbers
 
 
@@ -187,7 +189,10 @@ def _captured(fn: Any) -> list[Any]:
     inner = inspect.unwrap(fn)
     cells = getattr(inner, "__closure__", None) or ()
     held = [cell.cell_contents for cell in cells if cell != _EMPTY]
-    return [*held, getattr(inner, "__self__", None)]
+    owner = getattr(inner, "__self__", inner)  # of a method
+    if not isinstance(owner, type | ModuleType):
+        held += [owner if owner is not inner else None, getattr(owner, "__dict__", None)]
+    return [*held, *(getattr(inner, name, None) for name in _GIVEN)]
 
 
 def require_real(name: str, value: Any, allowed: str, test: Any = None) -> None:

@@ -56,7 +56,8 @@ def _reverse(params: Any, a: Jet) -> Jet:
 
 
 def _joined(rows: list[Jet], axis: int) -> Jet:
-    count = max(jet.seam.shape[0] for jet in rows)
+    # Constants have one row, whatever the count, which may be 0.
+    (count,) = np.broadcast_shapes(*(jet.seam.shape[:1] for jet in rows))
     whole = [j.mapped(lambda x: np.broadcast_to(x, (count, *x.shape[1:]))) for j in rows]
 
     def join(part: Callable[[Jet], np.ndarray]) -> np.ndarray:

@@ -184,3 +184,23 @@ def test_more_turns_than_there_is_room_for_are_refused():
             fx.loads.Sine(1.0, 1e-9),
             3.0,
         )
+
+
+def test_functions_in_pieces_by_name_have_their_course_looked_at():
+    """A branch without a number of its own was one that no stretch could be joined to."""
+
+    def up_and_down(t):
+        return jnp.piecewise(t, [t < 1, t >= 1], [lambda t: 1.5 * t, lambda t: 2.5 - t])
+
+    load = fx.loads.Custom(up_and_down, [1.0])
+    assert load.turning_points(jnp.asarray(3.0), 2).tolist() == [1.0, 3.0]
+    scene = fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.Homothetic(1.0),
+        fx.supports.Spring(1.0),
+        load,
+        3.0,
+    )
+    rho = 0.1
+    found = fx.solve_limit(scene, [0.0, 1.0, 3.0]).z
+    np.testing.assert_allclose(found, [0.0, 1.5 - rho, -0.5 + rho], atol=1e-14)

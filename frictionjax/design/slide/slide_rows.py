@@ -56,7 +56,8 @@ def slide_table(potential: AbstractPotential, highest: float) -> AbstractPotenti
         return table
     profile, bristle = table.profile, table.bristle
     if isinstance(profile, SeriesProfile):
-        size = min(n for n in SETTINGS.harmonics if n >= profile.cos.size)
+        count = profile.cos.size
+        size = min((n for n in SETTINGS.harmonics if n >= count), default=count)
         profile = Waves(
             profile.mean, *(_filled(c, size) for c in (profile.cos, profile.sin))
         )

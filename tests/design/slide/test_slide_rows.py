@@ -68,6 +68,14 @@ def test_a_row_is_what_it_is_alone_whatever_stands_beside_it():
         assert found.least[n] == alone.least[0]
 
 
+def test_more_harmonics_than_tables_have_are_as_many_as_there_are():
+    sizes = [
+        slide_table(fx.potential(fx.profiles.Fourier(cos, 0 * cos), SLANTED), 1e-2)
+        for cos in (1e-3 * 0.9 ** np.arange(n) / np.arange(1, n + 1) for n in (3, 100))
+    ]
+    assert [table.profile.cos.size for table in sizes] == [8, 100]
+
+
 @pytest.mark.slow  # programs for the parts
 def test_what_no_table_holds_goes_as_it_is():
     own = fx.profiles.Custom(
