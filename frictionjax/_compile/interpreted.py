@@ -7,21 +7,20 @@ import jax
 import numpy as np
 from jax.extend.core import Literal
 
+from .._checks import is_debugged, with_nan
 from .numpy_rules import RULES
 from .programs import put_together, taken_apart
 
-_MOST = 256  # programs kept of one function
+_MOST = 32  # programs kept of one function, and what a user's function holds
+_SHORT = 64  # turns of a loop from which on JAX makes all of them at once
 # Steps that only call, by name: `reduce` has a `jaxpr` too, which is no call.
 CALLS = {
     "jit": "jaxpr",
-    "pjit": "jaxpr",
     "closed_call": "call_jaxpr",
-    "core_call": "call_jaxpr",
-    "remat": "jaxpr",
+    "remat2": "jaxpr",
     "checkpoint": "jaxpr",
     "custom_jvp_call": "call_jaxpr",
     "custom_vjp_call": "call_jaxpr",
-    "custom_vjp_call_jaxpr": "fun_jaxpr",
 }
 
 
@@ -49,10 +48,16 @@ class Interpreted:
             if len(self._known) >= _MOST:
                 self._known.clear()
             self._known[key] = found
-        closed, out = found
+        run, out = found
+        run = with_nan(run) if is_debugged() else run
         with np.errstate(all="ignore"):
-            results = _run(closed.jaxpr, closed.consts, arrays)
-        return jax.tree_util.tree_unflatten(out, results)
+            return jax.tree_util.tree_unflatten(out, run(*arrays))
+
+
+@Interpreted
+def values_at(fn: Callable, places: Any) -> Any:
+    """A part, or a function, at places (n,): of each the value alone."""
+    return jax.vmap(fn)(places)
 
 
 def _traced(fn: Callable, structure: Any, rest: tuple, arrays: list) -> tuple[Any, Any]:
@@ -61,53 +66,103 @@ def _traced(fn: Callable, structure: Any, rest: tuple, arrays: list) -> tuple[An
 
     with jax.ensure_compile_time_eval():
         closed, shapes = jax.make_jaxpr(flat, return_shape=True)(arrays)
-    return closed, jax.tree_util.tree_structure(shapes)
+    return _in_steps(closed), jax.tree_util.tree_structure(shapes)
 
 
-def _run(jaxpr: Any, constants: Any, arguments: list) -> list:
-    known = dict(zip(jaxpr.constvars, map(np.asarray, constants), strict=True))
-    known |= dict(zip(jaxpr.invars, arguments, strict=True))
+def _in_steps(closed: Any) -> Callable[..., list]:
+    """A traced program as calls on one list of values, in which each has its place.
 
-    def read(atom: Any) -> Any:
-        return np.asarray(atom.val) if isinstance(atom, Literal) else known[atom]
+    (Looked up by name at each call: half as long again.)
+    """
+    jaxpr = getattr(closed, "jaxpr", closed)
+    # Copies: a user's array may change later.
+    start = [np.array(c) for c in getattr(closed, "consts", ())]
+    places = {var: place for place, var in enumerate(jaxpr.constvars)}
 
-    for eqn in jaxpr.eqns:
-        results = _results(eqn, [read(atom) for atom in eqn.invars])
-        known |= dict(zip(eqn.outvars, results, strict=True))
-    return [read(atom) for atom in jaxpr.outvars]
+    def placed(atoms: Any) -> list[int]:
+        return [place_of(atom) for atom in atoms]
+
+    def place_of(atom: Any) -> int:
+        if isinstance(atom, Literal):
+            start.append(np.asarray(atom.val))
+            return len(start) - 1
+        if atom not in places:
+            places[atom] = len(start)
+            start.append(np.asarray(0))
+        return places[atom]
+
+    given = placed(jaxpr.invars)
+    steps = [(_step(e), placed(e.invars), placed(e.outvars)) for e in jaxpr.eqns]
+    wanted = placed(jaxpr.outvars)
+
+    def run(*operands: Any) -> list:
+        values = start.copy()
+        for place, operand in zip(given, operands, strict=True):
+            values[place] = operand
+        for step, takes, gives in steps:
+            found = step(*[values[place] for place in takes])
+            for place, value in zip(gives, found, strict=True):
+                values[place] = value
+        return [values[place] for place in wanted]
+
+    return run
 
 
-def _results(eqn: Any, operands: list) -> list:
+def _step(eqn: Any) -> Callable[..., list]:
     name, params = eqn.primitive.name, eqn.params
     if name in CALLS:
-        return _call(params[CALLS[name]], operands)
+        return _in_steps(params[CALLS[name]])
     if name == "cond":
-        which = int(np.clip(operands[0], 0, len(params["branches"]) - 1))
-        return _call(params["branches"][which], operands[1:])
+        ways = [_in_steps(way) for way in params["branches"]]
+        return lambda which, *rest: ways[int(np.clip(which, 0, len(ways) - 1))](*rest)
     if name == "while":
-        return _while(params, operands)
+        return _while(params)
+    if name == "scan" and 0 < params["length"] <= _SHORT:
+        return _scan(params)
     rule = RULES.get(name)
     if rule is not None:
-        (aval,) = [var.aval for var in eqn.outvars]
-        return [np.asarray(rule(params, *operands), dtype=aval.dtype)]
+        dtype = eqn.outvars[0].aval.dtype
+        return lambda *operands: [np.asarray(rule(params, *operands), dtype)]
+    return lambda *operands: _made_by_jax(eqn.primitive, params, operands)
+
+
+def _made_by_jax(primitive: Any, params: dict, operands: tuple) -> list:
     with jax.ensure_compile_time_eval():
-        found = eqn.primitive.bind(*operands, **params)
-    return [np.asarray(v) for v in (found if eqn.primitive.multiple_results else [found])]
+        found = primitive.bind(*operands, **params)
+    return [np.asarray(v) for v in (found if primitive.multiple_results else [found])]
 
 
-def _call(closed: Any, operands: list) -> list:
-    return _run(getattr(closed, "jaxpr", closed), getattr(closed, "consts", ()), operands)
+def _while(params: dict) -> Callable[..., list]:
+    goes_on, moved = _in_steps(params["cond_jaxpr"]), _in_steps(params["body_jaxpr"])
+    asked, count = params["cond_nconsts"], params["cond_nconsts"] + params["body_nconsts"]
+
+    def run(*operands: Any) -> list:
+        carry = list(operands[count:])
+        while np.any(going := goes_on(*operands[:asked], *carry)[0]):
+            after = moved(*operands[asked:count], *carry)
+            # Under `vmap` each has an end of its own, and stays where it came to.
+            carry = [_where(going, *pair) for pair in zip(after, carry, strict=True)]
+        return carry
+
+    return run
 
 
-def _while(params: dict, operands: list) -> list:
-    condition, body = params["cond_nconsts"], params["body_nconsts"]
-    fixed = operands[:condition], operands[condition : condition + body]
-    carry = operands[condition + body :]
-    while np.any(goes_on := _call(params["cond_jaxpr"], [*fixed[0], *carry])[0]):
-        moved = _call(params["body_jaxpr"], [*fixed[1], *carry])
-        # Under `vmap` each has an end of its own, and stays where it came to.
-        carry = [_where(goes_on, *pair) for pair in zip(moved, carry, strict=True)]
-    return carry
+def _scan(params: dict) -> Callable[..., list]:
+    body, order = _in_steps(params["jaxpr"]), range(params["length"])
+    fixed, carried = params["num_consts"], params["num_consts"] + params["num_carry"]
+    count = params["num_carry"]
+
+    def run(*operands: Any) -> list:
+        carry, rows = list(operands[fixed:carried]), []
+        for i in reversed(order) if params["reverse"] else order:
+            each = [np.asarray(column[i]) for column in operands[carried:]]
+            found = body(*operands[:fixed], *carry, *each)
+            carry, row = found[:count], found[count:]
+            rows.append(row)
+        rows = rows[::-1] if params["reverse"] else rows
+        return [*carry, *map(np.stack, zip(*rows, strict=True))]
+
+    return run
 
 
 def _where(chosen: np.ndarray, one: np.ndarray, other: np.ndarray) -> np.ndarray:

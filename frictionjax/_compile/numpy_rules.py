@@ -14,9 +14,15 @@ def _termwise(fn: Callable) -> Rule:
 
 
 def _select(params: dict, which: Any, *cases: Any) -> Any:
-    if len(cases) == 2:
-        return np.where(which.astype(bool), cases[1], cases[0])
-    return np.choose(which, cases)
+    found = cases[0]
+    for number, case in enumerate(cases[1:], start=1):
+        found = np.where(which == number, case, found)
+    return found
+
+
+def _converted(params: dict, x: Any) -> Any:
+    whole = np.issubdtype(params["new_dtype"], np.complexfloating)
+    return x.real if x.dtype.kind == "c" and not whole else x
 
 
 def _rounded(params: dict, x: Any) -> Any:
@@ -79,13 +85,14 @@ _TERMWISE: dict[str, Callable] = {name: getattr(np, name) for name in _ALIKE} | 
     "copy": lambda x: x,
     "copy_p": lambda x: x,
     "stop_gradient": lambda x: x,
+    "rem": np.fmod,
     "clamp": lambda low, x, high: np.minimum(np.maximum(x, low), high),
 }
 
 RULES: dict[str, Rule] = {name: _termwise(fn) for name, fn in _TERMWISE.items()} | {
-    "div": lambda params, a, b: a / b if a.dtype.kind == "f" else np.trunc(a / b),
+    "div": lambda params, a, b: np.trunc(a / b) if a.dtype.kind in "iu" else a / b,
     "integer_pow": lambda params, x: np.power(x, params["y"]),
-    "convert_element_type": lambda params, x: x,
+    "convert_element_type": _converted,
     "select_n": _select,
     "round": _rounded,
     "broadcast_in_dim": _broadcast,
@@ -94,10 +101,15 @@ RULES: dict[str, Rule] = {name: _termwise(fn) for name, fn in _TERMWISE.items()}
     "expand_dims": lambda params, x: np.expand_dims(x, tuple(params["dimensions"])),
     "transpose": lambda params, x: np.transpose(x, params["permutation"]),
     "concatenate": lambda params, *x: np.concatenate(x, axis=params["dimension"]),
+    "stack": lambda params, *x: np.stack(x, axis=params["axis"]),
     "slice": _slice,
     "reduce_sum": _reduced(np.sum),
     "reduce_max": _reduced(np.max),
     "reduce_min": _reduced(np.min),
+    "reduce_or": _reduced(np.any),
+    "reduce_and": _reduced(np.all),
+    "argmin": lambda params, x: np.argmin(x, axis=params["axes"][0]),
+    "argmax": lambda params, x: np.argmax(x, axis=params["axes"][0]),
     "and": lambda params, a, b: a & b,
     "or": lambda params, a, b: a | b,
     "not": lambda params, a: ~a,

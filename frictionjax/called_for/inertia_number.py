@@ -8,14 +8,14 @@ import numpy as np
 from jaxtyping import Float
 
 from .._checks import Real
-from .._compile import Program
+from .._compile import Interpreted
 from ..effects import Inertia
 from ..model import AbstractPotential, potential_at_rest
 
 _PLACES = 2048  # of a period: max |W''| to 2e-6
 
 
-@Program
+@Interpreted
 def _steepest(potential: AbstractPotential) -> Real:
     """`max |W''|` in N."""
     places = jnp.arange(_PLACES) / _PLACES - 0.5

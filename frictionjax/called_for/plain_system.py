@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real
-from .._compile import in_chunks, once_a_scene
+from .._compile import Interpreted, in_chunks
 from ..bristles import Homothetic, Linear
 from ..model import AbstractPotential, BristlePotential, tabulated_potentials
 from ..numerics import slope_of
@@ -32,7 +32,7 @@ class HigherOrder(NamedTuple):
     turns: Float[np.ndarray, " turns"]
 
 
-@once_a_scene
+@Interpreted
 def _rest(potential: AbstractPotential, eps: Real, Y: Float[Array, " n"]):
     """Q' and Q'' in N/m, W'' and W''' in N at phases Y.
 

@@ -20,7 +20,7 @@ import jax
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._compile import Interpreted
+from .._compile import Interpreted, values_at
 from ..effects import CompliantArray
 from ..loads import AbstractLoad
 from ..model import Scene, known_turning_points
@@ -38,11 +38,6 @@ _BESIDE = (np.linspace(0.0, 1.0, 801)[1:]) ** 2  # of the way to the next turn
 
 
 # In NumPy: through JAX each kind of load compiled dozens of single steps, half a second.
-@Interpreted
-def _loads(load: AbstractLoad, ts: Array) -> Array:
-    return jax.vmap(load)(ts)
-
-
 @Interpreted
 def _pace(load: AbstractLoad, t: Array) -> Array:
     return jax.grad(load)(t)
@@ -100,7 +95,7 @@ def _slid_up_to(at: Setting) -> Iterator[_Turn]:
     turns = known_turning_points(scene.load, duration, scene.turns)
     turns = turns[turns > 0]
     edges = np.concatenate([[0.0], turns, [duration]])
-    loads = _loads(scene.load, edges)
+    loads = values_at(scene.load, edges)
     z = float(scene.z0)
     for i in range(1, turns.size + 1):
         sign = 1.0 if loads[i] > loads[i - 1] else -1.0
@@ -111,7 +106,7 @@ def _slid_up_to(at: Setting) -> Iterator[_Turn]:
         ways = np.array([edges[i] - edges[i - 1], edges[i + 1] - edges[i]])
         beside = ways[:, None] * _BESIDE
         away = edges[i] + np.array([[-1.0], [1.0]]) * beside
-        falls = sign * (loads[i] - _loads(scene.load, away.ravel()).reshape(away.shape))
+        falls = sign * (loads[i] - values_at(scene.load, away.ravel()).reshape(away.shape))
         drag = _dragged(at, edges[i], ways[0])
         yield _Turn(float(edges[i]), edge, sign, drag, beside, falls)
 

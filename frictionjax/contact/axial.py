@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import Real
-from .._compile import Program
+from .._compile import Interpreted
 from ..bristles import AngularSpring
 from ..effects import AxialLoad, nap_flip_among
 from ..model import AbstractPotential, Scene
@@ -51,7 +51,7 @@ def axial_reading(scene: Scene, compression: Any) -> AxialReading | None:
     return None
 
 
-@Program
+@Interpreted
 def _compressions(potential: AbstractPotential, z: Rows, eps: Real) -> Rows:
     def at(one: Real) -> Real:
         axial = tip_forces(potential, one, eps).axial

@@ -13,7 +13,7 @@ from .._checks import (
     require_numbers,
     with_nan,
 )
-from .._compile import Program
+from .._compile import Interpreted
 from ..effects import Engine, NapFlip, inertia_among, nap_flip_among
 from ..limit import LimitSolution
 from ..loads import Pulled
@@ -66,12 +66,12 @@ _BENT = "of straight rods; in between it has given way"
 _OTHER_SUPPORT = "Phi(z) - l z, and -l' z: of a support that is no linear spring"
 
 
-@Program
+@Interpreted
 def _wiggly_rows(potential: AbstractPotential, z: Any, eps: Any) -> TipForces:
     return jax.vmap(lambda one: tip_forces(potential, one, eps))(z)
 
 
-@Program
+@Interpreted
 def _limit_rows(potential: AbstractPotential, z: Any, force: Any) -> TipForces:
     return jax.vmap(lambda *one: limit_forces(potential, *one))(z, force)
 

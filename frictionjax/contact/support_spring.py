@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real
-from .._compile import Program
+from .._compile import Interpreted
 from ..loads import AbstractPull
 from ..model import Scene
 from ..supports import AbstractSupport, Spring
@@ -27,7 +27,7 @@ class SupportRows(NamedTuple):
     power: Rows
 
 
-@Program
+@Interpreted
 def _rows(load: AbstractPull, support: AbstractSupport, ts: Any, z: Any) -> SupportRows:
     def at(t: Real, z: Real) -> SupportRows:
         pull, rate = load(t), load.slope(t)

@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .._compile import Program, in_chunks
+from .._compile import Interpreted, in_chunks
 from ..bristles import AngularSpring
 from ..effects import NapFlip
 from ..model import AbstractPotential, Scene
@@ -24,22 +24,22 @@ JUMPS = {
 }
 
 
-@Program
+@Interpreted
 def _wiggly_rows(potential: AbstractPotential, eps: Any, z: Any) -> TipForces:
     return jax.vmap(lambda one: tip_forces(potential, one, eps))(z)
 
 
-@Program
+@Interpreted
 def _limit_rows(potential: AbstractPotential, z: Any, force: Any) -> TipForces:
     return jax.vmap(lambda *one: limit_forces(potential, *one))(z, force)
 
 
-@Program
+@Interpreted
 def _heights(profile: AbstractProfile, eps: Any, tip: Any) -> Any:
     return jax.vmap(lambda p: eps * profile(p / eps))(tip)
 
 
-@Program
+@Interpreted
 def _bent_rows(rod: TurningRod, tip: Any, ahead: Any, low: Any) -> TipForces:
     def at(tip: Any, ahead: Any, low: Any) -> TipForces:
         one = rod._replace(height=rod.height - low)

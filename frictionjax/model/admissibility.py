@@ -125,6 +125,8 @@ def _margins(
 
 
 def _fits(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:
+    if not isinstance(potential, BristlePotential):  # no tip beside z: G = 1
+        return np.ones(np.shape(eps), dtype=bool)
     stretch, clear = _margins(potential, eps)
     return (stretch > 0) & (clear > 0)
 

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real, require
-from .._compile import in_chunks, once_a_scene
+from .._compile import Interpreted, in_chunks
 from ..numerics import slope_of
 from .potentials import GivenPotential
 from .settings import SETTINGS
@@ -69,7 +69,7 @@ def require_digits(found: Noises, eps: np.ndarray) -> None:
         require(False, name, worst, f"at most {SETTINGS.most_of_q:g}, {needs}")
 
 
-@once_a_scene
+@Interpreted
 def _noises(potential: GivenPotential, eps: Float[Array, " n"]):
     """The fields of `Noises`, in their order."""
     values = jnp.ptp(jax.vmap(potential._leading)(_phases()))

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real, require
-from .._compile import once_a_scene
+from .._compile import Interpreted
 from ..bristles import Homothetic
 from ..profiles import Fourier
 from .potentials import AbstractPotential, BristlePotential
@@ -16,7 +16,7 @@ from .settings import SETTINGS
 from .summed_potential import SummedPotential
 
 
-@once_a_scene
+@Interpreted
 def _energies(potential: AbstractPotential, eps: Real, places: Array) -> Array:
     """`V_eps/eps` of one tip at phases in a period, in N."""
 

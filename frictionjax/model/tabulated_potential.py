@@ -1,19 +1,16 @@
 """Wiggly potentials of tables: what programs are compiled for, once a size."""
 
+from collections.abc import Callable
 from typing import Any
 
+import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import ByIdentity, is_concrete
+from .._checks import ByIdentity, Real, is_concrete
+from ..bristles import Homothetic
 from ..profiles import AbstractProfile
-from ..tables import (
-    ProfileTables,
-    bristle_at_rest,
-    bristle_series,
-    energy_of_height,
-    profile_tables,
-)
+from ..tables import bristle_at_rest, bristle_series, profile_tables
 from .potentials import AbstractPotential, BristlePotential, GivenPotential, no_rest
 from .summed_potential import SummedPotential
 from .summed_series import leaves_nothing, surface_of_sum
@@ -21,31 +18,28 @@ from .summed_series import leaves_nothing, surface_of_sum
 _MARGIN = 1.01  # heights beyond those of the samples
 
 
-class _LeadingHeight(AbstractProfile):
+class _Height(AbstractProfile):
     """W of a given potential, as the height of a surface."""
 
-    given: GivenPotential
+    W_fn: Callable[[Real], Real]
+    points: int = eqx.field(static=True, default=4096)
 
     def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         y = jnp.asarray(y)
-        return jnp.asarray(self.given.W_fn(y - jnp.floor(y)))
-
-    @property
-    def points(self) -> int:
-        return self.given.points
+        return jnp.asarray(self.W_fn(y - jnp.floor(y)))
 
 
-_HEIGHTS = ByIdentity()  # of given potentials: tables of W, None where none holds it
+_BARE = ByIdentity()  # of given potentials: their W alone
 
 
-def _tables_of(given: GivenPotential) -> ProfileTables | None:
-    """Tables of its W, whatever its Q; None where no table holds it."""
-    known = _HEIGHTS.get(given)
+def _bare(given: GivenPotential) -> AbstractPotential:
+    """`eps W`, of a tip that its height moves nowhere; itself where no table holds W."""
+    known = _BARE.get(given)
     if known is None:
-        tables = profile_tables(_LeadingHeight(given))
-        known = (tables if tables.is_table else None,)
-        _HEIGHTS.put(given, known)
-    return known[0]
+        height = _Height(given.W_fn, given.points)
+        known = BristlePotential(height, Homothetic(jnp.asarray(1.0)))
+        _BARE.put(given, known)
+    return known if profile_tables(known.profile).is_table else given
 
 
 def potential_at_rest(potential: AbstractPotential) -> AbstractPotential:
@@ -56,10 +50,7 @@ def potential_at_rest(potential: AbstractPotential) -> AbstractPotential:
         one = surface_of_sum(potential, potential_at_rest(potential.single), 0.0)
         return potential_at_rest(one)
     if isinstance(potential, GivenPotential):
-        tables = _tables_of(potential)
-        if tables is None:
-            return potential
-        return BristlePotential(tables.planning, bristle_at_rest(energy_of_height()))
+        potential = _bare(potential)
     if not isinstance(potential, BristlePotential):
         return potential
     tables = profile_tables(potential.profile)
@@ -84,14 +75,12 @@ def tabulated_potentials(
     if isinstance(potential, SummedPotential):
         single, _ = tabulated_potentials(potential.single, highest)
         potential = surface_of_sum(potential, single, highest)
-    tables: ProfileTables | None = None
-    if isinstance(potential, BristlePotential):
-        tables = profile_tables(potential.profile)
-        bristle = bristle_series(potential.bristle, _MARGIN * highest * tables.height)
     elif isinstance(potential, GivenPotential) and potential.Q_fn is no_rest:
-        tables, bristle = _tables_of(potential), energy_of_height()
-    if tables is None:
+        potential = _bare(potential)
+    if not isinstance(potential, BristlePotential):
         return potential, potential
+    tables = profile_tables(potential.profile)
+    bristle = bristle_series(potential.bristle, _MARGIN * highest * tables.height)
     shapes = tables.planning, tables.lanes
     planning, lanes = (BristlePotential(shape, bristle) for shape in shapes)
     return planning, lanes

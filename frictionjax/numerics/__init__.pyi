@@ -7,7 +7,6 @@ from .extrema import slope_of as slope_of
 from .extrema import smallest as smallest
 from .gauss import THREE_NODES as THREE_NODES
 from .gauss import THREE_WEIGHTS as THREE_WEIGHTS
-from .golden_section import even_places as even_places
 from .hermite import cubic as cubic
 from .hermite import cubic_slope as cubic_slope
 from .power_series import power_integral as power_integral
@@ -18,6 +17,8 @@ from .records import stacked as stacked
 from .roots import bracketed_root as bracketed_root
 from .roots import find_root as find_root
 from .roots import increasing_root as increasing_root
+from .spot_checks import are_near as are_near
+from .spot_checks import even_places as even_places
 from .taylor import increment as increment
 from .taylor import mean_slope as mean_slope
 from .taylor import second_remainder as second_remainder

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..numerics import even_places
 from .style import LIMIT, colour, new_figure, styled
 
 _BAND = (0.05, 0.95)
-_GOLDEN = 0.5 * (5**0.5 - 1)
 _WIDTH = 0.25  # of the cloud of scenes at each gamma
 
 
@@ -72,7 +72,7 @@ def _orders(axes: Any, orders: xr.Dataset, index: int) -> None:
     found, predicted = orders.order.values, orders.order_predicted.values
     # Scattered by rank, so that scenes hide no others and a picture is always the same.
     rank = np.argsort(np.argsort(found))
-    places = index + _WIDTH * (2 * np.mod(_GOLDEN * rank, 1.0) - 1)
+    places = index + _WIDTH * (2 * even_places(rank.size)[rank] - 1)
     look = {"color": colour(index), "linestyle": "none", "markersize": 3.5}
     axes.plot(places, found, marker="o", alpha=0.6, **look)
     axes.plot(np.full(predicted.size, index + 0.38), predicted, "x", color=LIMIT)

@@ -14,7 +14,8 @@ class Custom(AbstractProfile):
     """The profile `w(y) = fn(y)` for 0 <= y < 1, continued with period 1.
 
     `fn`: scalar to scalar, written with `jax.numpy`; an `equinox.Module` with leaves is
-    traced like any other part. `points` samples a period must resolve `fn'`.
+    traced like any other part. `points` samples a period must resolve `fn'`. A function is
+    read once: other numbers need another one, or leaves of a module.
 
     Raises `ValueError` naming the derivative that jumps where `fn` does not repeat as a
     C^2 function (at the seam or inside), or `fn` is constant or not finite.

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import Part, Real, in_64_bits, is_concrete, require, with_nan
-from .._compile import Interpreted
+from .._compile import Interpreted, in_chunks
 from .settings import SETTINGS
 
 
@@ -58,7 +58,7 @@ def require_smooth(name: str, fn: Callable[[Real], Real], points: int) -> None:
         return
     inside = SETTINGS.inside
     y = jnp.asarray(np.concatenate([np.arange(points) / points, [1.0 - inside]]))
-    values = _derivatives(fn, y)
+    values = in_chunks(_derivatives, SETTINGS.together, (fn,), (np.asarray(y),))
     for value in values[:3]:
         require(np.all(np.isfinite(value)), name, "not finite", "finite w, w', w''")
     sizes = [max(float(np.max(np.abs(v))), 1e-300) for v in values]

@@ -11,6 +11,8 @@ class Settings(NamedTuple):
     seam: float = 1e-6  # of the largest value
     jump: float = 1e-9  # of it: between neighbouring samples, beyond what slopes explain
 
+    together: int = 1024  # samples that a function is asked for at once
+
     # Polylines (`polyline.py`).
     a_corner: int = 8  # samples in the narrowest corner, and on the shortest flank
     fewest: int = 256  # samples a period

@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 from numpy.polynomial import legendre
 
 from .._checks import Real, require
-from .._compile import Program, in_chunks
+from .._compile import Interpreted, in_chunks
 from ..model import AbstractPotential
 from ..supports import AbstractSupport
 from .potential_samples import sampled_potential
@@ -59,14 +59,14 @@ def boltzmann_shares(rest: AtRest, edges: Float[np.ndarray, " edges"]) -> Boltzm
     return BoltzmannShares(per_bin[1:-1] / whole, level)
 
 
-@Program
+@Interpreted
 def _held_energy(
     support: AbstractSupport, load: Real, z: Float[Array, " n"]
 ) -> Float[Array, " n"]:
     return jax.vmap(support.energy)(z) - load * z
 
 
-@Program
+@Interpreted
 def _centre(support: AbstractSupport, load: Real) -> tuple[Real, Real]:
     """Where the support alone would rest, and how stiff it is there."""
     z = support.state_of(load)

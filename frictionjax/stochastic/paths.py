@@ -21,7 +21,7 @@ from .._checks import (
     viscosity_of,
     with_nan,
 )
-from .._compile import Program, in_chunks, padded_size
+from .._compile import Interpreted, in_chunks, padded_size
 from ..effects import Noise
 from ..loads import AbstractPull
 from ..model import (
@@ -172,7 +172,7 @@ def _planned(cell: NoisyCell, force: TabulatedForce) -> PathSteps:
     )
 
 
-@Program
+@Interpreted
 def _stiffest(
     support: AbstractSupport,
     load: AbstractPull,

@@ -1,7 +1,6 @@
 from .bristles import SeriesBristle as SeriesBristle
 from .bristles import bristle_at_rest as bristle_at_rest
 from .bristles import bristle_series as bristle_series
-from .bristles import energy_of_height as energy_of_height
 from .bristles import in_one_size as in_one_size
 from .loads import SumOfLoads as SumOfLoads
 from .loads import bent_part as bent_part
@@ -12,7 +11,6 @@ from .pieces import PiecewiseProfile as PiecewiseProfile
 from .pieces import unsampled as unsampled
 from .piecewise_loads import PiecewiseLoad as PiecewiseLoad
 from .piecewise_loads import load_in_pieces as load_in_pieces
-from .profiles import ProfileTables as ProfileTables
 from .profiles import profile_tables as profile_tables
 from .settings import SETTINGS as SETTINGS
 from .supports import SeriesSupport as SeriesSupport

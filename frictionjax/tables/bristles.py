@@ -78,13 +78,6 @@ def bristle_at_rest(bristle: AbstractBristle) -> SeriesBristle:
     return SeriesBristle(ahead, climb, np.asarray(1.0))
 
 
-def energy_of_height() -> SeriesBristle:
-    """`F(eta) = eta` and `A(eta) = 0`, of what is given as an energy."""
-    climb = np.zeros(SETTINGS.degrees[0] + 1)
-    climb[0] = 1.0
-    return SeriesBristle(np.zeros_like(climb), climb, np.asarray(1.0))
-
-
 _SERIES = ByIdentity()  # of bristles that are known: the last height, and the series
 
 

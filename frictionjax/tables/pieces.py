@@ -1,4 +1,4 @@
-"""A profile in pieces, each a polynomial: splines, polylines."""
+"""Functions in pieces, each a polynomial, found by bins; profiles of them."""
 
 from typing import NamedTuple
 

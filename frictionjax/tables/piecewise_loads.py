@@ -1,14 +1,13 @@
 """Loads given as functions, as polynomials on pieces."""
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
 from .._checks import Real
-from .._compile import Interpreted, in_chunks
+from .._compile import in_chunks, values_at
 from ..loads import AbstractPull, PiecewiseLinear
-from ..numerics import even_places
+from ..numerics import are_near, even_places
 from .fitted_pieces import fitted_pieces
 from .loads import SumOfLoads, load_table
 from .pieces import Binned, binned
@@ -30,11 +29,6 @@ class PiecewiseLoad(AbstractPull):
         return Binned(self.rows, self.first)(t / self.duration)
 
 
-@Interpreted
-def _values(load: AbstractPull, times: Array) -> Array:
-    return jax.vmap(load)(times)
-
-
 def load_in_pieces(
     load: AbstractPull, turning_points: Float[np.ndarray, " n"], duration: float
 ) -> AbstractPull:
@@ -47,7 +41,7 @@ def load_in_pieces(
         return table
 
     def values(places: np.ndarray) -> np.ndarray:
-        return in_chunks(_values, SETTINGS.times, (table,), (duration * places,))
+        return in_chunks(values_at, SETTINGS.times, (table,), (duration * places,))
 
     known = getattr(table, "steepest", None)
     steepest = float("nan" if known is None else known)
@@ -64,5 +58,4 @@ def load_in_pieces(
 def _say_the_same(load: AbstractPull, pieces: AbstractPull, duration: float) -> bool:
     """Whether they do at times that pieces were not made of, all over the duration."""
     times = duration * even_places(SETTINGS.times)
-    one, other = _values(load, times), _values(pieces, times)
-    return bool(np.max(np.abs(one - other)) <= SETTINGS.same * np.max(np.abs(one)))
+    return are_near(values_at(load, times), values_at(pieces, times), SETTINGS.same)

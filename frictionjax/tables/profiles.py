@@ -4,13 +4,12 @@ import math
 from functools import singledispatch
 from typing import NamedTuple
 
-import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from .._checks import ByIdentity
-from .._compile import Interpreted
+from .._compile import values_at
 from ..profiles import AbstractProfile, Fourier, Polyline, Sine, Spline
 from .pieces import Pieces, PiecewiseProfile, piecewise
 from .polyline_pieces import polyline_pieces
@@ -60,7 +59,7 @@ def profile_tables(profile: AbstractProfile) -> ProfileTables:
 
 
 def _found(profile: AbstractProfile) -> ProfileTables:
-    height = float(np.max(np.abs(_heights(profile, _places(profile.points)))))
+    height = float(np.max(np.abs(values_at(profile, _places(profile.points)))))
     shape = _shape_of(profile)
     if isinstance(shape, Series):
         return _in_series(shape, height)
@@ -159,25 +158,22 @@ def _(profile: Polyline) -> Pieces:
     return polyline_pieces(profile)
 
 
-@Interpreted
-def _heights(profile: AbstractProfile, places: Array) -> Array:
-    return jax.vmap(profile)(places)
-
-
 def _series_of(profile: AbstractProfile) -> Series | None:
     """The series that meets a profile at all its samples, twice its own at least."""
     count = SETTINGS.samples
     finer = max(2, -(-profile.points // count))
-    values = _heights(profile, _places(finer * count))
+    values = values_at(profile, _places(finer * count))
     waves = np.fft.rfft(values[::finer]) / count
     waves[1:] *= 2
-    sizes, largest = np.abs(waves), max(float(np.max(np.abs(values))), 1e-300)
-    used = int(np.max(np.flatnonzero(sizes > SETTINGS.negligible * largest), initial=1))
-    if used > SETTINGS.harmonics[-1] or not np.all(np.isfinite(values)):
+    # A height that all share has no friction, but rounds what is beside it.
+    size, noise = float(np.ptp(values)), np.finfo(float).eps * float(np.max(np.abs(values)))
+    least = max(SETTINGS.negligible * size, noise)
+    used = int(np.max(np.flatnonzero(np.abs(waves) > least), initial=1))
+    if used > SETTINGS.harmonics[-1] or not noise <= SETTINGS.met * size < np.inf:
         return None
     short = np.where(np.arange(waves.size) <= used, waves, 0)
     short[1:] /= 2
     fine = np.fft.irfft(short * finer * count, finer * count)
-    if np.max(np.abs(fine - values)) > SETTINGS.met * largest:
+    if np.max(np.abs(fine - values)) > SETTINGS.met * size:
         return None
     return Series(float(waves[0].real), waves.real[1 : used + 1], -waves.imag[1 : used + 1])

@@ -16,11 +16,11 @@ class Settings(NamedTuple):
     # take as long as with series, and share their programs with functions in pieces.
     written_out: int = 8
     degree: int = 8
-    # Samples of a function that may be a series: twice what 64 harmonics need, and as many
-    # between them, which the series must meet.
+    # Samples of a function that may be a series: twice what 64 harmonics need. All of the
+    # function's own points beside them have to be met.
     samples: int = 256
-    negligible: float = 1e-15  # of the largest coefficient: what is left out
-    met: float = 4e-14  # of the largest value: how well samples between must be met
+    negligible: float = 1e-15  # of how high it is, lowest to highest: what is left out
+    met: float = 4e-14  # of that: how well samples between must be met
 
     # Pieces of a profile (`pieces.py`) and bins that find them.
     pieces: int = 4096
@@ -37,6 +37,11 @@ class Settings(NamedTuple):
     # may be off at other places.
     bent: float = 2e-14
     alike: tuple[float, float, float] = (4e-14, 1e-13, 1e-10)
+    # Pieces that all begin with, as what is left of w'' adds up along them; ends of these
+    # this near a kink are left out, and Newton's steps to it.
+    first_pieces: int = 16
+    apart: float = 1e-3
+    newton: int = 3
     place_rounding: float = 2.0**-51  # four of a share's: what their places are moved by
     # Samples a period, which are static: few sizes, few programs.
     points_a_period: tuple[int, ...] = (256, 1024, 4096, 8192)

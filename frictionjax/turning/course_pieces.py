@@ -6,7 +6,7 @@ import jax
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._compile import Program, in_chunks
+from .._compile import Interpreted, in_chunks, values_at
 from ..loads import AbstractPull
 from ..supports import AbstractSupport
 from .settings import SETTINGS
@@ -63,19 +63,14 @@ class Jumps(NamedTuple):
     spent: _Column
 
 
-@Program
-def _loads(load: AbstractPull, times: Array) -> Array:
-    return jax.vmap(load)(times)
-
-
-@Program
+@Interpreted
 def _states_of(support: AbstractSupport, forces: Array) -> Array:
     return jax.vmap(support.state_of)(forces)
 
 
 def loads_at(load: AbstractPull, times: _Column) -> _Column:
     """The load in N at times in s."""
-    return in_chunks(_loads, SETTINGS.times, (load,), (np.asarray(times, float),))
+    return in_chunks(values_at, SETTINGS.times, (load,), (np.asarray(times, float),))
 
 
 def states_of(support: AbstractSupport, forces: _Column) -> _Column:

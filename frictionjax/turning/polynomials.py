@@ -9,12 +9,12 @@ from jaxtyping import Array
 from numpy.polynomial import Chebyshev
 
 from .._checks import Real
-from .._compile import Program
+from .._compile import Interpreted
 from ..rods import TurningRod
 from .settings import SETTINGS
 
 
-@Program
+@Interpreted
 def _forces(rod: TurningRod, places: Array) -> Array:
     return jax.vmap(rod.force)(places)
 

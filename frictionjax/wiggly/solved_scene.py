@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import require, scene_of
-from .._compile import Program, in_chunks
+from .._compile import Interpreted, in_chunks
 from ..effects import CompliantArray, NapFlip
 from ..loads import AbstractPull
 from ..model import SETTINGS, Scene
@@ -23,7 +23,7 @@ class Pulls(NamedTuple):
     stiffness: Any
 
 
-@Program
+@Interpreted
 def _pulls(load: AbstractPull, support: AbstractSupport, ts: Array, z: Array) -> Pulls:
     force, stiffness = jax.vmap(support.force), jax.vmap(support.stiffness_at)
     return Pulls(jax.vmap(load)(ts), force(z), stiffness(z))

@@ -28,6 +28,43 @@ def looped(x):
     return halved + chosen + jnp.searchsorted(x, 0.5) + jnp.cumsum(x)[::-1]
 
 
+def carried(x):
+    """Loops that carry numbers along, forwards and back, short and long."""
+
+    def step(held, each):
+        (size, pair), (one, two) = held, each
+        return (size + one * two, pair[::-1] + one), (size, jnp.stack([one, size]))
+
+    start, over = (jnp.ones(()), x[:2]), (x, jnp.sin(x))
+    (size, pair), (sizes, pairs) = jax.lax.scan(step, start, over)
+    back = jax.lax.scan(step, start, over, reverse=True)[1][0]
+    long = jax.lax.scan(lambda a, _: (0.9 * a + x[0], a), x[0], length=100)[1]
+    none = jax.lax.scan(lambda a, _: (2 * a, a), x[1], length=0)[0]
+    return sizes * jnp.sum(pairs, axis=1) + back + size + pair[0] + long[-7:] + none
+
+
+def looked_at(x):
+    """What is asked of all at once, and what is left of a division."""
+    both = jnp.stack([x, 1 - x], axis=1)
+    where = jnp.argmin(both, axis=1) + 10 * jnp.argmax(jnp.sin(9 * x))
+    some = jnp.any(both > 0.6, axis=1) + 2 * jnp.all(x < 0.99)
+    return where + some + (9 * x - 4) % 0.7 + jax.lax.rem(9 * x - 4, 0.7 + 0 * x)
+
+
+def complex_inside(x):
+    """What is real at its end, through complex numbers and whole ones."""
+    turn = jnp.exp(2j * jnp.pi * x)
+    kernel = jnp.real(1 / (1 - 0.5 * turn)) + jnp.imag(turn**3) + jnp.abs(turn + x)
+    spectrum = jnp.real(jnp.fft.ifft(jnp.fft.fft(x) * jnp.arange(x.size)))
+    return kernel + spectrum + jnp.arange(x.size) // 3 + jnp.trunc(-7 * x / 2)
+
+
+def chosen_of_many(x):
+    """More branches than `np.choose` takes."""
+    steps = [x >= k / 100 for k in range(100)]
+    return jnp.piecewise(x, steps, [lambda v, k=k: v * k for k in range(101)])
+
+
 def folded(x):
     """A step that holds a program, and is no call of it."""
     return jax.lax.reduce(x, jnp.ones(()), lambda a, b: 1.5 * a * b, (0,))
@@ -52,6 +89,11 @@ def each_to_its_end(x):
         mixed,
         looped,
         folded,
+        complex_inside,
+        chosen_of_many,
+        jax.checkpoint(mixed),
+        carried,
+        looked_at,
         each_to_its_end,
         jax.vmap(jax.grad(lambda x: mixed(x[None])[0])),
     ],
@@ -98,3 +140,20 @@ def test_every_rule_gives_the_type_that_the_program_says():
     assert [v.dtype.kind for v in whole] == ["b", "i", "f"]
     assert np.all(np.isinf(whole[2]))  # quietly
     assert "add" in RULES
+
+
+def test_what_a_function_holds_is_read_once():
+    """Half of it was folded into the program, half read at every call."""
+    held = np.array([1.0, 2.0])
+    both = Interpreted(lambda x: jnp.sum(held) * jnp.sin(x) + jnp.sum(held * x[0]))
+    before = both(X)
+    held[:] = [2.0, 4.0]
+    np.testing.assert_array_equal(both(X), before)
+
+
+def test_values_that_are_not_finite_are_no_error_where_jax_looks_for_them():
+    def lost(x):
+        return jax.lax.fori_loop(0, 3, lambda _, v: jnp.sort(jnp.log(v)), -x)
+
+    with jax.debug_nans(True):
+        assert np.all(np.isnan(Interpreted(lost)(X)))

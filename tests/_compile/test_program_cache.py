@@ -12,12 +12,12 @@ from jax.experimental.compilation_cache import compilation_cache
 
 import frictionjax as fx
 from frictionjax._compile import program_cache as kept_programs
+from frictionjax._compile import values_at
 from frictionjax._compile.programs import Program, once_a_scene
 from frictionjax.model.potentials import BristlePotential
 from frictionjax.slide_laws import ingredients
-from frictionjax.tables import profiles as table_profiles
 
-FORCES, HEIGHTS = ingredients._forces._fn, table_profiles._heights._fn
+FORCES, HEIGHTS = ingredients._forces._fn, values_at._fn
 PLACES = np.linspace(0.0, 1.0, 5)
 
 

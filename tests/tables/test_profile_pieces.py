@@ -83,6 +83,49 @@ def test_pieces_end_at_kinks(name):
         assert np.min(np.abs(left - kink)) < 1e-10  # of a weak one, in w'' 2e-14
 
 
+def kinks_at(places):
+    """Beside a sine, one kink at each place."""
+    at = jnp.asarray(places)
+
+    def fn(y):
+        each = jnp.abs(jnp.sin(jnp.pi * (y[..., None] - at))) ** 3
+        return 0.01 * jnp.sin(2 * jnp.pi * y) + 0.002 * jnp.sum(each, axis=-1)
+
+    return fn
+
+
+@pytest.mark.parametrize("count", [1, 6])
+def test_kinks_are_found_wherever_they_are(count):
+    """The middle of the shortest piece is none: a third of six kinks had no table."""
+    for places in np.random.default_rng(count).uniform(0, 1, (12, count)):
+        table = profile_in_pieces(fx.profiles.Custom(kinks_at(places)))
+        assert table is not None, places
+        left = np.asarray(table.rows[:, 0])
+        assert np.max(np.min(np.abs(left[:, None] - places), axis=0)) < 1e-10
+
+
+def test_what_begins_anywhere_is_met():
+    """w'' to two roundings, from one piece of half a period on, is w to 5e-14 only."""
+    for begins in np.random.default_rng(0).uniform(0.1, 0.9, 12):
+
+        def fn(y, a=begins):
+            return jnp.where(y < a, 0.0, 0.5 * (y - a) ** 3 * (1 - y) ** 3)
+
+        assert profile_in_pieces(fx.profiles.Custom(fn)) is not None, begins
+
+
+@pytest.mark.parametrize("level", [0.0, -10.0, 1e4, 1e7])
+def test_a_height_that_all_share_changes_nothing(level):
+    """Rounding of it was taken for waves, and met as closely as all of it."""
+    fn = kinks_at([0.2])
+    profile = fx.profiles.Custom(lambda y: level + fn(y))
+    tables = profile_tables(profile)
+    assert tables.is_table
+    places = RNG.uniform(0, 1, 500)
+    slopes = [jax.vmap(jax.grad(f))(places) for f in (fn, tables.lanes)]
+    np.testing.assert_allclose(slopes[1], slopes[0], atol=1e-13)
+
+
 def test_friction_is_that_of_the_function():
     profile = fx.profiles.Custom(FUNCTIONS["kinks elsewhere"][0])
     slope = 3 * 0.02 * 2 * np.pi * (2 / 3) / np.sqrt(3)  # of 0.02 |sin|^3, largest

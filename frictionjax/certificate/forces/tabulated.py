@@ -5,10 +5,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..._compile import Interpreted, in_chunks
-from ...loads import AbstractPull
+from ..._compile import Interpreted, in_chunks, values_at
 from ...model import tabulated_potentials
-from ...numerics import even_places
+from ...numerics import are_near, even_places
 from ...tables import load_table
 from .force import AbstractForce, Force
 from .settings import SETTINGS
@@ -36,21 +35,12 @@ def _at_places(force: AbstractForce, y: Array) -> tuple[Array, Array, Array]:
     return pull, stretch, jax.vmap(force.state)(jnp.zeros_like(y), y) / force.eps
 
 
-@Interpreted
-def _at_times(load: AbstractPull, ts: Array) -> Array:
-    return jax.vmap(load)(ts)
-
-
 def _say_the_same(force: Force, tables: Force, ts: np.ndarray) -> bool:
     y = even_places(SETTINGS.places)
     of_places = zip(_at_places(force, y), _at_places(tables, y), strict=True)
     of_times = [
-        in_chunks(_at_times, SETTINGS.chunk, (load,), (ts,))
+        in_chunks(values_at, SETTINGS.chunk, (load,), (ts,))
         for load in (force.load, tables.load)
     ]
-    return all(_are_near(*pair) for pair in (*of_places, of_times))
-
-
-def _are_near(one: np.ndarray, other: np.ndarray) -> bool:
-    largest = max(float(np.max(np.abs(one))), 1e-300)
-    return bool(np.max(np.abs(one - other)) <= SETTINGS.same * largest)
+    pairs = (*of_places, of_times)
+    return all(are_near(one, other, SETTINGS.same) for one, other in pairs)

@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Shaped
 
 from ..._checks import Real
-from ..._compile import Program, in_chunks, padded_size
+from ..._compile import Interpreted, Program, in_chunks, padded_size
 from ...loads import AbstractPull
 from ...model import SETTINGS as MODEL_SETTINGS
 from ...model import TabulatedScene
@@ -187,7 +187,7 @@ def _times_at(load: AbstractPull, support: AbstractSupport, states, rho, early, 
     return (find_root(lambda t: rising * (load(t) - wanted), early, late),)
 
 
-@Program
+@Interpreted
 def _state_under(
     load: AbstractPull,
     support: AbstractSupport,
