@@ -55,46 +55,68 @@ jax.config.update("jax_enable_x64", True)
 # of the suite.)
 gc.set_threshold(20_000, 20, 50)
 
-# Files that take longest, first: the last one under way then leaves no worker idle.
+# Folders that take longest, first: the last one under way then leaves no worker idle.
 _LONGEST = (
-    "design/surface/test_fit",
+    "model",
+    "sweeps",
+    "tables",
+    "certificate",
+    "wiggly/sequential",
+    "design/surface",
     "test_examples",
-    "wiggly/sums/test_sums_strip_excess",
-    "explain/test_explanation",
-    "effects/test_rigid_array",
-    "wiggly/sums/test_sums_of_sampled_slides",
-    "sweeps/test_sweep_cells",
-    "model/test_tabulated",
-    "design/bristle/test_angle",
-    "called_for/test_left_out",
-    "hard/test_flat_folds",
-    "model/test_potentials",
+    "stochastic",
+    "cost",
+    "principle",
+    "hard",
+    "explain",
+    "wiggly",
+    "design/slide",
+    "effects",
+    "numerics",
+    "wiggly/sums",
+    "loads",
+    "design/bristle",
+    "design/trace",
+    "report",
+    "_compile",
+    "profiles",
+    "_checks",
+    "studies",
     "test_cli",
-    "sweeps/test_scene_family",
-    "model/test_admissibility",
-    "sweeps/test_sweep_cells_with_turning",
-    "tables/test_profiles",
-    "wiggly/sequential/test_sequential_gradients",
-    "contact/test_readings",
-    "stochastic/test_path_loop",
-    "studies/test_convergence_study_with_turning",
-    "rate_dependence/test_curves",
-    "design/trace/test_fit",
-    "cost/test_prediction",
-    "model/test_friction_coefficients",
-    "effects/test_compliant_array",
-    "effects/test_leading_order",
-    "design/surface/test_result",
-    "wiggly/slip_map/test_well_pull",
-    "limit/test_play",
-    "wiggly/test_guarantees",
+    "wiggly/slip_map",
+    "contact",
+    "crawling",
+    "called_for",
+    "plot",
+    "limit",
+    "design/common",
+    "rods",
+    "wiggly/inertial",
+    "explore",
 )
 _HERE = Path(__file__).parent
 
 
+def _folder(nodeid):
+    """The folder of a test below `tests`; the file, of those in none."""
+    file = nodeid.partition("::")[0].removeprefix("tests/").removesuffix(".py")
+    return file.rpartition("/")[0] or file
+
+
+def pytest_xdist_make_scheduler(config, log):
+    """A worker takes a folder at a time: files of one share what they compile."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class LoadFolderScheduling(LoadScopeScheduling):
+        def _split_scope(self, nodeid):
+            return _folder(nodeid)
+
+    return LoadFolderScheduling(config, log)
+
+
 def pytest_collection_modifyitems(items):
     def turn(item):
-        name = str(item.path.relative_to(_HERE).with_suffix(""))
+        name = _folder(item.nodeid)
         return _LONGEST.index(name) if name in _LONGEST else len(_LONGEST)
 
     items.sort(key=turn)  # stable: the order inside files stays

@@ -93,6 +93,7 @@ def test_the_scene_written_gives_the_same_study(study):
     assert data.z_limit.values == pytest.approx(fx.solve_limit(again, data.time.values).z)
 
 
+@pytest.mark.slow  # loops of tips with mass: 16 s
 def test_a_study_has_the_effects_of_its_scene(tmp_path):
     parts = fx.supports.Spring(1.0), fx.loads.Ramp(1.0), 0.5
     effects = (fx.effects.Inertia(1.0, 3.0),)
@@ -330,6 +331,7 @@ def test_the_package_runs_as_a_module():
     assert "eps = 'none'" in done.stderr
 
 
+@pytest.mark.slow  # compiles in a process of its own: 16 s
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_is_quiet(tmp_path):
     """Sent when the bar shows that the sweep is under way, in compiled code."""

@@ -29,6 +29,7 @@ SHOWN = {"table", "plot", "to_dataset"}
 # Fits, and what takes some 10 CPU s and more with nothing compiled.
 DEAR = {
     "fx.check_design",
+    "fx.crawler",
     "fx.effects.RigidArray",
     "fx.explore",
     "fx.fit_angle",
@@ -43,6 +44,7 @@ DEAR = {
     "fx.plot.draw_order_cost",
     "fx.plot.draw_profile_fit",
     "fx.plot.draw_slide_fit",
+    "fx.plot.draw_steady_slide",
     "fx.plot.draw_slide_profile_fit",
     "fx.plot.draw_trace_fit",
     "fx.plot.draw_work_precision",

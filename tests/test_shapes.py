@@ -21,6 +21,7 @@ FILES = ("test_shapes.py", "limit/test_play.py")
 NEEDED = "not derivative and not balance and not minimisation"  # no other shapes in those
 
 
+@pytest.mark.slow  # in a process that checks every call: 18 s
 def test_shapes_are_those_annotated():
     """In a process of its own: the library of this one is imported as it is."""
     if os.environ.get("SHAPES_CHECKED"):

@@ -25,7 +25,7 @@ def _end(eps=_EPS, gamma=_GAMMA, ts=_TIMES, accuracy=1e-3):
         pytest.param("gamma", 1.0, marks=pytest.mark.slow),
         pytest.param("accuracy", 1e-3, marks=pytest.mark.slow),
         pytest.param("ts", _TIMES, marks=pytest.mark.slow),
-        (None, 1.0),
+        pytest.param(None, 1.0, marks=pytest.mark.slow),
     ],
 )
 def test_solve_where_some_arguments_are_traced(name, value):

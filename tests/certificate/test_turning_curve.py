@@ -143,6 +143,7 @@ def test_the_balance_of_energies_closes_with_what_jumps_lose(name):
     assert slower.residual > 100 * found.residual
 
 
+@pytest.mark.slow  # a program of its own
 def test_curves_by_scipy_are_accepted():
     found = by_scipy_certified()
     assert found.ok, found
@@ -185,6 +186,7 @@ def test_a_turn_later_by_a_hundredth_of_the_load_is_rejected(name, monkeypatch):
     assert certified(name, *late).status.name == "TURN"
 
 
+@pytest.mark.slow  # the same program
 def test_a_turn_later_by_a_hundredth_is_rejected_of_scipy_too():
     assert by_scipy_certified(1.01).status.name == "TURN"
 

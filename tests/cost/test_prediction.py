@@ -67,7 +67,14 @@ def test_the_work_is_foreseen(eps, gamma, accuracy, method):
     assert 0.5 < ratio < 2, ratio  # 0.57 to 1.4
 
 
-@pytest.mark.parametrize(("gamma", "eps"), [(0.5, 1e-4), (1.0, 1e-6), (2.0, 1e-7)])
+@pytest.mark.parametrize(
+    ("gamma", "eps"),
+    [
+        pytest.param(0.5, 1e-4, marks=pytest.mark.slow),
+        pytest.param(1.0, 1e-6, marks=pytest.mark.slow),
+        (2.0, 1e-7),
+    ],
+)
 def test_the_work_on_straight_flanks_is_foreseen(gamma, eps):
     """Eleven times too much and ten times too little was said."""
     cell = np.array([eps]), np.array([gamma])

@@ -57,6 +57,7 @@ def test_an_array_is_the_mean_of_its_bristles():
     np.testing.assert_allclose(array.stats["spread"], spread, rtol=1e-12, atol=1e-17)
 
 
+@pytest.mark.slow  # a batch of its own
 def test_more_bristles_than_are_integrated_at_once(monkeypatch):
     offsets = np.linspace(0, 0.9, 10)
     whole = fx.solve(array_of(*offsets), 1e-2, ts=TS)

@@ -54,6 +54,7 @@ def test_phases_spread_evenly_leave_the_harmonics_that_they_divide():
     assert minus == pytest.approx(-plus, rel=1e-12)
 
 
+@pytest.mark.slow  # a program of its own
 def test_random_phases_add_up_like_a_random_walk():
     count, turns = 400, np.random.default_rng(7)
     bristle = fx.bristles.Homothetic(1.0)

@@ -50,6 +50,7 @@ def test_noise_costs_what_is_told_within_a_factor_of_three(eps):
     assert 1 / 3 < told(warm, "Noise", eps) / seen(warm, eps, key=0) < 3
 
 
+@pytest.mark.slow  # measured: 4 s
 def test_smaller_eps_cost_more_with_noise_and_as_much_with_mass():
     """Steps of a path go like eps^-2, those of slips like their number."""
     noise = [told(scene_of("noise"), "Noise", eps) for eps in (0.02, 0.005, 1e-7)]

@@ -75,7 +75,7 @@ def test_what_the_higher_order_does_to_states_is_less_than_told(bristle):
     assert seen <= float(row_of("higher order", whole, eps).in_z)
 
 
-@pytest.mark.parametrize("gamma", [0.5, 1.0])
+@pytest.mark.parametrize("gamma", [pytest.param(0.5, marks=pytest.mark.slow), 1.0])
 @pytest.mark.parametrize("bristle", FEW)
 def test_what_finite_speed_does_is_what_is_seen(bristle, gamma):
     scene, eps = scene_of(bristle), 1e-2
@@ -123,6 +123,7 @@ def test_the_equation_holds_every_effect():
     assert "CompliantArray" in printed
 
 
+@pytest.mark.slow  # loops of tips with mass of their own
 @pytest.mark.parametrize("beta", [0.01, 0.1, 2.0, 10.0])
 def test_what_a_mass_does_to_states_is_less_than_told(beta):
     eps = 1e-2

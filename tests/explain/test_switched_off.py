@@ -21,6 +21,7 @@ def row_of(scene, gamma=GAMMA, eps=EPS):
     return float(row.in_z), str(row.source.values)
 
 
+@pytest.mark.slow  # every slip of two scenes
 def test_where_the_load_turns_on_a_fold_what_is_told_is_measured_and_a_bound():
     """A tip without it slips late, by three times what the closed form tells."""
     times = times_about(SPRING, EPS)

@@ -11,7 +11,9 @@ CELLS = [
     pytest.param("sawtooth", 0.75, 1e-5, 1e6, marks=pytest.mark.slow),
     pytest.param("sawtooth", 0.5, 1e-8, 5e6, marks=pytest.mark.slow),
     # A slide that is slow at first: its slips are slower than those of the path.
-    ("sawtooth", 0.5, 1e-7, 8.2e5),  # 7.6e5; 8.3e5 where a second look begins again
+    pytest.param(
+        "sawtooth", 0.5, 1e-7, 8.2e5, marks=pytest.mark.slow
+    ),  # 7.6e5; 8.3e5 where a second look begins again
     # Slides to the left remember 1 well, those to the right 127.
     ("sawtooth", 0.75, 1e-8, 1.3e6),  # 1.0e6; 2.6e6 and 7 s with the memory of both
     ("sawtooth", 0.5, 1e-5, 3e5),  # 2.4e5

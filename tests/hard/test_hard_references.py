@@ -20,7 +20,7 @@ def gap(one, first, second) -> float:
     return float(np.abs(first.z - second.z)[outside].max() / one.eps)
 
 
-@pytest.mark.parametrize("gamma", [1.0, 2.0])
+@pytest.mark.parametrize("gamma", [1.0, pytest.param(2.0, marks=pytest.mark.slow)])
 def test_cutting_periods_out_changes_nothing(gamma):
     load = (0.0, 3.5037, 3.5037, -3.4123, -3.4123, 0.4, 0.4)
     one = entry_of(Spring("", gamma=gamma, values=load, pace=4.0))

@@ -78,6 +78,7 @@ def test_slope_of_K_is_the_share_below_minus_the_share_above():
         assert float(slope(xi)) == pytest.approx(expected, abs=1e-6)
 
 
+@pytest.mark.slow  # a program for each
 def test_a_batch_equals_its_lanes():
     alphas = jnp.asarray([0.5, 1.0, -2.0])
 

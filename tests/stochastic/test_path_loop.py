@@ -98,6 +98,7 @@ def test_free_tips_diffuse_as_lifson_and_jackson_say(ratio):
     )
 
 
+@pytest.mark.slow  # 160,000 paths twice
 def test_work_obeys_jarzynskis_equality(monkeypatch):
     """Dragged by a period, irreversibly: the mean work is above. So does a bath that is
     2% too warm, which is seen."""

@@ -15,6 +15,7 @@ def study_of(beta, exponent):
     return fx.study(fx.sweep(massive_scene(mass, exponent), EPS, [1.0], [0.0, 3.0]))
 
 
+@pytest.mark.slow  # 5 s
 def test_a_mass_that_falls_faster_is_overdamped_in_the_limit():
     found = study_of(0.05, 4.0).orders.sel(gamma=1.0)
     assert float(found.inertia_order) == pytest.approx(1.0)

@@ -34,6 +34,7 @@ def test_beta_is_that_of_each_cell(data):
         np.testing.assert_allclose(data.beta.sel(gamma=gamma), expected, rtol=1e-5)
 
 
+@pytest.mark.slow  # 20,001 times: a loop of its own
 def test_suprema_are_those_of_a_fine_curve(data):
     eps = float(EPS[2])
     scene = massive_scene(mass_for(0.05, 1.0, 0.0), 3.0)

@@ -341,6 +341,7 @@ def test_sensitivities_have_derivatives_where_they_are_traced():
     assert float(jax.jit(jax.grad(slope))(-0.003)) == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.slow  # a program of its own
 def test_a_batch_of_bristles():
     """`vmap` over bristles, and derivatives inside of it, as one after the other."""
 
@@ -358,6 +359,7 @@ def test_a_batch_of_bristles():
     np.testing.assert_allclose(slopes, differences, rtol=1e-7)
 
 
+@pytest.mark.slow  # programs of its own
 def test_a_bristle_of_ones_own():
     class Leaning(fx.bristles.AbstractBristle):
         lean: float

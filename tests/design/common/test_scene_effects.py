@@ -158,7 +158,7 @@ def test_slides_of_a_map_are_those_of_the_leading_order():
 @pytest.mark.parametrize(
     "effects",
     [
-        pytest.param((TWO, THREE), id="alike"),
+        pytest.param((TWO, THREE), id="alike", marks=pytest.mark.slow),
         pytest.param((APART, THREE), id="apart", marks=pytest.mark.slow),
     ],
 )

@@ -32,6 +32,7 @@ def mean_forces_by_scipy(eps, gamma, rate, sign, periods=8):
     return np.mean(sign * rate * ts - found.y, axis=0)
 
 
+@pytest.mark.slow  # a program of its own
 def test_the_force_of_an_array_is_that_of_bristles_integrated_in_time():
     eps, gamma, rate = 0.05, 1.0, 0.5
     one = fx.steady_slide(SINE, VERTICAL, eps, gamma, rate)

@@ -298,6 +298,7 @@ def test_compromises_of_other_bristles_are_stationary():
         assert chi2(plus * factors[0], minus * factors[1]) > fit.chi2
 
 
+@pytest.mark.slow  # fits to two targets, a program of their own
 @pytest.mark.parametrize(("gap", "success"), [(0.01, True), (0.2, False)])
 def test_uncertainties_decide_what_contradicts(gap, success):
     targets = [
@@ -345,6 +346,7 @@ def test_a_closed_form_is_taken_and_told():
     assert np.max(np.abs(fit.profile.sin - other.profile.sin)) < 1e-3
 
 
+@pytest.mark.slow  # a program of its own
 def test_one_proven_start_stands_for_all_and_no_other_does():
     """Where targets contradict each other every start has its own descent."""
     flattened = fx.fit_profile(fx.Target(HOMOTHETIC, 0.3, -0.1), starts=3)

@@ -70,6 +70,7 @@ def test_no_angle_nearby_bends_less(freed):
     assert abs(freed.bending_energy / energies[1] - 1) < 1e-3
 
 
+@pytest.mark.slow  # fits with two numbers free, a program of their own
 def test_sensitivities_are_the_derivatives_of_the_coefficients(freed):
     """Against central differences of `friction` itself, parameters included."""
     # Not at the optimum, which is symmetric: there half the derivatives are 0.
@@ -152,6 +153,7 @@ def test_open_directions_change_no_coefficient(fit):
     assert np.all(np.diff(energies) > 0)
 
 
+@pytest.mark.slow  # a program of its own
 def test_the_family_has_the_same_coefficients_and_bends_more(fit):
     family = fit.family(MEMBERS, size=1.0)
     assert len(family) == MEMBERS

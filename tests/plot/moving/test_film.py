@@ -81,6 +81,7 @@ def test_a_rod_that_turns_over_has_its_own_levels():
     assert bent >= 2
 
 
+@pytest.mark.slow  # rods that turn over, at an eps
 def test_at_finite_eps_the_tip_is_close_up_and_all_of_it_is_in_view(tmp_path):
     scene, eps = turning_scene(duration=3.0), 0.08
     found = fx.solve(scene, eps, 1.0, np.linspace(0, 3, 301))

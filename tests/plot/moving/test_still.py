@@ -65,6 +65,7 @@ def turned():
     return scene, fx.solve(scene, EPS, 1.0, np.linspace(0, 3, 301))
 
 
+@pytest.mark.slow  # rods that turn over, at an eps
 def test_a_rod_is_as_long_as_it_is_however_it_is_bent(turned):
     scene, found = turned
     data = fx.mechanics(scene, found, EPS)

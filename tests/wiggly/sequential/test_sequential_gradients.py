@@ -43,6 +43,7 @@ def jacobian():
     return jax.jit(jax.jacrev(states))(POINT)
 
 
+@pytest.mark.slow  # two programs: 24 s; the same of `solve`: ../test_differentiable.py
 @pytest.mark.parametrize("i", range(len(NAMES)), ids=NAMES)
 def test_reverse_mode_agrees_with_central_differences(jacobian, i):
     """About 15 slips, through Rosenbrock steps and the energy balance.

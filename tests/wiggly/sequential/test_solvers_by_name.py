@@ -48,6 +48,7 @@ def test_any_solver_by_name_class_or_instance(scene, truth, method):
     assert np.abs(np.asarray(found.z) - truth).max() < 1e-3 * EPS
 
 
+@pytest.mark.slow  # a program of diffrax: 11 s
 def test_values_say_how_they_were_obtained(scene):
     found = fx.solve(scene, EPS, 1.0, TIMES, method="Kvaerno5")
     assert "Kvaerno5" in found.stats["values"]

@@ -50,6 +50,7 @@ def point():
     return stepper, start_of(stepper), jnp.asarray(0.03)
 
 
+@pytest.mark.slow  # a program of its own; that of all steps: ../test_differentiable.py
 def test_values_are_those_of_the_steps(point):
     stepper, _, stop = point
     value, fits, _ = energies(*point)
@@ -82,6 +83,7 @@ def test_derivatives_are_those_of_the_steps_made_once_more(point):
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-11)
 
 
+@pytest.mark.slow  # a program of its own
 def test_derivatives_by_the_start_are_finite_differences(point):
     stepper, start, stop = point
 
@@ -95,6 +97,7 @@ def test_derivatives_by_the_start_are_finite_differences(point):
     assert slope == pytest.approx(difference, rel=5e-3)
 
 
+@pytest.mark.slow  # a program of its own
 def test_no_way_has_the_derivative_one(point):
     stepper, start, _ = point
     by_start = energies(stepper, start, jnp.asarray(0.0))[2][1]

@@ -59,6 +59,7 @@ def test_guard_keeps_the_well_where_tolerance_does_not(scene):
     assert kept == 0
 
 
+@pytest.mark.slow  # a program of its own
 def test_no_accepted_step_is_longer_than_the_reach(scene):
     """Seen from outside: a watch that measures the longest move between accepted steps."""
     from frictionjax.wiggly.sequential.augmented_solver import AbstractObserver

@@ -86,6 +86,7 @@ def test_passages_are_those_of_a_plain_integration(name, sign):
     assert abs(kept - (1 + (later - plain) / shift)) < 1e-3 * (1 - kept)
 
 
+@pytest.mark.slow  # 300 wells one by one
 def test_curves_obey_the_recursion():
     """Well after well by the passage map against the panels."""
     scene, eps, gamma = SCENES["sine"], 1e-4, 0.5

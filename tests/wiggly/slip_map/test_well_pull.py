@@ -32,7 +32,10 @@ def plain_passage(potential, folds, beyond):
     return total
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=[pytest.mark.slow] if n == "sawtooth" else []) for n in EVERY],
+)
 def test_passages_are_resolved_under_every_pull(name):
     potential, one = EVERY[name].potential, np.ones(1)
     folds = jax.jit(landscape)(potential, jnp.asarray(EPS)).folds

@@ -63,6 +63,7 @@ def test_what_is_dissipated_behind_kinks_within_a_well(method, knots):
         assert np.abs(np.asarray(found.z) - expected.z).max() < accuracy * EPS
 
 
+@pytest.mark.slow  # 2,032 times at three accuracies
 def test_suprema_of_dissipation_between_the_ends_of_steps():
     """At the top slips end while the limit goes on: up to 74 times the accuracy off."""
     times = [0, 1.42761373, 2.41087293, 2.44947433, 2.46242806, 2.47389526, 2.48540751]

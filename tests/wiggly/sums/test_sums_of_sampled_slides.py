@@ -326,6 +326,7 @@ def soft(z):
     return 0.5 * z**2 - 0.95 * 0.002**2 * (u + jnp.log1p(jnp.exp(-2 * u)))
 
 
+@pytest.mark.slow  # a support of its own
 def test_a_soft_spot_of_the_support_is_a_fast_stretch():
     path = path_of(scene_under(fx.loads.Ramp(1.0, 0.0), fx.supports.Convex(soft)))
     assert path.speed == pytest.approx(20.0, rel=1e-6)
