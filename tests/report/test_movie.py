@@ -8,6 +8,7 @@ import frictionjax as fx
 from frictionjax.report import movie
 
 
+@pytest.mark.slow  # rods that turn over, at an eps
 def test_a_movie_of_a_rod_that_turns_over(tmp_path, monkeypatch):
     monkeypatch.setattr(movie, "_FRAMES", 3)
     monkeypatch.setattr(movie, "_TIMES", 301)

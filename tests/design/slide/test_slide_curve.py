@@ -49,6 +49,7 @@ def test_the_force_of_an_array_is_that_of_bristles_integrated_in_time():
         assert sign * float(peak) < sign * float(own) - 1e-3
 
 
+@pytest.mark.slow  # slides of arrays: a program of their own
 def test_phases_decide_ripples_alone():
     """Of equal ones those of one; of even ones a share of it; of random ones less and
     less."""
