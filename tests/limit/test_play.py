@@ -229,3 +229,12 @@ def test_a_limit_as_a_data_set_has_units_and_says_how_it_ended():
     several = jax.vmap(lambda z0: fx.solve_limit(scene(LOOPS, z0=z0), ts))
     with pytest.raises(ValueError, match="solution = 'a batch': needs one trajectory"):
         several(jnp.array([0.0, 0.05])).to_dataset()
+
+
+def test_a_strip_that_is_not_known_leaves_nothing_known_after_it():
+    """Python's `min` and `max` step over NaN."""
+    lower, upper = np.array([0.0, 0.2, np.nan, 0.0]), np.array([1.0, 1.0, 1.0, 1.0])
+    np.testing.assert_array_equal(
+        play_operator(lower, upper, -1.0), [0.0, 0.2, np.nan, np.nan]
+    )
+    np.testing.assert_array_equal(play_operator(-upper, -lower, 2.0)[2:], [np.nan] * 2)
