@@ -9,9 +9,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .._checks import Real, require
-from .._compile import Interpreted, in_chunks, once_a_scene
+from .._compile import in_chunks, once_a_scene
 from ..numerics import slope_of
-from .potentials import GivenPotential, no_rest
+from .potentials import GivenPotential
 from .settings import SETTINGS
 
 # Fourth differences of noise are sqrt(70) times as large; of smooth functions next to none.
@@ -38,8 +38,7 @@ class Noises(NamedTuple):
 
 def noises(potential: GivenPotential, eps: np.ndarray) -> Noises:
     """Values of W and Q looked at, at every eps (n,)."""
-    looked_at = _of_w if potential.Q_fn is no_rest else _of_both
-    found = in_chunks(looked_at, SETTINGS.noises, (potential, _phases()), (eps,))
+    found = in_chunks(_noises, SETTINGS.noises, (potential,), (eps,))
     return Noises._make(found)
 
 
@@ -70,33 +69,26 @@ def require_digits(found: Noises, eps: np.ndarray) -> None:
         require(False, name, worst, f"at most {SETTINGS.most_of_q:g}, {needs}")
 
 
-def _noises(potential: GivenPotential, phases: Float[Array, " p"], eps: Float[Array, " n"]):
-    """The fields of `Noises`, in their order.
-
-    `phases`: evenly over a period; an argument, as what depends on none is evaluated while
-    it is traced, a program for each step.
-    """
-    values = jnp.ptp(jax.vmap(potential._leading)(phases))
-    force = jnp.ptp(jax.vmap(slope_of(potential._leading))(phases))
-    w = _of_values(potential._leading, phases) / values
-    slopes = _of_slopes(potential._leading, phases) / force
+@once_a_scene
+def _noises(potential: GivenPotential, eps: Float[Array, " n"]):
+    """The fields of `Noises`, in their order."""
+    values = jnp.ptp(jax.vmap(potential._leading)(_phases()))
+    force = jnp.ptp(jax.vmap(slope_of(potential._leading))(_phases()))
+    w = _of_values(potential._leading) / values
+    slopes = _of_slopes(potential._leading) / force
 
     def at(size: Real) -> tuple[Array, ...]:
         def rest(phase: Real) -> Real:
             return potential._rest(size, phase)
 
         # With its slope: of what is lost whole nothing but 0 is left, and a slope.
-        both = jax.vmap(jax.value_and_grad(rest))(phases)
+        both = jax.vmap(jax.value_and_grad(rest))(_phases())
         largest = jnp.max(jnp.abs(jnp.stack(both)))
-        lost = _of_values(rest, phases) / jnp.where(largest > 0, largest, 1.0)
-        change = size * _of_slopes(rest, phases) / force
+        lost = _of_values(rest) / jnp.where(largest > 0, largest, 1.0)
+        change = size * _of_slopes(rest) / force
         return w, slopes, lost, change, largest, force, _at_seam(rest)
 
     return jax.lax.map(at, eps)
-
-
-# Q is asked for at every eps, 45 ms by NumPy; what has one is compiled for anyway.
-_of_w, _of_both = Interpreted(_noises), once_a_scene(_noises)
 
 
 def _at_seam(rest: Callable[[Real], Real]) -> Float[Array, " 2"]:
@@ -108,21 +100,21 @@ def _at_seam(rest: Callable[[Real], Real]) -> Float[Array, " 2"]:
     return jnp.abs(2 * both[1] - both[2] - both[0])
 
 
-def _phases() -> Float[np.ndarray, " p"]:
-    return (np.arange(SETTINGS.places) + 0.381966) / SETTINGS.places
+def _phases() -> Float[Array, " n"]:
+    return (jnp.arange(SETTINGS.places) + 0.381966) / SETTINGS.places
 
 
-def _of_values(fn: Callable[[Real], Real], phases: Float[Array, " p"]) -> Real:
+def _of_values(fn: Callable[[Real], Real]) -> Real:
     """What changes between neighbouring places and slopes do not explain."""
-    ends = jax.vmap(fn)(jnp.append(phases, phases[0] + 1))
-    inside = phases[:, None] + (1 + _NODES) / (2 * SETTINGS.places)
+    ends = jax.vmap(fn)(jnp.append(_phases(), _phases()[0] + 1))
+    inside = _phases()[:, None] + (1 + _NODES) / (2 * SETTINGS.places)
     slopes = jax.vmap(jax.vmap(slope_of(fn)))(inside) @ _SHARES / (2 * SETTINGS.places)
     return _worst_median(jnp.diff(ends) - slopes) / np.sqrt(2.0)
 
 
-def _of_slopes(fn: Callable[[Real], Real], phases: Float[Array, " p"]) -> Real:
+def _of_slopes(fn: Callable[[Real], Real]) -> Real:
     """Noise of a slope, from phases that are almost the same."""
-    beside = phases[:, None] + SETTINGS.neighbours * jnp.arange(-2, 3)
+    beside = _phases()[:, None] + SETTINGS.neighbours * jnp.arange(-2, 3)
     slopes = jax.vmap(jax.vmap(slope_of(fn)))(beside)
     return _worst_median(slopes @ _WEIGHTS)
 

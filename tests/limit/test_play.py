@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.limit import play_operator
 
 SURFACE = fx.profiles.Fourier(cos=[0.0, 0.01], sin=[0.03, 0.0])
 BRISTLE = fx.bristles.VerticalSpring(2.0, 1.5, 1.0)
