@@ -6,7 +6,6 @@ import os
 import shutil
 import sys
 import tempfile
-from pathlib import Path
 
 # Workers share what they compile: a tenth of the time.
 if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
@@ -94,7 +93,6 @@ _LONGEST = (
     "wiggly/inertial",
     "explore",
 )
-_HERE = Path(__file__).parent
 
 
 def _folder(nodeid):

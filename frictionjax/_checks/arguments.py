@@ -185,7 +185,10 @@ def is_known(*trees: Any) -> bool:
 
 
 def _captured(fn: Any) -> list[Any]:
-    """What a function holds from where it was written: `lambda y: slope * sin(y)`."""
+    """What a function holds beside its arguments: `lambda y: slope * sin(y)`.
+
+    From where it was written, from when it was made, and on a method's object.
+    """
     inner = inspect.unwrap(fn)
     cells = getattr(inner, "__closure__", None) or ()
     held = [cell.cell_contents for cell in cells if cell != _EMPTY]

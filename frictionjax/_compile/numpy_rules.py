@@ -21,8 +21,8 @@ def _select(params: dict, which: Any, *cases: Any) -> Any:
 
 
 def _converted(params: dict, x: Any) -> Any:
-    whole = np.issubdtype(params["new_dtype"], np.complexfloating)
-    return x.real if x.dtype.kind == "c" and not whole else x
+    stays = np.issubdtype(params["new_dtype"], np.complexfloating)
+    return x.real if x.dtype.kind == "c" and not stays else x
 
 
 def _rounded(params: dict, x: Any) -> Any:
@@ -83,7 +83,6 @@ _TERMWISE: dict[str, Callable] = {name: getattr(np, name) for name in _ALIKE} | 
     "ge": np.greater_equal,
     "is_finite": np.isfinite,
     "copy": lambda x: x,
-    "copy_p": lambda x: x,
     "stop_gradient": lambda x: x,
     "rem": np.fmod,
     "clamp": lambda low, x, high: np.minimum(np.maximum(x, low), high),
@@ -98,7 +97,6 @@ RULES: dict[str, Rule] = {name: _termwise(fn) for name, fn in _TERMWISE.items()}
     "broadcast_in_dim": _broadcast,
     "reshape": lambda params, x, *sizes: x.reshape(params["new_sizes"]),
     "squeeze": lambda params, x: np.squeeze(x, axis=tuple(params["dimensions"])),
-    "expand_dims": lambda params, x: np.expand_dims(x, tuple(params["dimensions"])),
     "transpose": lambda params, x: np.transpose(x, params["permutation"]),
     "concatenate": lambda params, *x: np.concatenate(x, axis=params["dimension"]),
     "stack": lambda params, *x: np.stack(x, axis=params["axis"]),
