@@ -30,6 +30,7 @@ class Room(NamedTuple):
 
 
 _ROOM = Room(*SETTINGS.room)
+_WIDTHS = SETTINGS.narrow, SETTINGS.width
 
 
 def room_for(needed: Room) -> Room:
@@ -66,7 +67,7 @@ class _Loops:
 
     def run(self, program: tuple, needed: Room, fill: Callable[[Room], Tables]) -> Array:
         """Run the loop on tables of a room that `fill` makes."""
-        kind = _kind(program)
+        kind = _kind(program[:2]), program[2:]
         with self._lock:
             rooms = self._known.setdefault(kind, {})
             fitting = [room for room in rooms if room.holds(needed)]
@@ -80,27 +81,45 @@ class _Loops:
                 self._done.add((kind, room))
             return found
 
-    def width_for(self, program: tuple, needed: Room, wells: float) -> int:
-        """Which of the two loops takes few jobs; `program` without its width."""
-        narrow, wide = _kind((*program, SETTINGS.narrow)), _kind((*program, SETTINGS.width))
+    def choose(self, fixed: tuple, needed: Room, times: dict[tuple, float]) -> tuple:
+        """Which of the loops that take `times` for a queue runs it: the fastest, or one
+        that is there until waiting for the fastest would have paid."""
+        best = min(times, key=lambda own: times[own])
+        kind = _kind(fixed)
         with self._lock:
-            there = any(k == narrow and room.holds(needed) for k, room in self._done)
-            # Done or under way: a study had two loops compiled, one for 0.6 ms of lanes.
-            coming = any(room.holds(needed) for room in self._known.get(wide, ()))
-            if there or not coming or wells > SETTINGS.at_once:
-                return SETTINGS.narrow
-            waiting = narrow, room_for(needed)
+            there = [own for own in times if self._holds((kind, own), needed)]
+            # A study had two loops compiled, one for 0.6 ms of lanes.
+            there = there or [own for own in times if self._is_coming((kind, own), needed)]
+            if best in there or not there:
+                return best
+            serving = min(there, key=lambda own: times[own])
+            lost = times[serving] - times[best]
+            if lost > SETTINGS.at_once:
+                return best
+            waiting = kind, best, room_for(needed)
             before = self._waited.get(waiting, 0.0)
-            self._waited[waiting] = before + wells
-        if before <= SETTINGS.patience < before + wells:
-            self.load((*program, SETTINGS.narrow), needed)
-        return SETTINGS.width
+            self._waited[waiting] = before + lost
+        if before <= SETTINGS.patience < before + lost:
+            self.load((*fixed, *best), needed)
+        return serving
+
+    def is_done(self, fixed: tuple, own: tuple, needed: Room) -> bool:
+        """Whether a loop is compiled that has room for so many rows."""
+        kind = _kind(fixed), own
+        with self._lock:
+            return self._holds(kind, needed)
+
+    def _holds(self, kind: tuple, needed: Room) -> bool:
+        return any(k == kind and room.holds(needed) for k, room in self._done)
+
+    def _is_coming(self, kind: tuple, needed: Room) -> bool:
+        return any(room.holds(needed) for room in self._known.get(kind, ()))
 
     def load(self, program: tuple, needed: Room) -> None:
         """Compile the loop in the background, where none is there that does."""
-        kind = _kind(program)
+        kind = _kind(program[:2]), program[2:]
         with self._lock:
-            if any(k == kind and room.holds(needed) for k, room in self._done):
+            if self._holds(kind, needed):
                 return
             self._known.setdefault(kind, {}).setdefault(room_for(needed), threading.Lock())
 
@@ -113,9 +132,9 @@ def _nothing(room: Room) -> Tables:
     return Tables(*tables, waiting=np.asarray(0))
 
 
-def _kind(program: tuple) -> tuple:
-    """What a compiled loop depends on, numbers left out."""
-    leaves, structure = flattened(program)
+def _kind(fixed: tuple) -> tuple:
+    """What compiled loops of a scene and a tableau depend on, numbers left out."""
+    leaves, structure = flattened(fixed)
     shapes = (x.shape if isinstance(x, ARRAYS) else x for x in leaves)
     return structure, *shapes
 
@@ -123,12 +142,21 @@ def _kind(program: tuple) -> tuple:
 _LOOPS = _Loops()
 
 
+def _enough(summed: bool) -> list[tuple[bool, int]]:
+    """Loops, as `summed` and width, that find what is wanted: all to the same bits."""
+    return [(sums, width) for sums in {summed, True} for width in _WIDTHS]
+
+
 def prepare(
     scene: LaneScene, tableau: Tableau, needed: Room, summed: bool, narrow: bool = False
 ) -> None:
-    """Compile the loop that `march` will want, in the background; a guess may be wrong."""
-    width = SETTINGS.narrow if narrow else SETTINGS.width
-    _LOOPS.load((scene, tableau, summed, width), needed)
+    """Compile the loop that `march` will want, in the background; a guess may be wrong.
+
+    Not where one is there that serves meanwhile.
+    """
+    fixed, width = (scene, tableau), SETTINGS.narrow if narrow else SETTINGS.width
+    if not any(_LOOPS.is_done(fixed, own, needed) for own in _enough(summed)):
+        _LOOPS.load((*fixed, summed, width), needed)
 
 
 def march(
@@ -155,14 +183,14 @@ def march(
         rows = (_padded(t, size) for t, size in zip(tables, room, strict=True))
         return Tables(*rows, waiting=np.asarray(needed.jobs))
 
-    program = scene, tableau, summed
-    width, wells = SETTINGS.width, _wells(cells, jobs, legs)
-    of_jobs = wells if work is None else work
-    narrow, wide = loop_times(of_jobs.max(), of_jobs.sum())
-    if narrow < wide:
-        longest = max(wells.max(), wells.sum() / SETTINGS.narrow)
-        width = _LOOPS.width_for(program, needed, longest)
-    found = _LOOPS.run((*program, width), needed, fill)
+    of_jobs = _wells(cells, jobs, legs) if work is None else work
+    by_width = dict(zip(_WIDTHS, loop_times(of_jobs.max(), of_jobs.sum()), strict=True))
+    times = {
+        (sums, width): by_width[width] * (1.0 if sums == summed else SETTINGS.with_sums)
+        for sums, width in _enough(summed)
+    }
+    own = _LOOPS.choose((scene, tableau), needed, times)
+    found = _LOOPS.run((scene, tableau, *own), needed, fill)
     return SegmentEnds(*np.asarray(found)[: needed.legs].T)
 
 

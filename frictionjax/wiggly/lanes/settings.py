@@ -20,11 +20,12 @@ class Settings(NamedTuple):
     # (Two threads for 60 to 90 wells: each goes through a lane as long as the longest, in
     # twice the CPU time.)
     handed_over: float = 20.0
-    # Wells that few jobs go through in a wide loop that is there before the narrow one is
-    # compiled beside them: 0.1 ms lost with each, where that takes 0.4 s of a core to load,
-    # 2 s to compile.
-    patience: int = 500
-    at_once: int = 20_000  # wells: for more they wait for the narrow loop
+    with_sums: float = 1.5  # times as long as a step that adds up nothing
+    # What is lost in a loop that is there before the fastest is compiled beside it, and for
+    # how much more it is waited for: in wells of a lane of the wide loop, 0.13 ms each,
+    # where a loop takes 0.4 s of a core to load, 2 s to compile.
+    patience: float = 400.0
+    at_once: float = 16_000.0
     # Rows of the smallest tables: cells, jobs, legs, and how much larger the next are. Each
     # size costs 0.4 s to trace and load, 2 s to compile, an empty row next to nothing: so
     # few sizes.

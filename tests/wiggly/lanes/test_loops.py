@@ -1,5 +1,6 @@
 """Which loop jobs go through: the narrow one where few have a long way, or nothing else."""
 
+import threading
 import time
 import tomllib
 from pathlib import Path
@@ -11,49 +12,82 @@ import pytest
 import frictionjax as fx
 from frictionjax.model import tabulated_scene
 from frictionjax.wiggly.enclosure.marching import _blocks
+from frictionjax.wiggly.lanes import loops as module
 from frictionjax.wiggly.lanes.lane import LaneCells
 from frictionjax.wiggly.lanes.loops import (
+    LOADER,
     Room,
     _kind,
     _Loops,
     _wells,
     loop_times,
+    prepare,
 )
 from frictionjax.wiggly.lanes.queue import Lanes, Segments, Tables, run_queue
 from frictionjax.wiggly.lanes.settings import SETTINGS
 from frictionjax.wiggly.plan import lane_scene
 from frictionjax.wiggly.settings import SETTINGS as SWEEP_SETTINGS
 
-PROGRAM = np.ones(3), "scheme", True
+FIXED = np.ones(3), "scheme"
 FEW, LARGE = Room(1, 7, 14), Room(64, 2048, 4096)
+NARROW, WIDE = (True, SETTINGS.narrow), (True, SETTINGS.width)
+BARE = False, SETTINGS.narrow
 
 
-def loops(width, room=LARGE):
+def loops(own, room=LARGE):
     """Loops of which one is compiled."""
-    known, kind = _Loops(), _kind((*PROGRAM, width))
+    known, kind = _Loops(), (_kind(FIXED), own)
     known._known[kind] = {room: None}
     known._done.add((kind, room))
     return known
 
 
-def test_few_jobs_take_the_narrow_loop_where_none_is_there():
-    assert _Loops().width_for(PROGRAM, FEW, 1.0) == SETTINGS.narrow
-    assert loops(SETTINGS.narrow).width_for(PROGRAM, FEW, 1.0) == SETTINGS.narrow
-    assert (
-        loops(SETTINGS.width, Room(1, 2, 4)).width_for(PROGRAM, FEW, 1.0) == SETTINGS.narrow
-    )
+def test_the_fastest_loop_is_taken_where_none_is_there():
+    times = {NARROW: 1.0, WIDE: 4.0}
+    assert _Loops().choose(FIXED, FEW, times) == NARROW
+    assert loops(NARROW).choose(FIXED, FEW, times) == NARROW
+    assert loops(WIDE, Room(1, 2, 4)).choose(FIXED, FEW, times) == NARROW
 
 
-def test_few_jobs_take_a_wide_loop_that_is_there_until_it_costs_more(monkeypatch):
-    known, loaded = loops(SETTINGS.width), []
+@pytest.mark.parametrize(
+    ("there", "best"), [(WIDE, NARROW), (NARROW, WIDE), (NARROW, BARE)]
+)
+def test_a_loop_that_is_there_serves_until_it_costs_more(monkeypatch, there, best):
+    known, loaded = loops(there), []
     monkeypatch.setattr(known, "load", lambda program, room: loaded.append((program, room)))
+    times = {best: 100.0, there: 400.0}
     for asked in range(1, 6):
-        assert known.width_for(PROGRAM, FEW, 400.0) == SETTINGS.width  # nobody waits for it
+        assert known.choose(FIXED, FEW, times) == there  # nobody waits for it
         assert len(loaded) == (asked > 1)
-    assert loaded == [((*PROGRAM, SETTINGS.narrow), FEW)]
-    known._done.add((_kind((*PROGRAM, SETTINGS.narrow)), LARGE))
-    assert known.width_for(PROGRAM, FEW, 100.0) == SETTINGS.narrow
-    assert loops(SETTINGS.width).width_for(PROGRAM, FEW, 2e5) == SETTINGS.narrow
+    assert loaded == [((*FIXED, *best), FEW)]
+    assert loops(there).choose(FIXED, FEW, {best: 1e4, there: 1e5}) == best
+    known._done.add(((_kind(FIXED), best), LARGE))
+    assert known.choose(FIXED, FEW, times) == best
+
+
+def test_one_that_is_compiled_already_is_waited_for():
+    """Where no other is there that serves."""
+    known = _Loops()
+    known._known[_kind(FIXED), WIDE] = {LARGE: None}
+    assert known.choose(FIXED, FEW, {NARROW: 1.0, WIDE: 4.0}) == WIDE
+
+
+@pytest.mark.parametrize(
+    ("there", "summed", "begun"),
+    [
+        (None, False, [(False, SETTINGS.width)]),
+        (WIDE, False, []),
+        (NARROW, True, []),
+        (BARE, True, [WIDE]),
+        (BARE, False, []),
+    ],
+)
+def test_no_loop_is_prepared_where_one_serves(monkeypatch, there, summed, begun):
+    known, loaded = loops(there, Room(*SETTINGS.room)), []
+    monkeypatch.setattr(known, "load", lambda program, room: loaded.append(program))
+    monkeypatch.setattr(module, "_LOOPS", known)
+    prepare(*FIXED, FEW, summed)
+    assert loaded == [(*FIXED, *own) for own in begun]
 
 
 def test_wells_one_after_the_other_are_counted_in_each_cells_own_periods():
@@ -158,6 +192,9 @@ def test_twice_the_stops_take_twice_the_time():
         """CPU seconds for so many stops, the better of two."""
         tries = []
         for _ in range(2):
+            for thread in threading.enumerate():  # a loop may be compiled beside
+                if LOADER in thread.name:
+                    thread.join()
             before = time.process_time()
             fx.solve(scene, 1e-3, ts=np.linspace(0, 3, count), method="resolved")
             tries.append(time.process_time() - before)

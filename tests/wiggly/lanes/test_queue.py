@@ -6,7 +6,7 @@ import pytest
 import frictionjax as fx
 from frictionjax.numerics import rows_of
 from frictionjax.wiggly.enclosure import marching
-from frictionjax.wiggly.lanes import march
+from frictionjax.wiggly.lanes import loops, march
 from frictionjax.wiggly.lanes.settings import SETTINGS
 
 SCENE = fx.Scene(
@@ -82,3 +82,15 @@ def test_more_jobs_than_lanes_are_all_gone_through(marched):
     assert many.size > SETTINGS.width
     np.testing.assert_array_equal(part.tip, found.tip[rows])
     assert (part.code == 0).all()
+
+
+@pytest.mark.parametrize("width", [SETTINGS.narrow, SETTINGS.width])
+def test_a_loop_without_sums_goes_the_same_way_to_the_last_bit(monkeypatch, marched, width):
+    """So that whichever is there can serve."""
+    args, found = marched
+    monkeypatch.setattr(loops._LOOPS, "choose", lambda *_: (False, width))
+    part = march(*args)
+    for column in ("well", "tip", "speed", "steps", "rejected", "code"):
+        np.testing.assert_array_equal(getattr(part, column), getattr(found, column))
+    assert (part.work == 0).all()
+    assert (found.work != 0).any()
