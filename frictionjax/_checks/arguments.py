@@ -227,9 +227,10 @@ def require_flags(**flags: Any) -> None:
         require(isinstance(value, bool | np.bool_), name, value, "True or False")
 
 
-def require_function(name: str, fn: Any, what: str) -> None:
-    """Check that `fn` takes one number to one number."""
+def require_function(name: str, fn: Any, what: str, smooth: bool = True) -> None:
+    """Check that `fn` takes one number to one number, and has a derivative if `smooth`."""
     require(callable(fn), name, fn, what)
+    require(_can_be_hashed(fn), name, fn, f"{what}, with a hash: programs are kept by it")
     number, given = jax.ShapeDtypeStruct((), float), []
 
     def value(x: Real) -> Array:
@@ -249,6 +250,21 @@ def require_function(name: str, fn: Any, what: str) -> None:
     require(found.shape == (), name, f"values of shape {found.shape}", one)
     real = not jnp.issubdtype(found.dtype, jnp.complexfloating)
     require(real, name, f"values of dtype {found.dtype}", one)
+    if smooth:
+        with_point = jnp.issubdtype(found.dtype, jnp.floating)
+        require(with_point, name, f"values of dtype {found.dtype}", f"{one}, no whole one")
+        try:
+            jax.eval_shape(jax.grad(lambda x: jnp.asarray(fn(x))), number)
+        except (TypeError, ValueError):
+            require(False, name, fn, f"{what}, which jax.grad goes through")
+
+
+def _can_be_hashed(fn: Any) -> bool:
+    try:
+        hash(tuple(x for x in jax.tree_util.tree_leaves(fn) if not eqx.is_array_like(x)))
+    except TypeError:
+        return False
+    return True
 
 
 def require_x64(*trees: Any) -> None:

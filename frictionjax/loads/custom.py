@@ -84,7 +84,7 @@ class Custom(AbstractLoad):
         self.found = self.steepest = self.until = None
 
     def __check_init__(self):
-        require_function("load.fn", self.fn, "a function of t")
+        require_function("load.fn", self.fn, "a function of t", smooth=False)
         _require_slope(self.fn)
         if not is_known(self.listed):
             return

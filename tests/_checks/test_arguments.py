@@ -1,8 +1,10 @@
 """What every entry point refuses, by the argument's name, value and what is allowed."""
 
+import dataclasses
 import functools
 import re
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -20,6 +22,28 @@ def scene_of(support=None, load=None, z0=0.0, potential=None):
     if potential is not None:
         return fx.Scene(None, None, *parts, potential=potential)
     return fx.Scene(SURFACE, BRISTLE, *parts)
+
+
+@dataclasses.dataclass
+class Wave:
+    height: float
+
+    def __call__(self, x):
+        return self.height * jnp.sin(2 * jnp.pi * x)
+
+
+def in_a_loop(y):
+    """Which has no derivative in reverse mode."""
+    wave = 0.01 * jnp.sin(2 * jnp.pi * y)
+    return jax.lax.while_loop(lambda w: w > 1.0, lambda w: 0.5 * w, wave)
+
+
+def test_functions_that_are_modules_frozen_or_whole_are_none_of_these():
+    frozen = dataclasses.make_dataclass("Frozen", ["height"], frozen=True)
+    frozen.__call__ = Wave.__call__
+    assert fx.profiles.Custom(frozen(0.01))(0.25) == pytest.approx(0.01)
+    assert fx.loads.Custom(lambda t: 1)(0.5) == 1
+    assert fx.loads.Custom(functools.partial(jnp.multiply, 2.0))(0.5) == 1
 
 
 @functools.cache
@@ -51,6 +75,22 @@ def known():
         (
             lambda: fx.profiles.Custom(lambda y: 0.01 * np.sin(2 * np.pi * y)),
             r"profile\.fn = .*: needs .*, written with jax\.numpy",
+        ),
+        (
+            lambda: fx.profiles.Custom(Wave(0.01)),
+            r"profile\.fn = Wave\(height=0\.01\): needs .*, with a hash",
+        ),
+        (
+            lambda: fx.loads.Custom(Wave(1.0)),
+            r"load\.fn = Wave\(height=1\.0\): needs .*, with a hash",
+        ),
+        (
+            lambda: fx.supports.Convex(lambda z: 1),
+            r"support\.energy = 'values of dtype int64': needs .*, no whole one",
+        ),
+        (
+            lambda: fx.profiles.Custom(in_a_loop),
+            r"profile\.fn = .*: needs .*, which jax\.grad goes through",
         ),
         (
             lambda: fx.GivenPotential(lambda Y: jnp.sin(2 * jnp.pi * Y), lambda Y: Y),
