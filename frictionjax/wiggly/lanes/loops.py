@@ -90,7 +90,7 @@ class _Loops:
             there = [own for own in times if self._holds((kind, own), needed)]
             # A study had two loops compiled, one for 0.6 ms of lanes.
             there = there or [own for own in times if self._is_coming((kind, own), needed)]
-            if best in there or not there:
+            if not there:
                 return best
             serving = min(there, key=lambda own: times[own])
             lost = times[serving] - times[best]
