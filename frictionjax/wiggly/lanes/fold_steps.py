@@ -40,6 +40,19 @@ class Foothold(NamedTuple):
         moves = (self.point.velocity != 0) | (self.point.by_time != 0)
         return jnp.where(moves, self.step / SETTINGS.most_folds * self.point.by_state, 0.0)
 
+    def uneven(self, end: Point, way: Real, pace: Real, tolerance: Real) -> Real:
+        """How many times more than steps may a slow tip speeds up over its `way` (periods).
+
+        Held against the mean of the velocities at both ends: errors are estimated by a
+        difference, which may vanish where they do not. `pace`, `tolerance` as in `Control`.
+        """
+        before, after, mean = self.point.velocity, end.velocity, way / self.step
+        off = jnp.abs(0.5 * (before + after) * self.step - way)
+        speeds_up = (mean * before >= before**2) & (mean * after >= mean**2)
+        told = speeds_up & (jnp.abs(after) < pace)
+        told &= off < SETTINGS.sudden * jnp.abs(way)
+        return jnp.where(told, off / (SETTINGS.uneven * jnp.abs(way) + tolerance), 0.0)
+
     def resolves(self, end: Point) -> Bool[Array, ""]:
         """Whether the step shows a slip that it ends in, or leaves little of its energy.
 

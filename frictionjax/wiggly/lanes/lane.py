@@ -157,15 +157,17 @@ def _try_step(
     time = jnp.where(cut, task.stop, time)
     end = materialise(field.point(time, tip), task.cell.eps)
     error = jnp.where(waits, 0.0, place.beyond_rounding(jnp.abs(stages[-1]), end))
+    way, cell = tip - motion.tip, task.cell
+    uneven = place.uneven(end, way, cell.pace, cell.tolerance)
     judged = judge(
         tableau.order,
         task.cell.control,
         motion.control,
         step=step,
-        moved=jnp.abs(tip - motion.tip),
+        moved=jnp.abs(way),
         error=error,
         cut=cut,
-        overgrown=place.overgrown(),
+        overgrown=jnp.maximum(place.overgrown(), uneven),
         shifts=place.resolves(end),
     )
     unseen = jnp.where(cut, 0.0, unseen)
