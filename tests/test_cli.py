@@ -12,8 +12,10 @@ from command_line import error_line, run
 from html_pages import checked_page
 
 import frictionjax as fx
+from frictionjax.cli import command_group
 from frictionjax.cost.machine_cost import MachineCost
 from frictionjax.io.scene_files import default_study, scene_document
+from frictionjax.report import filled
 from frictionjax.wiggly.equation.status import warn_of_failed
 
 SMALL = ["--eps", "0.097:0.031:4", "--gamma", "1,2", "--no-progress"]
@@ -333,7 +335,8 @@ def test_the_package_runs_as_a_module():
 
 @pytest.mark.slow  # compiles in a process of its own: 16 s
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-def test_ctrl_c_is_quiet(tmp_path):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_is_quiet(tmp_path, number):
     """Sent when the bar shows that the sweep is under way, in compiled code."""
     # A shell that runs the tests in the background has them ignore SIGINT; undone here.
     code = (
@@ -350,12 +353,27 @@ def test_ctrl_c_is_quiet(tmp_path):
             letter = process.stderr.read(1)
             assert letter, seen  # ended before it began
             seen += letter
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         out, err = process.communicate(timeout=120)
-    assert process.returncode == 130
+    assert process.returncode == 128 + number
     assert out == b""
     assert b"Traceback" not in err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_sigterm_is_heard_while_a_command_runs(tmp_path):
+    def work():
+        with command_group._heard(), filled(tmp_path / "out") as place:
+            (place / "one").write_text("half")
+            signal.raise_signal(signal.SIGTERM)
+
+    before = signal.getsignal(signal.SIGTERM)
+    with pytest.raises(command_group.Left) as left:
+        work()
+    assert left.value.status == 143
+    assert not list(tmp_path.iterdir())
+    assert signal.getsignal(signal.SIGTERM) == before
 
 
 @pytest.mark.slow

@@ -2,21 +2,46 @@
 
 import os
 import shlex
+import signal
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import click
 
 
 class Left(click.Abort):
-    """Ctrl-C while compiled code runs, which cannot be stopped, only left."""
+    """Ctrl-C, or SIGTERM, while compiled code runs, which cannot be stopped, only left."""
+
+    def __init__(self, status: int = 130):
+        super().__init__()
+        self.status = status
+
+
+@contextmanager
+def _heard() -> Iterator[None]:
+    """SIGTERM leaves as Ctrl-C does, so that nothing half written stays behind."""
+
+    def leave(number: int, frame: Any) -> None:
+        raise Left(128 + number)
+
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, leave)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 class OneLineErrors(click.Group):
     """A group whose commands end with one line on standard error, or in silence.
 
     Exit status 2 for what the user can mend in the command or around it, 1 for a full
-    disk, 130 for Ctrl-C.
+    disk, 130 for Ctrl-C, 143 where it is told to end.
     """
 
     def make_context(self, info_name: Any, args: list[str], *more: Any, **kwargs: Any):
@@ -29,9 +54,10 @@ class OneLineErrors(click.Group):
         kwargs["standalone_mode"] = False
         status = 2
         try:
-            sys.exit(super().main(*args, **kwargs))
-        except Left:
-            os._exit(130)
+            with _heard():
+                sys.exit(super().main(*args, **kwargs))
+        except Left as left:
+            os._exit(left.status)
         except click.Abort:
             sys.exit(130)
         except click.ClickException as error:

@@ -101,11 +101,13 @@ def measure_machine() -> MachineCost:
     """Time a few sweeps, 3 s and compilation of 15 s, and fit the parts to them.
 
     Non-negative least squares of relative errors: of absolute ones the longest run decides
-    alone.
+    alone. What this process had in memory before does not count; one that had compiled all
+    shows neither compilation nor memory, and both stay those of another machine.
     """
     from scipy.optimize import nnls  # 0.2 s, once
 
     scene = _example()
+    before = _resident_bytes()
     rows, seconds, compilation = [], [], 0.0
     for eps, gamma, method in _RUNS:
         lane_eps, lane_gamma = cells_of(eps, gamma)
@@ -121,7 +123,10 @@ def measure_machine() -> MachineCost:
     # Relative errors are smallest for parts too small: their logarithms have no such bias.
     parts *= np.exp(-np.mean(np.log(shares @ parts)))
     call, cell, job, step, chain = map(float, parts)
-    return MachineCost(call, cell, job, step, chain, compilation, _resident_bytes())
+    memory = SETTINGS.imported_bytes + max(0.0, _resident_bytes() - before)
+    if compilation < SETTINGS.warm:
+        compilation, memory = ELSEWHERE.compilation, ELSEWHERE.memory
+    return MachineCost(call, cell, job, step, chain, compilation, memory)
 
 
 def _resident_bytes() -> float:

@@ -44,6 +44,11 @@ class Settings(NamedTuple):
     machine_times: int = 61
     repeats: int = 2
     absurd: float = 1e15  # seconds or bytes that no machine takes
+    # Of a process that has imported the library, and nothing more; and seconds of
+    # compilation below which programs were there already. (A process of 5.8 GB that had
+    # compiled all told every later one of so much, and of 0.005 s.)
+    imported_bytes: float = 2e8
+    warm: float = 1.0
     # Calls that take as long as the slip map of a slide beside its lanes: both are NumPy
     # and small programs. (Seven vertical cells of three slides 0.68 s, one 0.18, a call
     # 0.033.)

@@ -67,6 +67,9 @@ def _halved(order: float) -> str:
 def _over_rows(found: Study) -> str:
     assert found.spread is not None
     at = _nearest(found.spread)
+    if not int(at.scenes):
+        few = _NOTHING[Verdict.TOO_FEW_POINTS]
+        return f"At gamma = {float(at.gamma):.4g}, in none of the rows of the map: {few}."
     low, middle, high = (float(at["order"].sel(quantile=q)) for q in (0.05, 0.5, 0.95))
     return (
         f"Over {int(at.scenes)} rows of the map the motion comes to that of dry friction "

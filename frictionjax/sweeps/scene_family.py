@@ -99,6 +99,7 @@ def _left_out(found: list[Simulated], labels: list[Any] | None) -> str:
 
 
 def _labels(names: list[Any]) -> list[Any]:
+    require(names, "scenes", names, "a Scene, or several")
     kinds = {type(name) for name in names}
     good = kinds in ({str}, {int})
     require(good, "scenes", f"labels {names[:4]}", "labels that are all str, or all int")

@@ -213,6 +213,18 @@ def test_a_machine_is_found_from_its_times(monkeypatch):
     assert 1e8 < found.memory < 1e11
 
 
+@pytest.mark.parametrize("before", [0.3e9, 9e9])
+def test_what_a_process_did_before_is_no_memory_of_a_sweep(monkeypatch, before):
+    sizes, longer = iter([before, before + 0.6e9] * 2), iter([0.5] * 7 + [0.001] * 7)
+    monkeypatch.setattr(machine_cost, "_clocked", lambda *_: (0.1, next(longer)))
+    monkeypatch.setattr(machine_cost, "_resident_bytes", lambda: next(sizes))
+    cold, warm = machine_cost.measure_machine(), machine_cost.measure_machine()
+    assert cold.memory == pytest.approx(0.8e9)
+    assert cold.compilation == pytest.approx(3.5)
+    known = machine_cost.ELSEWHERE
+    assert (warm.compilation, warm.memory) == (known.compilation, known.memory)
+
+
 def test_a_measurement_is_kept(tmp_path, monkeypatch):
     assert known_machine(tmp_path) is None
     keep_machine(MACHINE, tmp_path)

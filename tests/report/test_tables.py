@@ -1,5 +1,8 @@
 """Tables: every number in its column, nothing dropped."""
 
+import errno
+import tempfile
+
 import numpy as np
 import pytest
 
@@ -59,6 +62,17 @@ def test_a_folder_is_filled_whole(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["deep"]
     assert [path.name for path in folder.iterdir()] == ["one"]
     assert (folder / "one").read_text() == "new"
+
+
+def test_a_folder_where_nothing_can_be_made_is_named(tmp_path, monkeypatch):
+    """As in /proc, which says that all may write there."""
+
+    def refused(**_):
+        raise FileNotFoundError(errno.ENOENT, "No such file", "/proc/.frictionjax-abc")
+
+    monkeypatch.setattr(tempfile, "mkdtemp", refused)
+    with pytest.raises(ValueError, match=r"out = '.*/out': needs leave to write in "):
+        filled(tmp_path / "out").__enter__()
 
 
 def test_an_interrupted_folder_is_left_alone(tmp_path):

@@ -107,3 +107,9 @@ def test_failed_cells_are_named_with_their_scene(data):
         found = fx.study(broken)
     (cell,) = found.failed
     assert (cell["scene"], cell["eps"]) == ("series", 0.01)
+
+
+@pytest.mark.parametrize("none", [[], {}, ()])
+def test_no_scenes_are_named(none):
+    with pytest.raises(ValueError, match=r"scenes? = .*: needs a Scene, or several"):
+        fx.sweep(none, 0.1, 1.0)

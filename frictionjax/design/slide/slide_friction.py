@@ -122,16 +122,16 @@ def slide_at(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> 
     return _joined(eps, slides_both_ways(potential, gamma, rate, stiffness, eps)[0])
 
 
+_NOT_FOUND = (Status.MAX_STEPS, Status.NOT_FINITE, Status.SOLVER_FAILED)
+
+
 def _joined(eps: Real, both: Sides) -> SteadySlide:
-    return SteadySlide(
-        eps,
-        both.mean[..., 0],
-        both.mean[..., 1],
-        both.peak[..., 0],
-        both.peak[..., 1],
-        both.code[..., 0],
-        both.code[..., 1],
-    )
+    """Forces as columns; NaN, and their derivatives too, of slides that are not found."""
+    lost = jnp.isin(both.code, jnp.asarray([int(status) for status in _NOT_FOUND]))
+    found = jnp.where(lost, jnp.nan, 1.0)
+    mean, peak = both.mean * found, both.peak * found
+    columns = (column[..., side] for column in (mean, peak, both.code) for side in (0, 1))
+    return SteadySlide(eps, *columns)
 
 
 def require_force(force: str) -> None:

@@ -82,8 +82,9 @@ def integrate(
     # the turning point are those at a time that moves with it.
     speeds = jax.lax.stop_gradient(jax.vmap(field.velocity)(fronts.t, tips))
     tips = tips + (ts - fronts.t) * speeds
-    blank = jnp.where(fronts.code == Status.OK, 0.0, jnp.nan)
-    z = jax.vmap(field.state)(tips) + blank
+    # As a factor: a term would leave derivatives of what failed finite.
+    valid = jnp.where(fronts.code == Status.OK, 1.0, jnp.nan)
+    z = jax.vmap(field.state)(tips) * valid
     dissipation, residual, final, gap = None, None, None, None
     if balanced:
         final = last.y[1]
@@ -96,8 +97,8 @@ def integrate(
         size = jnp.abs(start_energy) + jnp.abs(field.energy(last.t, last.y[0]))
         errors = errors_of_sums(final.viscous, final.residual, size, plan.unit, pulled)
         lost = jnp.where(errors.sum_is_closer, memories[0].viscous, lost)
-        dissipation = lost + blank
-        residual = memories[0].residual + blank
+        dissipation = lost * valid
+        residual = memories[0].residual * valid
     status = _status(last.code, z, turns)
     if final is not None:
         slip = eps * (plan.folds.force_plus - plan.folds.force_minus)

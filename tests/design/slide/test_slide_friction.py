@@ -8,6 +8,8 @@ from reference import series
 from scipy.integrate import solve_ivp
 
 import frictionjax as fx
+from frictionjax.design.slide.slide_friction import _joined
+from frictionjax.design.slide.slide_sides import Sides
 from frictionjax.wiggly.equation.status import Status
 
 COS, SIN = [0.004, 0.002], [0.015, -0.003]
@@ -51,6 +53,17 @@ def plain_slide(eps, gamma, rate, stiffness, sign, slips=16):
     ]
     peak = max(forces) if sign > 0 else min(forces)
     return slip.y[1, -1] / period, peak
+
+
+@pytest.mark.parametrize("status", list(Status))
+def test_forces_of_a_slide_that_is_not_found_are_no_numbers(status):
+    """A slide of a traced bristle that there is not had a mean of 0 N and a status."""
+    code, one = jnp.asarray([int(Status.OK), int(status)]), jnp.asarray([1.0, -2.0])
+    slide = _joined(jnp.asarray(0.1), Sides(one, one, code, one))
+    lost = status in (Status.MAX_STEPS, Status.NOT_FINITE, Status.SOLVER_FAILED)
+    assert slide.mean_plus == slide.peak_plus == 1.0
+    assert [np.isnan(f) for f in (slide.mean_minus, slide.peak_minus)] == [lost, lost]
+    assert np.isnan(slide.ratio) == lost
 
 
 @pytest.mark.parametrize(

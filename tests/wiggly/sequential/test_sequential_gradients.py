@@ -96,3 +96,17 @@ def test_gradient_with_respect_to_a_whole_scene():
     leaves = jax.tree_util.tree_leaves(gradient)
     assert all(bool(jnp.all(jnp.isfinite(leaf))) for leaf in leaves)
     assert abs(float(gradient.load.amplitude)) > 0.1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("column", ["z", "dissipation"])
+def test_what_failed_has_no_derivative(column):
+    """It had one, 37.6 for -1.06, and plain `jax.grad` shows no status."""
+
+    def last(slope):
+        scene = scene_of(POINT.at[0].set(slope))
+        return getattr(fx.solve(scene, EPS, 0.8, [1.4], max_steps=50), column)[-1]
+
+    value, gradient = jax.value_and_grad(last)(0.1)
+    assert jnp.isnan(value)
+    assert jnp.isnan(gradient)
