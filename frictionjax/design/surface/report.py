@@ -158,13 +158,21 @@ def _bound_reached(problem: Any, runs: StartRuns, index: int) -> ProfileStatus:
     if room.get("height", 1.0) < margin:
         return ProfileStatus.TOO_HIGH
     wanted = np.asarray(runs.settled.wanted[index])
-    if not fixed and _within(wanted, problem.layout.harmonics):
-        return ProfileStatus.OUT_OF_BOUNDS
+    if fixed and len(problem.targets) == 1:  # a run may end far from what is asked
+        wanted = np.abs(_asked(problem, runs, index)[0])
+    if _within(wanted, _most(problem)):
+        return ProfileStatus.NOT_FOUND if fixed else ProfileStatus.OUT_OF_BOUNDS
     return ProfileStatus.TOO_FEW_HARMONICS
 
 
-def _within(wanted: np.ndarray, harmonics: int) -> bool:
-    return bool(np.all(wanted > 0) and np.max(wanted / wanted[::-1]) < harmonics)
+def _within(wanted: np.ndarray, most: float) -> bool:
+    return bool(np.all(wanted > 0) and np.max(wanted / wanted[::-1]) < most)
+
+
+def _most(problem: Any) -> float:
+    """The largest ratio of slopes that this many harmonics have."""
+    layout, apart = problem.layout, problem.asked.apart
+    return layout.harmonics if apart is None else ratio_seen(apart, layout.harmonics)
 
 
 def _message(
@@ -210,9 +218,7 @@ def _reachable(problem: Any, runs: StartRuns, best: int) -> str:
         )
         within = share_text(share, slopes)
     limits = limits_of(task.law, runs.settled.free[best])
-    apart = problem.asked.apart
-    most = layout.harmonics if apart is None else ratio_seen(apart, layout.harmonics)
-    return reachable_text(limits, layout.harmonics, asked, within, as_text(most))
+    return reachable_text(limits, layout.harmonics, asked, within, as_text(_most(problem)))
 
 
 def _start(

@@ -18,6 +18,7 @@ class ProfileStatus(Outcome):
     NOT_FINITE = 9, "the fit left the range of finite numbers"
     NO_SLIDE = 10, "a design whose steady slide was not found"
     NOT_SETTLED = 11, "designs and their slides did not settle"
+    NOT_FOUND = 12, "not found, though nothing here says that it is out of reach"
 
 
 MET = (ProfileStatus.MET, ProfileStatus.WITHIN_UNCERTAINTY)

@@ -59,6 +59,14 @@ def test_unreachable_targets_say_what_is_reachable(part, plus, minus, bounds, st
 STEEP = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
 
 
+def test_what_is_within_reach_and_not_found_is_not_called_out_of_it():
+    """1e5 N are met; at 1e6 slopes are within 1e-6 of those that the bristle can follow."""
+    fit = fx.fit_profile(fx.Target(STEEP, 1e6, -0.05), starts=2)
+    assert fit.status is ProfileStatus.NOT_FOUND
+    assert not fit.success
+    assert "(asked for: 12.05" in fit.message
+
+
 def test_slopes_no_bristle_follows_are_told_from_too_few_harmonics():
     """rho_minus below its limit at any number of harmonics; a ratio that more meet."""
     beyond = fx.fit_profile(fx.Target(STEEP, 0.12, -0.7), starts=1)
