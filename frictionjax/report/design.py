@@ -223,6 +223,8 @@ def _surface(job: Job, asked: DesignRequest, wanted: dict[str, float]) -> _Desig
     target = Target(bristle, wanted["rho_plus"], wanted["rho_minus"])
     free = [asked.free] if asked.free else []
     require(free or asked.bounds is None, "bounds", asked.bounds, "--free as well")
+    given = not free or asked.bounds is not None
+    require(given, "bounds", None, "--bounds LOW HIGH as well as --free")
     fit = fit_profile(
         target,
         harmonics=asked.harmonics,

@@ -137,6 +137,8 @@ def test_what_cannot_be_designed_is_said_in_one_line(tmp_path):
     both = ("--rho-plus", 0.1, "--rho-minus", -0.1)
     line = error_line(run("design", *both, "--bounds", 0.5, 1.1, *out))
     assert "bounds = [0.5 1.1]: needs --free as well" in line
+    line = error_line(run("design", *both, "--free", "angle", *out))
+    assert "bounds = None: needs --bounds LOW HIGH as well as --free" in line
     assert not (tmp_path / "none").exists()
 
 
