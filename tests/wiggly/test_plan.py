@@ -69,3 +69,14 @@ def test_lanes_of_surfaces_in_pieces_are_of_one_kind_however_many_samples():
     assert points == [256, 4096]
     one, other = (jax.tree_util.tree_structure(lane_scene(table)) for table in tables)
     assert one == other
+
+
+def test_no_more_slips_are_remembered_than_there_are():
+    """A rise of the load within 3e-4 s: tolerances were for 6e5 slips, of 2000."""
+    load = fx.loads.PiecewiseLinear([0.0, 1.0, 1.0003, 3.0], [0.0, 0.5, 1.5, 0.2])
+    parts = fx.profiles.Sine(0.1), VERTICAL, fx.supports.Spring(1.0), load
+    scene, ts = fx.Scene(*parts, 3.0), [0.9, 1.0, 2.0, 3.0]
+    found, truth = (fx.solve(scene, 1e-3, 0.5, ts, accuracy) for accuracy in (1e-3, 1e-6))
+    assert found.ok
+    assert found.stats["tolerance"] > 2e-9  # 3.2e-11 before
+    assert np.max(np.abs(found.z - truth.z)) < 0.1 * 1e-3 * 1e-3

@@ -73,12 +73,13 @@ class StepPlan(NamedTuple):
 class PullRange(NamedTuple):
     """How hard a scene pulls: largest |l'| on [0, T] in N/s, smallest Phi'' in N/m.
 
-    `way`: the most that its limit moves one way, m.
+    `way`: the most that its limit moves one way, m; `total`: to and fro, where known.
     """
 
     fastest: Real
     softest: Real
     way: Real
+    total: Any = np.inf
 
 
 def _pull_of(scene: Scene) -> PullRange:
@@ -117,11 +118,13 @@ def remembered_slips(ground: Landscape, pull: PullRange, eps: Real, gamma: Real)
     eps^gamma v; its slope gives one e-fold of forgetting in
     `4 pi^2 v^2 eps^(2 gamma - 1)/(|W_fold'''| Phi'')` wells: 40 at gamma = 1/2 on the
     benchmark scene at any eps (a slip leaves 0.975 of a disturbance, as measured), one or
-    less at gamma = 1.
+    less at gamma = 1. No more than there are in all: the fastest moment may be a short one,
+    or the softest place a small one.
     """
     speed = pull.fastest / pull.softest
     bend = jnp.maximum(ground.flat_curvature, 1e-300)
-    return 4 * jnp.pi**2 * speed**2 * eps ** (2 * gamma - 1) / (bend * pull.softest)
+    slips = 4 * jnp.pi**2 * speed**2 * eps ** (2 * gamma - 1) / (bend * pull.softest)
+    return jnp.minimum(slips, pull.total / eps)
 
 
 def _way_to_fold(ground: Landscape, pull: PullRange, eps: Real, gamma: Real) -> Real:

@@ -77,4 +77,5 @@ def path_of(scene: TabulatedScene) -> Path | None:
     path = path._replace(touch=touch)
     rho_ends = np.asarray(rho_plus), np.asarray(rho_minus)
     pull = _pull(scene.load, scene.support, padded_edges(turns, duration), *rho_ends)
+    pull = pull._replace(total=path.travel[-1])
     return _looked_at(scene, path._replace(rows=rows_of_path(path), pull=pull))
