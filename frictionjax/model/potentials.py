@@ -305,7 +305,7 @@ class GivenPotential(AbstractPotential):
         >>> print(given.W(0.25), f"{given.Q(1e-8, 0.25):.6f}")
         0.02 0.000200
         """
-        require_function("F", F, "a function of a length u")
+        require_function("F", F, "a function of a length u", smooth=False)
         require_function("WW", WW, "a function of Y")
         if QQ is not None:
             _require_of_two("QQ", QQ)

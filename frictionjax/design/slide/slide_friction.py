@@ -119,19 +119,23 @@ class SlideForces(NamedTuple):
 
 def slide_at(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> SteadySlide:
     """The steady slide at one eps; without checks, traceable."""
-    return _joined(eps, slides_both_ways(potential, gamma, rate, stiffness, eps)[0])
+    both = slides_both_ways(potential, gamma, rate, stiffness, eps)[0]
+    return _joined(eps, _where_found(both, jnp))
 
 
-_NOT_FOUND = (Status.MAX_STEPS, Status.NOT_FINITE, Status.SOLVER_FAILED)
+_NOT_FOUND = [int(s) for s in (Status.MAX_STEPS, Status.NOT_FINITE, Status.SOLVER_FAILED)]
+
+
+def _where_found(both: Sides, by: Any) -> Sides:
+    """Forces, and derivatives of them, NaN where none is found; `by` NumPy or JAX."""
+    found = by.where(by.isin(both.code, by.asarray(_NOT_FOUND)), by.nan, 1.0)
+    return both._replace(mean=both.mean * found, peak=both.peak * found)
 
 
 def _joined(eps: Real, both: Sides) -> SteadySlide:
-    """Forces as columns; NaN, and their derivatives too, of slides that are not found."""
-    lost = jnp.isin(both.code, jnp.asarray([int(status) for status in _NOT_FOUND]))
-    found = jnp.where(lost, jnp.nan, 1.0)
-    mean, peak = both.mean * found, both.peak * found
-    columns = (column[..., side] for column in (mean, peak, both.code) for side in (0, 1))
-    return SteadySlide(eps, *columns)
+    """Forces and codes as columns."""
+    parts = both.mean, both.peak, both.code
+    return SteadySlide(eps, *(part[..., side] for part in parts for side in (0, 1)))
 
 
 def require_force(force: str) -> None:
@@ -263,7 +267,7 @@ def _known_forces(
     if array is not None:
         cells = [(tables[i], float(e)) for i, e in zip(which, eps, strict=True)]
         found = _of_many(found, cells, (gamma, rate, stiffness), np.asarray(array.offsets))
-    return Sides(*(jnp.asarray(column) for column in found))
+    return Sides(*(jnp.asarray(column) for column in _where_found(found, np)))
 
 
 def _of_many(
@@ -287,5 +291,5 @@ def _forces_of(
     count = eps.shape[0]
     more = padded_size(count, 1, SETTINGS.room) - count
     padded = jnp.pad(eps, (0, more), mode="edge")
-    found = differentiable_sides(AskedSlides(wiggle, *numbers, padded))
+    found = _where_found(differentiable_sides(AskedSlides(wiggle, *numbers, padded)), jnp)
     return jax.tree_util.tree_map(lambda leaf: leaf[:count], found)

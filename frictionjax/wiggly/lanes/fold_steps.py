@@ -41,10 +41,10 @@ class Foothold(NamedTuple):
         return jnp.where(moves, self.step / SETTINGS.most_folds * self.point.by_state, 0.0)
 
     def uneven(self, end: Point, way: Real, pace: Real, tolerance: Real) -> Real:
-        """How many times more than steps may a slow tip speeds up over its `way` (periods).
+        """How many times too far the `way` (periods) of a slow tip that speeds up is off.
 
-        Held against the mean of the velocities at both ends: errors are estimated by a
-        difference, which may vanish where they do not. `pace`, `tolerance` as in `Control`.
+        Off the mean of the velocities at both ends: errors are estimated by a difference,
+        which may vanish where they do not. `pace`, `tolerance`: as in `Control`.
         """
         before, after, mean = self.point.velocity, end.velocity, way / self.step
         off = jnp.abs(0.5 * (before + after) * self.step - way)

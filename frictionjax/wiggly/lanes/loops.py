@@ -90,8 +90,10 @@ class _Loops:
             there = [own for own in times if self._holds((kind, own), needed)]
             # A study had two loops compiled, one for 0.6 ms of lanes.
             there = there or [own for own in times if self._is_coming((kind, own), needed)]
-            if not there:
-                return best
+            if not there:  # one with sums serves whatever is asked next
+                general = True, best[1]
+                little = times[general] - times[best] <= SETTINGS.patience
+                return general if little else best
             serving = min(there, key=lambda own: times[own])
             lost = times[serving] - times[best]
             if lost > SETTINGS.at_once:

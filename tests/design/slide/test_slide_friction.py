@@ -8,7 +8,7 @@ from reference import series
 from scipy.integrate import solve_ivp
 
 import frictionjax as fx
-from frictionjax.design.slide.slide_friction import _joined
+from frictionjax.design.slide.slide_friction import _joined, _where_found
 from frictionjax.design.slide.slide_sides import Sides
 from frictionjax.wiggly.equation.status import Status
 
@@ -55,11 +55,12 @@ def plain_slide(eps, gamma, rate, stiffness, sign, slips=16):
     return slip.y[1, -1] / period, peak
 
 
+@pytest.mark.parametrize("by", [np, jnp])
 @pytest.mark.parametrize("status", list(Status))
-def test_forces_of_a_slide_that_is_not_found_are_no_numbers(status):
+def test_forces_of_a_slide_that_is_not_found_are_no_numbers(status, by):
     """A slide of a traced bristle that there is not had a mean of 0 N and a status."""
-    code, one = jnp.asarray([int(Status.OK), int(status)]), jnp.asarray([1.0, -2.0])
-    slide = _joined(jnp.asarray(0.1), Sides(one, one, code, one))
+    code, one = by.asarray([int(Status.OK), int(status)]), by.asarray([1.0, -2.0])
+    slide = _joined(by.asarray(0.1), _where_found(Sides(one, one, code, one), by))
     lost = status in (Status.MAX_STEPS, Status.NOT_FINITE, Status.SOLVER_FAILED)
     assert slide.mean_plus == slide.peak_plus == 1.0
     assert [np.isnan(f) for f in (slide.mean_minus, slide.peak_minus)] == [lost, lost]

@@ -49,6 +49,11 @@ def test_the_fastest_loop_is_taken_where_none_is_there():
     assert loops(WIDE, Room(1, 2, 4)).choose(FIXED, FEW, times) == NARROW
 
 
+@pytest.mark.parametrize(("wells", "taken"), [(500.0, NARROW), (5000.0, BARE)])
+def test_the_first_loop_has_sums_unless_they_cost_much(wells, taken):
+    assert _Loops().choose(FIXED, FEW, {BARE: wells, NARROW: 1.5 * wells}) == taken
+
+
 @pytest.mark.parametrize(
     ("there", "best"), [(WIDE, NARROW), (NARROW, WIDE), (NARROW, BARE)]
 )
