@@ -154,11 +154,12 @@ def prepare(
 ) -> None:
     """Compile the loop that `march` will want, in the background; a guess may be wrong.
 
-    Not where one is there that serves meanwhile.
+    Not where one is there that serves meanwhile. The narrow one has sums: see `choose`.
     """
-    fixed, width = (scene, tableau), SETTINGS.narrow if narrow else SETTINGS.width
-    if not any(_LOOPS.is_done(fixed, own, needed) for own in _enough(summed)):
-        _LOOPS.load((*fixed, summed, width), needed)
+    fixed = scene, tableau
+    own = (True, SETTINGS.narrow) if narrow else (summed, SETTINGS.width)
+    if not any(_LOOPS.is_done(fixed, one, needed) for one in _enough(summed)):
+        _LOOPS.load((*fixed, *own), needed)
 
 
 def march(

@@ -78,20 +78,21 @@ def test_one_that_is_compiled_already_is_waited_for():
 
 
 @pytest.mark.parametrize(
-    ("there", "summed", "begun"),
+    ("there", "summed", "narrow", "begun"),
     [
-        (None, False, [(False, SETTINGS.width)]),
-        (WIDE, False, []),
-        (NARROW, True, []),
-        (BARE, True, [WIDE]),
-        (BARE, False, []),
+        (None, False, False, [(False, SETTINGS.width)]),
+        (None, False, True, [NARROW]),
+        (WIDE, False, True, []),
+        (NARROW, True, False, []),
+        (BARE, True, False, [WIDE]),
+        (BARE, False, True, []),
     ],
 )
-def test_no_loop_is_prepared_where_one_serves(monkeypatch, there, summed, begun):
+def test_no_loop_is_prepared_where_one_serves(monkeypatch, there, summed, narrow, begun):
     known, loaded = loops(there, Room(*SETTINGS.room)), []
     monkeypatch.setattr(known, "load", lambda program, room: loaded.append(program))
     monkeypatch.setattr(module, "_LOOPS", known)
-    prepare(*FIXED, FEW, summed)
+    prepare(*FIXED, FEW, summed, narrow)
     assert loaded == [(*FIXED, *own) for own in begun]
 
 
