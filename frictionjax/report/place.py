@@ -34,8 +34,7 @@ def _place_in(parent: Path, folder: Path) -> Path:
     try:
         return Path(tempfile.mkdtemp(prefix=".frictionjax-", dir=parent))
     except OSError as error:
-        if error.errno not in FULL:
-            require(False, "out", str(folder), f"leave to write in {parent}")
+        require(error.errno in FULL, "out", str(folder), f"leave to write in {parent}")
         raise
 
 

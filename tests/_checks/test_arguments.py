@@ -38,7 +38,7 @@ def in_a_loop(y):
     return jax.lax.while_loop(lambda w: w > 1.0, lambda w: 0.5 * w, wave)
 
 
-def test_functions_that_are_modules_frozen_or_whole_are_none_of_these():
+def test_functions_that_are_frozen_partial_or_loads_of_whole_numbers_are_taken():
     frozen = dataclasses.make_dataclass("Frozen", ["height"], frozen=True)
     frozen.__call__ = Wave.__call__
     assert fx.profiles.Custom(frozen(0.01))(0.25) == pytest.approx(0.01)

@@ -83,7 +83,10 @@ class _Loops:
 
     def choose(self, fixed: tuple, needed: Room, times: dict[tuple, float]) -> tuple:
         """Which of the loops that take `times` for a queue runs it: the fastest, or one
-        that is there until waiting for the fastest would have paid."""
+        that is there until the fastest would have paid.
+
+        Loops as `summed` and width; times in wells of a lane of the wide one.
+        """
         best = min(times, key=lambda own: times[own])
         kind = _kind(fixed)
         with self._lock:

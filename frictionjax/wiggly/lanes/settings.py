@@ -47,7 +47,7 @@ class Settings(NamedTuple):
     # velocities, and from where on the tip rests first, then slips. (Instants before slips
     # were 1.6 times the accuracy off without. Of 98,000 steps in 48 cells eleven erred by
     # more than 5 tolerances, up to 25: seven of them are 0.17 to 0.75 off. 0.3% more steps
-    # in all, 1 to 1.6% at gamma >= 1.5, where they are 15% without the second number.)
+    # in all, 0.9 to 1.6% at gamma >= 1.5, where 15 to 18% without the second number.)
     uneven: float = 0.15
     sudden: float = 1.0
     left: float = 1e-4  # of a slip's energy: residual of a step that ends in one
