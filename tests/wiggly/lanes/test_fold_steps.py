@@ -81,3 +81,25 @@ def test_rests_last_until_floats_of_a_slow_load_go_on(slope):
     pause = float(pause_of(still, jnp.asarray(0.75), DRAG))
     assert pause * slope == pytest.approx(0.5 * np.spacing(1.0) if slope else 0.0)
     assert np.spacing(0.75) < pause < 1e-10
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("before", "after", "way", "uneven"),
+    [
+        (1.0, 4.0, 1.7, True),  # 2.5 were even
+        (1.0, 4.0, 2.4, False),
+        (1.0, 4.0, 1.2, False),  # more than its way off: it rests, then slips
+        (4.0, 1.0, 1.7, False),  # slows down
+        (2.0, 2.2, 1.5, False),  # slower than at either end: comes to a branch first
+        (1.0, 1.5, 2.0, False),  # faster than at either end: through a slip
+        (5.0, 20.0, 8.5, False),  # as fast as slides
+    ],
+)
+def test_even_steps_may_speed_up(sign, before, after, way, uneven):
+    start, end = (point(sign * velocity) for velocity in (before, after))
+    asked = jnp.asarray(sign * way), jnp.asarray(10.0), jnp.asarray(1e-6)
+    found = at(start, 1.0).uneven(end, *asked)
+    assert (found > 1) == uneven
+    # A tolerance that allows as much is none.
+    assert at(start, 1.0).uneven(end, *asked[:2], jnp.asarray(3.0)) <= 1
