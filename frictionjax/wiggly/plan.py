@@ -17,7 +17,14 @@ from .lanes import LaneScene
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, slow_ends
 from .settings import SETTINGS
-from .slip_map import SteadyLags, none_known, steady_lags
+from .slip_map import (
+    SteadyLags,
+    Wells,
+    latest_landings,
+    none_known,
+    steady_lags,
+    wells_both_ways,
+)
 from .ways import Way, by_brackets, ends_before_tips_follow, ways_of
 
 
@@ -53,10 +60,13 @@ def ground_of(
     start: tuple[np.ndarray, np.ndarray],
 ) -> CellBounds:
     """What brackets need to know of each cell; `start`: well and tip of its z0."""
-    lags, powers = _lags(scene, path, eps, gamma, folds)
+    drag = path.speed * viscosity_of(eps, gamma)
+    wells = wells_both_ways(scene.potential, eps, folds)
+    lags, powers = _lags(wells, drag)
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
     memories = lags.power * lags.force / path.stiffness
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
+    landed = latest_landings(wells, drag, eps * path.stiffness, eps * path.stiffest)
     return CellBounds(
         eps,
         folds,
@@ -68,6 +78,8 @@ def ground_of(
         memory_minus=memories[1],
         shift_plus=shifts[0],
         shift_minus=shifts[1],
+        landed_plus=landed[0],
+        landed_minus=landed[1],
         start_well=start[0],
         start_tip=start[1],
         relaxed=_relaxation(scene, path, eps, gamma),
@@ -76,21 +88,14 @@ def ground_of(
     )
 
 
-def _lags(scene: TabulatedScene, path: Path, eps, gamma, folds: WiggleFolds):
+def _lags(wells: Wells, drag: np.ndarray) -> tuple[SteadyLags, np.ndarray]:
     """Lags of the fastest slide, and powers of the speed that bound those of slower ones.
 
     2 where folds have a curvature and tips nearly rest, p/(p - 1) where W' falls off like
     the power p, 1 where flanks are straight or lags larger than the well's forces.
     """
-    drag = path.speed * viscosity_of(eps, gamma)
-    # Both speeds at once: the way through a well, which takes longest, is found once.
-    twice = jax.tree_util.tree_map(lambda each: np.tile(each, 2), folds)
-    drags = np.concatenate([drag, SETTINGS.slower * drag])
-    both = steady_lags(scene.potential, np.tile(eps, 2), twice, drags)
-    lags, slower = (
-        SteadyLags(*part)
-        for part in zip(*(np.split(b, 2, axis=1) for b in both), strict=True)
-    )
+    both = steady_lags(wells, np.stack([drag, SETTINGS.slower * drag]))
+    lags, slower = (SteadyLags(*part) for part in zip(*both, strict=True))
     powers = np.log(lags.force / slower.force) / -np.log(SETTINGS.slower)
     return lags, np.where(powers > SETTINGS.square, 2.0, np.maximum(powers, 1.0))
 
@@ -124,7 +129,8 @@ def _needs(
     lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
     shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
     forgets, slow = forgotten_after(lag, ground.longest_memory, accuracy)
-    run_up = np.minimum(slow, resting_after(lag, shift, forgets))
+    landed = np.maximum(ground.landed_plus, ground.landed_minus)
+    run_up = np.minimum(slow, resting_after(lag, landed, shift, forgets))
     offset = _lattice_offsets(ground, path)
     return Requirements(
         run_up=run_up,
@@ -134,6 +140,7 @@ def _needs(
         samples=np.zeros(lag.size),
         lattice_offset=offset,
         restarts=np.zeros(offset.shape, dtype=bool),
+        settles=np.isfinite(landed),
     )
 
 

@@ -11,7 +11,7 @@ from frictionjax._checks import viscosity_of
 from frictionjax.model import tabulated_scene
 from frictionjax.wiggly.enclosure import SETTINGS
 from frictionjax.wiggly.plan import lane_scene, planned
-from frictionjax.wiggly.slip_map import steady_lags
+from frictionjax.wiggly.slip_map import steady_lags, wells_both_ways
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -22,8 +22,9 @@ def test_lags_of_slower_slides_are_bounded(name):
     path = path_of(SCENES[name])
     plan = planned(scene, path, eps, gamma, 3, 1e-3, "auto")
     ground, drag = plan.ground, path.speed * viscosity_of(eps, gamma)
+    wells = wells_both_ways(scene.potential, eps, plan.control.folds)
     for share in (0.5, 0.2, 0.1, 0.05):
-        slower = steady_lags(scene.potential, eps, plan.control.folds, share * drag)
+        slower = steady_lags(wells, share * drag)
         for side, direction in zip(slower.force, (1, -1), strict=True):
             power = ground.power(np.arange(3), np.full(3, direction))
             fastest = ground.lag_plus if direction > 0 else ground.lag_minus

@@ -28,6 +28,7 @@ def needs_of(path, run_up):
         samples=0 * one,
         lattice_offset=np.zeros(pieces),
         restarts=np.zeros(pieces, dtype=bool),
+        settles=np.zeros(EPS.size, dtype=bool),
     )
 
 

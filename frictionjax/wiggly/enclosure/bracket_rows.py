@@ -16,13 +16,14 @@ class BracketRows:
         self,
         cell: np.ndarray,
         begin: np.ndarray,
-        paired: bool,
+        paired: bool | np.ndarray,
         stops: np.ndarray,
         sizes: np.ndarray,
     ) -> np.ndarray:
         """Add brackets; the numbers of their stops among all.
 
-        `cell`, `begin`, `sizes`: of each, so many of the stops as its size.
+        `cell`, `begin`, `sizes`: of each, so many of the stops as its size. `paired`: of each,
+        or of all.
         """
         self._added.append((cell, begin, np.full(sizes.size, paired), sizes, stops))
         self._count += stops.size

@@ -51,9 +51,9 @@ def close_brackets(
         # and so do those that set off from a fast slide where their bracket begins.
         far = (wells[open_] > SETTINGS.margin) & ~(plan.from_slide & (back[open_] < 1))
         shifts = shifts_of(ends, *where)
-        met = np.maximum(meets, shifts)
-        met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
-        worst = np.minimum(worst, met)
+        met = np.nan_to_num(np.maximum(meets, shifts), nan=np.inf)
+        worst = np.minimum(worst, np.where(far, met, np.inf))
+        worst = np.where(needs.settles[open_brackets.cell], met, worst)
         open_ = open_[worst > SETTINGS.closed * rounds.accuracy]
         if open_.size == 0:
             break
@@ -117,4 +117,4 @@ def _slow_run_ups(
     memory = share * ground.memory(cell, direction)
     forgets, slow = forgotten_after(lag, memory, accuracy)
     shift = own(ground.shift_plus, ground.shift_minus)
-    return np.minimum(slow, resting_after(lag, shift, forgets))
+    return np.minimum(slow, resting_after(lag, np.inf, shift, forgets))

@@ -91,7 +91,8 @@ def _sampled_periods(
     for i in range(parts.cell.size):
         own = np.flatnonzero(who == i)
         one = np.ones(own.size, dtype=int)
-        stops = rows.add(parts.cell[i] * one, starts[own], True, ends[own], one)
+        paired = ~slides.needs.settles[parts.cell[i]]
+        stops = rows.add(parts.cell[i] * one, starts[own], paired, ends[own], one)
         period = SampledPeriods(
             cell=parts.cell[i],
             piece=parts.piece[i],

@@ -22,7 +22,8 @@ def stops_at_times(
     cell, shown, begin = cell[order], shown[order], begin[order]
     first = np.cumsum(sizes) - sizes
     output = hit.copy()
-    output[cell, shown] = rows.add(cell[first], begin[first], True, ts[shown], sizes)
+    paired = ~slides.needs.settles[cell[first]]
+    output[cell, shown] = rows.add(cell[first], begin[first], paired, ts[shown], sizes)
     return output
 
 

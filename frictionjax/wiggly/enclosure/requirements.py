@@ -19,7 +19,8 @@ class Requirements(NamedTuple):
     which is half a period from the slips of a slow slide: what is measured should not begin
     in a slip.
     `restarts` (cells, pieces): where the chain is cut however long its tiles are, at a
-    piece's end.
+    piece's end. `settles`: whether tips are at rest half a period behind slips, so that
+    lanes that have met there need not be two any longer.
     """
 
     run_up: np.ndarray
@@ -29,6 +30,7 @@ class Requirements(NamedTuple):
     samples: np.ndarray
     lattice_offset: np.ndarray
     restarts: np.ndarray
+    settles: np.ndarray
 
 
 def forgotten_after(lag, memory, accuracy: float):
@@ -40,17 +42,23 @@ def forgotten_after(lag, memory, accuracy: float):
     return forgets, np.ceil(SETTINGS.margin + forgets)
 
 
-def resting_after(lag, shift, forgets):
+def resting_after(lag, landed, shift, forgets):
     """Wells back to a start between slips, from which a bracket closes at rest.
 
-    Windows begin half a period behind slips. Where tips lag by less than that, both lanes
-    of a bracket that sets off a little after a slip come to rest in one well; `forgets`
-    wells more pass where the rest of half a period is too short. Infinite where tips lag
-    further: their lanes have to catch up with each other. `shift`: of folds, wells.
+    Windows begin half a period behind slips. Tips that have `landed` before are in one well
+    with both lanes of a bracket from the start; where lags are less than half a period,
+    lanes that set off a little after a slip come to rest in one. `forgets` wells more pass
+    where the rest of half a period is too short. Infinite where tips lag further: their
+    lanes have to catch up with each other. `shift`: of folds, wells.
     """
-    rest = 0.5 - SETTINGS.after_slip - lag - shift
-    wells = rest + np.ceil(np.maximum(SETTINGS.slips_forget * forgets - rest, 0.0))
-    return np.where(rest > SETTINGS.short_rest, wells, np.inf)
+
+    def resting(late, least: float):
+        rest = np.maximum(0.5 - late - shift, 0.0)
+        wells = rest + np.ceil(np.maximum(SETTINGS.slips_forget * forgets - rest, 0.0))
+        return np.where(rest > least, wells, np.inf)
+
+    slow = resting(SETTINGS.after_slip + lag, SETTINGS.short_rest)
+    return np.minimum(slow, resting(landed, SETTINGS.short_stay))
 
 
 def wells_of(

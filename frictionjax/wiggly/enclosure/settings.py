@@ -46,6 +46,7 @@ class Settings(NamedTuple):
     forgotten: float = 0.1  # of the accuracy: what run-ups leave of a bracket
     after_slip: float = 0.05  # at which lanes may set off
     short_rest: float = 0.2  # the shortest that is worth it
+    short_stay: float = 0.05  # in the well where both lanes set off
     # Lanes set off in the middle of a slip or two, and forget less in their first wells.
     # (1: brackets of gamma = 1, eps = 1e-2 stay open; a second round takes as long as the
     # first.)
@@ -66,6 +67,7 @@ class Settings(NamedTuple):
     leg_places: tuple[float, float] = (0.27, 0.62)
 
     # Starts (`starts.py`).
+    settles: float = 2.0  # from where lags are bounded to where slips are over in time
     aside: float = 1e-6  # of a stretch of time: where one-sided slopes are taken
     gap: float = 1e-6  # rounding of z/eps
     faster: float = 1.5  # how much slides may have been, squared, where lanes set off

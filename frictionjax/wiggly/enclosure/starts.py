@@ -18,7 +18,8 @@ class CellBounds(NamedTuple):
     `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
     most. `power_plus`, `power_minus`: of the speed that lags grow with. `memory_plus`,
     `memory_minus`: way in m in which it forgets all but 1/e. `shift_plus`,
-    `shift_minus`: by how much in m folds at this eps differ from rho.
+    `shift_minus`: by how much in m folds at this eps differ from rho. `landed_plus`,
+    `landed_minus`: wells beyond a fold at which tips are half a well further, at most.
     `phase`: how far ahead on the surface the bristle stands, in periods: its wells have
     numbers less by that.
     `relaxed`: time in s from which on a start outside the strip is forgotten, by Lemma 7.
@@ -35,6 +36,8 @@ class CellBounds(NamedTuple):
     memory_minus: np.ndarray
     shift_plus: np.ndarray
     shift_minus: np.ndarray
+    landed_plus: np.ndarray
+    landed_minus: np.ndarray
     start_well: np.ndarray
     start_tip: np.ndarray
     relaxed: np.ndarray
@@ -112,7 +115,10 @@ def starts_of(
     On a slide the tip cannot be past the first fold beyond the strip's edge: it would have
     had to climb it against a force. Nor can it be further behind than a steady slide at
     the largest speed of the scene; where that is many wells, of the moment. Both hold once
-    the path has come further than the lag of the slide before in the other direction.
+    the path has come further than the lag of the slide before in the other direction. Some
+    wells later, on a slow slide, the tip has been through every slip that is over by
+    `landed`: both lanes set off in the well where it rests (with the other bound the lane
+    behind went through two slips first, two fifths of all steps at small eps).
     Where no such place is left, lanes start from z0; from a fast slide where one is nearer.
     Where not `measured`, errors of fast slides are not waited for: both lanes start there.
     """
@@ -123,6 +129,7 @@ def starts_of(
     astray = path.speed * ground.relaxed[cell]
     clear = (lag + astray + 2 * eps)[:, None] - _run_up(path)
     opens = path.travel[:-1] + np.maximum(clear, 0.0)
+    settled = path.travel[:-1] + clear + SETTINGS.settles * eps[:, None]
     closes = path.travel[1:]
     usable = (path.direction != 0) & (opens <= closes) & (opens <= wanted[:, None])
     last = opens.shape[1] - 1 - np.argmax(usable[:, ::-1], axis=1)
@@ -144,7 +151,8 @@ def starts_of(
     slides, which = last_begun(ground.fast_slides, cell, begin)
     lagging = _still_lagging(path, slides, which, time)
     share = np.where(lagging, 1.0, share)
-    behind, ahead, tip = _bracket(ground, cell, direction, level, known, share)
+    rests = ~lagging & (way >= settled[np.arange(way.size), piece])
+    behind, ahead = _bracket(ground, cell, direction, level, known, share, rests)
     plain = Starts(
         time=time,
         known_start=known,
@@ -152,10 +160,10 @@ def starts_of(
         lagging=lagging,
         until=np.full(begin.size, -np.inf),
         pace=np.full(begin.size, np.inf),
-        behind_well=behind,
-        behind_tip=tip,
-        ahead_well=ahead,
-        ahead_tip=tip,
+        behind_well=behind[0],
+        behind_tip=behind[1],
+        ahead_well=ahead[0],
+        ahead_tip=ahead[1],
     )
     # Way in m that a lane goes until the bracket begins, its lag included.
     reach = wells * eps + 2 * share * lag
@@ -256,8 +264,11 @@ def lag_share(ground: CellBounds, cell: np.ndarray, share: np.ndarray) -> np.nda
     return np.where(lag[cell] > SETTINGS.long_lag, share, 1.0)
 
 
-def _bracket(ground: CellBounds, cell, direction, level, known, share):
-    """Wells of the lanes behind and ahead of the edge at `level`, and the tip of both."""
+def _bracket(ground: CellBounds, cell, direction, level, known, share, rests):
+    """Well and tip of the lanes behind and ahead of the edge at `level`.
+
+    `rests`: where the tip has been through all slips that should be over.
+    """
     up, eps, folds = direction > 0, ground.eps[cell], ground.folds
 
     def side(plus, minus) -> np.ndarray:
@@ -265,17 +276,23 @@ def _bracket(ground: CellBounds, cell, direction, level, known, share):
 
     place = side(folds.place_plus, folds.place_minus)
     fold = side(folds.state_plus, folds.state_minus)
-    shift = side(ground.shift_plus, ground.shift_minus)
-    lag = share * side(ground.lag_plus, ground.lag_minus)
+    shift = side(ground.shift_plus, ground.shift_minus) / eps
+    lag = share * side(ground.lag_plus, ground.lag_minus) / eps
+    landed = side(ground.landed_plus, ground.landed_minus)
+    landed = np.where(rests, landed, np.inf)
     # Mirrored for slides to the left, so that the tip moves up in both.
     sign = np.where(up, 1.0, -1.0)
     at = sign * (level - fold) / eps
-    ahead = np.ceil(at + shift / eps + SETTINGS.gap)
-    behind = np.floor(at - (shift + lag) / eps - SETTINGS.gap) - 1
-    start_well, start_tip = ground.start_well[cell], ground.start_tip[cell]
+    ahead = np.ceil(at + shift + SETTINGS.gap)
+    slow = np.isfinite(landed)
+    behind = np.floor(at - shift - np.where(slow, landed, lag) - SETTINGS.gap) - ~slow
+    behind_tip = place + np.where(slow, 0.5 * sign, 0.0)
+    start, tip = ground.start_well[cell], ground.start_tip[cell]
     phase = ground.phase[cell]
     return (
-        np.where(known, start_well, sign * behind - phase),
-        np.where(known, start_well, sign * ahead - phase),
-        np.where(known, start_tip, place),
+        (
+            np.where(known, start, sign * behind - phase),
+            np.where(known, tip, behind_tip),
+        ),
+        (np.where(known, start, sign * ahead - phase), np.where(known, tip, place)),
     )

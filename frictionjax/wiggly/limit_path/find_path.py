@@ -15,7 +15,7 @@ _PATHS = ByIdentity()  # of scenes, whatever the eps
 
 
 def _looked_at(scene: TabulatedScene, path: Path) -> Path:
-    """With the largest speed on slides, probed, and the smallest stiffness there."""
+    """With the largest speed on slides, probed, and the extremes of the stiffness there."""
     low, high = path.touch, path.edges[1:]
     probes = probes_of(scene, path, low, high)
     times = np.concatenate([probes, nodes_inside(low, high)], axis=1)
@@ -28,6 +28,7 @@ def _looked_at(scene: TabulatedScene, path: Path) -> Path:
     return path._replace(
         speed=float(np.max(np.abs(speeds))),
         stiffness=float(np.min(motion.stiffness)),
+        stiffest=float(np.max(motion.stiffness)),
         probes=Probes(times, seen, np.where(long, unseen, 0.0)),
     )
 

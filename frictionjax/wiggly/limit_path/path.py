@@ -45,10 +45,10 @@ class Path(NamedTuple):
     `edges` (P+1,): times in s. `states` (P+1,): of the path, in m. `direction` (P,): 1, -1
     or 0 where the path rests. `touch` (P,): time at which a slide begins, the piece's end
     where none does. `travel` (P+1,): way so far, in m. `rho` (P,): force of friction in N
-    on the slide. `rho_plus`, `rho_minus`: in N. `speed`, `stiffness`: largest speed of
-    slides in m/s, smallest Phi''. `pulled`: what the load goes up and down in all, N.
-    `pull`: how hard the load pulls. `probes`: speeds on the way. `rows` (room, 7): the
-    pieces for compiled programs.
+    on the slide. `rho_plus`, `rho_minus`: in N. `speed`: largest of slides in m/s.
+    `stiffness`, `stiffest`: smallest and largest Phi'' there. `pulled`: what the load goes
+    up and down in all, N. `pull`: how hard the load pulls. `probes`: speeds on the way.
+    `rows` (room, 7): the pieces for compiled programs.
     """
 
     edges: Float[np.ndarray, " edges"]
@@ -61,6 +61,7 @@ class Path(NamedTuple):
     rho_minus: float
     speed: float = 0.0
     stiffness: float = 1.0
+    stiffest: float = 1.0
     pulled: float = 0.0
     pull: PullRange | None = None
     probes: Probes = NO_PROBES

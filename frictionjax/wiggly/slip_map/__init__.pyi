@@ -1,10 +1,13 @@
 from .contraction import SteadyLags as SteadyLags
+from .contraction import Wells as Wells
 from .contraction import steady_lags as steady_lags
+from .contraction import wells_both_ways as wells_both_ways
 from .fast_slides import FastSlide as FastSlide
 from .fast_slides import FastSlideFinder as FastSlideFinder
 from .fast_slides import FoundTips as FoundTips
 from .fast_slides import last_begun as last_begun
 from .fast_slides import none_known as none_known
+from .landings import latest_landings as latest_landings
 from .onsets import LookAt as LookAt
 from .onsets import Measure as Measure
 from .onsets import asking_for_slides as asking_for_slides

@@ -17,9 +17,9 @@ from .settings import SETTINGS
 # Half of the grid over a well, graded towards the fold.
 _EVEN = np.linspace(0.0, 1.0, SETTINGS.half_grid)
 _GRADED = np.expm1(SETTINGS.e_folds * _EVEN) / np.expm1(SETTINGS.e_folds)
-_GRID = 0.5 * np.concatenate([-_GRADED[:0:-1], _GRADED])
-_STEPS = np.diff(_GRID)
-_THIN_STEPS = np.diff(_GRID[:: SETTINGS.thin])
+GRID = 0.5 * np.concatenate([-_GRADED[:0:-1], _GRADED])
+_STEPS = np.diff(GRID)
+_THIN_STEPS = np.diff(GRID[:: SETTINGS.thin])
 LAG_FORCES = np.logspace(*SETTINGS.lag_forces)
 
 
@@ -27,17 +27,20 @@ class Wells(NamedTuple):
     """The way through a well, from fold to fold, shape (wells, grid).
 
     `gaps`: force in N below the fold's. `stretch`: `G`. `folds` (wells,): how many are
-    nearly as high.
+    nearly as high. `second` (wells,): by how much in N the next one is lower, infinite
+    where there is none.
     """
 
     gaps: Any
     stretch: Any
     folds: Any
+    second: Any
 
     def thinned(self) -> "Wells":
         """Every eleventh point: integrals to about a percent."""
         every = slice(None, None, SETTINGS.thin)
-        return Wells(self.gaps[:, every], self.stretch[:, every], self.folds)
+        thin = {"gaps": self.gaps[:, every], "stretch": self.stretch[:, every]}
+        return self._replace(**thin)
 
     def passages(self, forces: np.ndarray) -> np.ndarray:
         """`int_0^1 dY/(f + rho - V')` for forces f beyond the fold, an upper bound.
@@ -47,7 +50,7 @@ class Wells(NamedTuple):
         integral is multiplied by their number.
         """
         rate = self.stretch[:, None] / (forces[..., None] + self.gaps[:, None])
-        steps = _STEPS if rate.shape[-1] == _GRID.size else _THIN_STEPS
+        steps = _STEPS if rate.shape[-1] == GRID.size else _THIN_STEPS
         whole = 0.5 * (rate[..., 1:] + rate[..., :-1]) @ steps
         return self.folds[:, None] * whole
 
@@ -63,14 +66,20 @@ def _wells(
     force_at = jax.vmap(potential.tip_force, in_axes=(0, None))
 
     def one(eps: Real, place: Real, side: Real) -> Wells:
-        forces, stretch = force_at(jnp.concatenate([place + _GRID, scan]), eps)
-        way, heights = jnp.split(side * forces, [_GRID.size])
-        bump = (heights >= jnp.roll(heights, 1)) & (heights > jnp.roll(heights, -1))
+        forces, stretch = force_at(jnp.concatenate([place + GRID, scan]), eps)
+        way, heights = jnp.split(side * forces, [GRID.size])
+        before, after = jnp.roll(heights, 1), jnp.roll(heights, -1)
+        bump = (heights >= before) & (heights > after)
         least = heights.max() - SETTINGS.as_high * jnp.ptp(heights)
+        # Of the parabola through three samples.
+        bend = jnp.where(bump, 2 * heights - before - after, 1.0)
+        tops = jnp.where(bump, heights + (after - before) ** 2 / (8 * bend), -jnp.inf)
+        top = way[GRID.size // 2]
         return Wells(
-            gaps=jnp.maximum(way[_GRID.size // 2] - way, 0.0),
-            stretch=stretch[: _GRID.size],
+            gaps=jnp.maximum(top - way, 0.0),
+            stretch=stretch[: GRID.size],
             folds=jnp.maximum(jnp.sum(bump & (heights > least)), 1),
+            second=jnp.maximum(top - jnp.sort(tops)[-2], 0.0),
         )
 
     return jax.vmap(one)(eps, place, side)
@@ -85,7 +94,7 @@ def from_fold_to_fold(
 
 
 class SteadyLags(NamedTuple):
-    """Steady slides of cells, to the right (row 0) and to the left (1), shape (2, cells).
+    """Steady slides of cells, to the right (row 0) and the left (1), shape (..., 2, cells).
 
     `force`: in N beyond the fold, at most. `power`: of the speed that it grows with, at
     this speed: slides remember so many times the wells that they lag by.
@@ -95,23 +104,28 @@ class SteadyLags(NamedTuple):
     power: np.ndarray
 
 
-def steady_lags(
-    potential: AbstractPotential, eps: np.ndarray, folds: WiggleFolds, drag: np.ndarray
-) -> SteadyLags:
-    """What steady slides need; `drag`: eps^gamma times their speed, in N, (cells,).
-
-    From the slow equation averaged over a well,
-    `v = eps^-gamma / int_0^1 dY/(f + rho - W')`.
-    """
+def wells_both_ways(
+    potential: AbstractPotential, eps: np.ndarray, folds: WiggleFolds
+) -> Wells:
+    """Of cells, from fold to fold: to the right, then to the left, 2 rows a cell."""
     # Once for each eps; of the largest for all, cells would depend on their neighbours.
     own, first, which = np.unique(eps, return_index=True, return_inverse=True)
     places = [np.asarray(v)[first] for v in (folds.place_plus, folds.place_minus)]
     sides = np.repeat([1.0, -1.0], own.size)
     wells = from_fold_to_fold(potential, np.tile(own, 2), np.concatenate(places), sides)
-    both = np.concatenate([which, which + own.size])
-    cells = rows_of(wells, both)
-    logs = np.log(np.maximum(np.tile(drag, 2), 1e-300))
-    return SteadyLags._make(each.reshape(2, -1) for each in _needed(cells, logs))
+    return rows_of(wells, np.concatenate([which, which + own.size]))
+
+
+def steady_lags(wells: Wells, drag: np.ndarray) -> SteadyLags:
+    """What steady slides need; `drag`: eps^gamma times their speed, in N, (..., cells).
+
+    From the slow equation averaged over a well,
+    `v = eps^-gamma / int_0^1 dY/(f + rho - W')`. `wells`: of the cells, both ways.
+    """
+    both = np.repeat(np.maximum(drag, 1e-300)[..., None, :], 2, axis=-2)
+    cells = rows_of(wells, np.tile(np.arange(wells.folds.size), drag[..., 0].size))
+    found = _needed(cells, np.log(both.ravel()))
+    return SteadyLags._make(each.reshape(both.shape) for each in found)
 
 
 def _needed(wells: Wells, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

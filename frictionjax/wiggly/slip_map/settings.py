@@ -46,6 +46,10 @@ class Settings(NamedTuple):
     as_high: float = 0.05  # of the range of forces: how much lower other folds may be
     wells_together: int = 2  # in a compiled call
 
+    # How soon tips are beyond a fold (`landings.py`).
+    latest: float = 0.45  # later ones hardly rest before the next fold
+    landings: int = 32  # in a compiled call
+
     # First wells of a slide (`slow_flow.py`), in times in which it is forgotten.
     sets_off: tuple[int, int, int] = (-9, 0, 400)  # decades from, to; how many
     goes_on: tuple[float, float, int] = (1.05, 25.0, 480)  # from, to, how many

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import jax
 import numpy as np
 import pytest
+from landings_unknown import without_landings
 from paths import path_of
 from reference import System, sine
 from reference import solve as solve_plainly
@@ -158,6 +159,53 @@ def test_cost_does_not_grow_as_eps_falls(load, gamma):
     assert np.all(found.sup_error / [1e-5, 1e-8] < 3)
 
 
+@pytest.mark.parametrize("name", ["sine load", "several folds", "convex support"])
+def test_lanes_that_set_off_in_the_tips_well_find_the_same_in_fewer_steps(name):
+    scene, eps = SCENES[name], [1e-5, 1e-6]
+    near = cells(scene, eps, [1.0, 1.0], "windowed", suprema=False)
+    with without_landings():
+        far = cells(scene, eps, [1.0, 1.0], "windowed", suprema=False)
+    assert np.all(near.status == fx.Status.OK)
+    assert np.all(far.status == fx.Status.OK)
+    assert near.steps.sum() < 0.85 * far.steps.sum()
+    for i, e in enumerate(eps):
+        _, counted = outside_slips(scene, e, 1.0)
+        assert np.abs(near.z[i] - far.z[i])[counted].max() < 1e-3 * e
+
+
+@pytest.mark.parametrize("name", ["sine load", "several folds", "convex support"])
+@pytest.mark.parametrize("gamma", [1.0, 2.0])
+def test_lanes_set_off_below_and_above_the_tip(name, gamma):
+    """At any moment of a slide, less than two wells apart where slips are over in time."""
+    scene, eps = SCENES[name], 3e-3 if gamma == 2.0 else 3e-4
+    tables, path, cell = tabulated_scene(scene, eps), path_of(scene), np.zeros(200, int)
+    begin = np.random.default_rng(1).uniform(0.0, 3.0, cell.size)
+    plan = planning.planned(
+        tables, path, np.array([eps]), np.array([gamma]), 31, 1e-3, "auto"
+    )
+    none = np.zeros(cell.size)
+    starts = starts_of(tables, path, plan.ground, cell, begin, none, none)
+    time, which = np.unique(starts.time, return_inverse=True)
+    with without_landings():
+        solution = fx.solve(scene, eps, gamma, time, 1e-5)
+    assert solution.ok
+    z = np.asarray(solution.z)[which]
+
+    def states(well, tip):
+        offset = jax.vmap(lambda y: tables.potential.offset(y, eps))(tip)
+        return eps * (well + tip) + np.asarray(offset)
+
+    behind = states(starts.behind_well, starts.behind_tip)
+    ahead = states(starts.ahead_well, starts.ahead_tip)
+    side = path.direction[path.piece_of(starts.time)]
+    moves = ~starts.known_start
+    assert moves.sum() > 100
+    assert np.all(side * (z - behind) >= 0, where=moves)
+    assert np.all(side * (ahead - z) >= 0, where=moves)
+    width = (side * (ahead - behind) / eps)[moves]
+    assert np.quantile(width, 0.9) < 1.75  # half a well to a well and a half
+
+
 @pytest.mark.parametrize("gamma", [1.0, 2.0])
 def test_lanes_that_set_off_at_rest_find_the_same_in_fewer_steps(gamma, monkeypatch):
     scene, eps = scene_of(), [1e-3, 7e-4]
@@ -165,7 +213,8 @@ def test_lanes_that_set_off_at_rest_find_the_same_in_fewer_steps(gamma, monkeypa
     near = cells(scene, eps, gammas, "windowed")
     none = requirements.SETTINGS._replace(short_rest=np.inf)
     monkeypatch.setattr(requirements, "SETTINGS", none)
-    far = cells(scene, eps, gammas, "windowed")
+    with without_landings():
+        far = cells(scene, eps, gammas, "windowed")
     assert near.steps.sum() < 0.6 * far.steps.sum()
     for i, e in enumerate(eps):
         _, counted = outside_slips(scene, e, gamma)

@@ -1,0 +1,106 @@
+"""How soon tips on slow slides are half a well beyond a fold, against trajectories."""
+
+import numpy as np
+import pytest
+from landings_unknown import without_landings
+from paths import path_of
+from scipy.integrate import quad
+
+import frictionjax as fx
+from frictionjax._checks import viscosity_of
+from frictionjax.model import tabulated_scene
+from frictionjax.wiggly.plan import planned
+from frictionjax.wiggly.slip_map import latest_landings, wells_both_ways
+
+SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
+ANGULAR = fx.bristles.AngularSpring(1.0, 1.414, 1.0, 0.3)
+VERTICAL = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
+TWO_FOLDS = fx.profiles.Fourier([0.0, 0.0024, 0.0, 0.0012], [0.0096, 0.0, -0.0024, 0.0006])
+NEARLY_ALIKE = fx.profiles.Fourier([0.0003, 0.0], [0.0003, 0.012])
+PARTS = {
+    "sine": (fx.profiles.Sine(0.1), VERTICAL),
+    "slanted": (fx.profiles.Sine(0.1), SLANTED),
+    "two folds": (TWO_FOLDS, ANGULAR),
+    "nearly alike": (NEARLY_ALIKE, VERTICAL),
+}
+
+
+def scene_of(name, rate):
+    """One slide at one speed."""
+    profile, bristle = PARTS[name]
+    load = fx.loads.PiecewiseLinear([0.0, 3.0], [0.0, rate])
+    return fx.Scene(profile, bristle, fx.supports.Spring(1.3), load, 3.0)
+
+
+@pytest.mark.parametrize("rate", [2.0, -2.0], ids=["right", "left"])
+@pytest.mark.parametrize(
+    ("name", "eps", "gamma", "sharp"),
+    [
+        ("sine", 1e-4, 1.0, 1.3),
+        ("slanted", 1e-3, 1.0, 1.3),
+        ("two folds", 2e-4, 1.0, 1.3),
+        ("nearly alike", 5e-5, 1.0, 1.3),
+    ],
+)
+def test_tips_are_half_a_well_further_by_then_and_not_long_before(
+    name, eps, gamma, sharp, rate
+):
+    scene, way = scene_of(name, rate), int(rate < 0)
+    tables, path = tabulated_scene(scene, eps), path_of(scene)
+    cell = np.array([eps]), np.array([gamma])
+    plan = planned(tables, path, *cell, 3, 1e-3, "auto")
+    ground, folds = plan.ground, plan.ground.folds
+    landed = (ground.landed_plus, ground.landed_minus)[way][0]
+    assert 0.02 < landed < 0.45
+    fold = (folds.state_plus, folds.state_minus)[way][0]
+    place = (folds.place_plus, folds.place_minus)[way][0]
+    force = (folds.force_plus, folds.force_minus)[way][0]
+    sign, stiffness, speed = np.sign(rate), 1.3, 2.0 / 3 / 1.3
+
+    def stretch(y):
+        return float(tables.potential.tip_force(y, eps)[1])
+
+    half = abs(quad(stretch, place, place + 0.5 * sign)[0])
+    # The load at which the path comes to the fold of a well, in the middle of the slide.
+    wells = np.arange(5) + np.ceil(sign * (0.5 - fold) / eps if way == 0 else 0.5 / eps)
+    level = force + stiffness * (fold + sign * wells * eps)
+    at_fold = level / (rate / 3.0)
+    period = eps / speed
+
+    def beyond(late):
+        """Wells between tips and the places half a well beyond their folds."""
+        times = at_fold + late * period
+        with without_landings():
+            solution = fx.solve(scene, eps, gamma, times, 1e-5)
+        assert solution.ok
+        return sign * (np.asarray(solution.z) - fold) / eps - wells - half
+
+    assert beyond(landed).min() > 0
+    assert beyond(landed / sharp).max() < 0
+
+
+def test_fast_slides_and_folds_alike_have_no_landings():
+    """Two folds as high as each other: the tip rests in both halves of a well."""
+    eps, drag = np.array([1e-4]), np.array([0.6 * 1e-4])
+    alike = fx.profiles.Fourier([0.0, 0.0], [0.0, 0.012])
+    for profile, viscous in ((alike, drag), (fx.profiles.Sine(0.1), 1e3 * drag)):
+        scene = fx.Scene(profile, VERTICAL, fx.supports.Spring(1.3), PULL, 3.0)
+        tables = tabulated_scene(scene, eps)
+        folds = planned(tables, path_of(scene), eps, np.ones(1), 3, 1e-3, "auto")
+        wells = wells_both_ways(tables.potential, eps, folds.ground.folds)
+        assert np.all(np.isinf(latest_landings(wells, viscous, 1.3 * eps, 1.3 * eps)))
+
+
+PULL = fx.loads.Sine(1.0, 3.0)
+
+
+def test_supports_that_stiffen_land_later():
+    """The least pull before a fold, the most while the tip is let go."""
+    eps, drag = np.array([1e-3]), viscosity_of(np.array([1e-3]), np.array([1.5]))
+    scene = fx.Scene(*PARTS["sine"], fx.supports.Spring(1.0), PULL, 3.0)
+    tables = tabulated_scene(scene, eps)
+    plan = planned(tables, path_of(scene), eps, np.array([1.5]), 3, 1e-3, "auto")
+    wells = wells_both_ways(tables.potential, eps, plan.ground.folds)
+    plain = latest_landings(wells, drag, eps, eps)
+    assert np.all(latest_landings(wells, drag, 0.5 * eps, eps) > 1.2 * plain)
+    assert np.all(latest_landings(wells, drag, eps, 20 * eps) > plain)
