@@ -11,6 +11,7 @@ the least of a few runs, of
     rows      rows of a measured map (`--map`, or series by chance) x 16 eps from 0.05 to
               1e-5, energies and suprema, a row: in one sweep, or one each
     scenes    sines by chance x 8 eps from 0.1 to 1e-3, values alone, a scene: the same
+    small     sines by chance x 8 eps from 1e-4 to 1e-7, a scene: the same, and steps
     gradient  of a steady slide and of a value of a trajectory, for the first time in a
               process: without a cache, then with every program kept
     certificates  of curves of scenes of 18 kinds, each for the first time
@@ -140,6 +141,20 @@ def scenes(fx, options):
     many = sines(fx, options.count, np.random.default_rng(4))
     found = swept(fx, many, np.geomspace(0.1, 1e-3, 8), dissipation=False, suprema=False)
     return {f"a scene of a sine x 8 eps, {how}, ms": s for how, s in found.items()}
+
+
+def small(fx, options):
+    many = sines(fx, options.count, np.random.default_rng(4))
+    eps = np.geomspace(1e-4, 1e-7, 8)
+    found = swept(fx, many, eps)
+    figures = {f"a scene of a sine x 8 small eps, {how}, ms": s for how, s in found.items()}
+    for name, options in {
+        "all": {},
+        "values": {"dissipation": False, "suprema": False},
+    }.items():
+        steps = [fx.sweep(one, eps, [1.0], **options).steps.sum() for one in many]
+        figures[f"steps a cell, {name}"] = float(np.mean(steps)) / eps.size
+    return figures
 
 
 def gradient(fx, options):
@@ -287,7 +302,7 @@ def times(fx, options):
     return {"a solve with another number of times, s": max(taken)}
 
 
-_ALL = solve, slide, step, rows, scenes, gradient, certificates, others, times
+_ALL = solve, slide, step, rows, scenes, small, gradient, certificates, others, times
 PARTS = {part.__name__: part for part in _ALL}
 
 

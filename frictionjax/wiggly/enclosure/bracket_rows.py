@@ -22,8 +22,8 @@ class BracketRows:
     ) -> np.ndarray:
         """Add brackets; the numbers of their stops among all.
 
-        `cell`, `begin`, `sizes`: of each, so many of the stops as its size. `paired`: of each,
-        or of all.
+        `cell`, `begin`, `sizes`: of each, so many of the stops as its size. `paired`: of
+        each, or of all.
         """
         self._added.append((cell, begin, np.full(sizes.size, paired), sizes, stops))
         self._count += stops.size

@@ -40,8 +40,8 @@ class Settings(NamedTuple):
     # Half of the grid over a well, graded towards the fold by this many e-folds, which
     # resolve folds down to 1e-13 of a period.
     e_folds: float = 30.0
-    half_grid: int = 1024  # places
-    thin: int = 11  # 1023 is a multiple, so that the fold stays on the grid
+    half_grid: int = 256  # places
+    thin: int = 3  # 255 is a multiple, so that the fold stays on the grid
     lag_forces: tuple[int, int, int] = (-24, 4, 85)  # decades from, to; how many
     as_high: float = 0.05  # of the range of forces: how much lower other folds may be
     wells_together: int = 2  # in a compiled call
