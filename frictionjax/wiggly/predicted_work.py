@@ -106,13 +106,16 @@ def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.nd
 def _rows(
     path: Path, eps: np.ndarray, needs: Requirements, times: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Jobs and segments: two lanes for each bracket, the first one from stop to stop."""
+    """Jobs and segments: two lanes for each bracket, the first one from stop to stop.
+
+    The second one not beyond the begin, where tips settle.
+    """
     outer, inner = wells_of(path, eps, needs)
     shown = times * inner / np.maximum(inner + outer, 1e-9)
     slides = np.count_nonzero(path.direction)
     tiles, sampled = 1 + outer / needs.tile, needs.samples * slides * (inner > 0) + shown
     stops = outer / wells_a_leg(path, eps) + times - shown + 2 * path.edges.size
-    return 2 * (tiles + sampled), stops + 2 * tiles + 4 * sampled
+    return 2 * (tiles + sampled), stops + 2 * tiles + (4 - needs.settles) * sampled
 
 
 def _weight_of(scene: TabulatedScene) -> float:

@@ -80,7 +80,8 @@ def cost_of(path: Path, eps: np.ndarray, needs: Requirements, times: int) -> np.
     brackets = (inside > 0) * needs.samples[:, None] + shown
     # The first tile sets off from the known z0.
     run_ups = 2 * needs.run_up * np.maximum(tiles - 1, 0.0)
-    sampled = np.sum((needs.share * needs.run_up[:, None] + 2) * brackets, axis=1)
+    passed = np.where(needs.settles, SETTINGS.settled_lane, SETTINGS.lane)[:, None]
+    sampled = np.sum((needs.share * needs.run_up[:, None] + passed) * brackets, axis=1)
     return outer + run_ups + 2 * sampled
 
 

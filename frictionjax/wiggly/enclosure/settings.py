@@ -53,6 +53,10 @@ class Settings(NamedTuple):
     slips_forget: float = 1.5
     most_wells_a_leg: int = 16
     leg: float = 0.02  # of the whole way: the guide is a cubic on each leg
+    # That a lane goes through beyond its run-up for a period or a time, and on average
+    # where both set off in the tip's well, and one alone goes on.
+    lane: float = 2.0
+    settled_lane: float = 0.6
     affordable: float = 2e5  # for one lane alone, at most: a minute or two
     tail: int = 4  # before a turning point, always measured
 
