@@ -51,10 +51,13 @@ def close_brackets(
         # and so do those that set off from a fast slide where their bracket begins.
         far = (wells[open_] > SETTINGS.margin) & ~(plan.from_slide & (back[open_] < 1))
         shifts = shifts_of(ends, *where)
-        met = np.nan_to_num(np.maximum(meets, shifts), nan=np.inf)
-        worst = np.minimum(worst, np.where(far, met, np.inf))
-        worst = np.where(needs.settles[open_brackets.cell], met, worst)
-        open_ = open_[worst > SETTINGS.closed * rounds.accuracy]
+        met = np.maximum(meets, shifts)
+        met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
+        worst = np.minimum(worst, met)
+        # At rest lanes forget as much again until the next slip.
+        lone = needs.settles[open_brackets.cell]
+        closed = np.where(lone, SETTINGS.forgotten, SETTINGS.closed)
+        open_ = open_[worst > closed * rounds.accuracy]
         if open_.size == 0:
             break
         wells[open_] = np.maximum(SETTINGS.earlier * wells[open_], SETTINGS.margin + 1)
