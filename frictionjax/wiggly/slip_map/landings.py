@@ -63,7 +63,7 @@ def latest_landings(wells: Wells, drag: np.ndarray, softest, stiffest) -> np.nda
     ways = np.add.reduceat(ways, _FIRST, axis=1)
     ends = np.cumsum(ways, axis=1)
     ends -= ends[:, [ends.shape[1] // 2 - 1]]
-    least = np.minimum(gaps[:, _FIRST + SETTINGS.thin], np.inf)
+    least = np.minimum(gaps[:, _FIRST + SETTINGS.thin], wells.second[:, None])
     least = np.minimum(np.minimum.reduceat(gaps[:, :-1], _FIRST, axis=1), least)
     forces = (np.tile(each, 2) for each in (drag, softest, stiffest))
     (found,) = in_chunks(_landed, SETTINGS.landings, (), (least, ends, ways, *forces))

@@ -84,14 +84,48 @@ def test_fast_slides_and_folds_alike_have_no_landings():
     eps, drag = np.array([1e-4]), np.array([0.6 * 1e-4])
     alike = fx.profiles.Fourier([0.0, 0.0], [0.0, 0.012])
     for profile, viscous in ((alike, drag), (fx.profiles.Sine(0.1), 1e3 * drag)):
-        scene = fx.Scene(profile, VERTICAL, fx.supports.Spring(1.3), PULL, 3.0)
-        tables = tabulated_scene(scene, eps)
-        folds = planned(tables, path_of(scene), eps, np.ones(1), 3, 1e-3, "auto")
-        wells = wells_both_ways(tables.potential, eps, folds.ground.folds)
-        assert np.all(np.isinf(latest_landings(wells, viscous, 1.3 * eps, 1.3 * eps)))
+        assert np.all(np.isinf(landings_of(profile, eps, viscous, 1.3)))
 
 
 PULL = fx.loads.Sine(1.0, 3.0)
+
+
+def landings_of(profile, eps, drag, stiffness=1.0):
+    """Of a vertical bristle, both ways."""
+    scene = fx.Scene(profile, VERTICAL, fx.supports.Spring(stiffness), PULL, 3.0)
+    tables = tabulated_scene(scene, eps)
+    plan = planned(tables, path_of(scene), eps, np.ones(1), 3, 1e-3, "auto")
+    wells = wells_both_ways(tables.potential, eps, plan.ground.folds)
+    return latest_landings(wells, drag, stiffness * eps, stiffness * eps)
+
+
+def test_a_mirrored_surface_swaps_the_sides():
+    """Of folds that fall off more on one side than on the other."""
+    eps, drag = np.array([1e-2]), np.array([2e-4])
+    saw = fx.profiles.Fourier([0.002, 0.001, 0.0], [0.012, 0.004, 0.001])
+    mirrored = saw.replace(sin=-saw.sin)
+    found, swapped = landings_of(saw, eps, drag), landings_of(mirrored, eps, drag)
+    assert np.all(np.isfinite(found))
+    assert abs(found[0] / found[1] - 1) > 1e-2
+    np.testing.assert_allclose(found, swapped[::-1], rtol=1e-6)
+
+
+def two_bumps(width=0.012, apart=0.47, lower):
+    """`w'` has two bumps, one a little lower, both narrower than the grid is there."""
+    n = np.arange(1, 49)
+    slopes = np.exp(-2 * (np.pi * n * width) ** 2)
+    slopes = 0.05 * slopes / slopes.sum()
+    waves = slopes / (2j * np.pi * n) * (1 + lower * np.exp(-2j * np.pi * n * apart))
+    return fx.profiles.Fourier(2 * waves.real, -2 * waves.imag)
+
+
+def test_a_narrow_second_fold_is_not_stepped_over():
+    """Tips wait at it, between two places of the grid."""
+    eps, drag = np.array([1e-5]), np.array([3e-6])
+    alone, second = two_bumps(lower=0.5), two_bumps(lower=0.9999)
+    assert np.all(
+        landings_of(second, eps, drag)[0] > 1.2 * landings_of(alone, eps, drag)[0]
+    )
 
 
 def test_supports_that_stiffen_land_later():
