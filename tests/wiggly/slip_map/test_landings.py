@@ -110,7 +110,7 @@ def test_a_mirrored_surface_swaps_the_sides():
     np.testing.assert_allclose(found, swapped[::-1], rtol=1e-6)
 
 
-def two_bumps(width=0.012, apart=0.47, lower):
+def two_bumps(lower, width=0.012, apart=0.47):
     """`w'` has two bumps, one a little lower, both narrower than the grid is there."""
     n = np.arange(1, 49)
     slopes = np.exp(-2 * (np.pi * n * width) ** 2)
