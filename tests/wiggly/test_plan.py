@@ -81,3 +81,15 @@ def test_no_more_slips_are_remembered_than_there_are():
     assert found.ok
     assert found.stats["tolerance"] > 2e-9  # 3.2e-11 before
     assert np.max(np.abs(found.z - truth.z)) < 0.1 * 1e-3 * 1e-3
+
+
+def test_run_ups_are_what_is_left_of_half_a_well_after_landing():
+    """Where a tenth of it is enough to forget; lanes then set off with the tip at rest."""
+    sine = scene_of(fx.profiles.Sine(0.1), SCENES["sawtooth"].bristle)
+    eps, gamma = np.array([1e-4, 3e-5]), np.array([1.0, 1.0])
+    scene, path = tabulated_scene(sine, eps), path_of(sine)
+    ground, needs = planned(scene, path, eps, gamma, 3, 1e-3, "auto")[1:3]
+    landed = np.maximum(ground.landed_plus, ground.landed_minus)
+    shift = np.maximum(ground.shift_plus, ground.shift_minus) / eps
+    assert np.all(needs.settles)
+    assert needs.run_up == pytest.approx(0.5 - landed - shift, rel=1e-12)

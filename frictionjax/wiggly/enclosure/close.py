@@ -56,7 +56,7 @@ def close_brackets(
         worst = np.minimum(worst, met)
         # At rest lanes forget as much again until the next slip.
         lone = needs.settles[open_brackets.cell]
-        closed = np.where(lone, SETTINGS.forgotten, SETTINGS.closed)
+        closed = SETTINGS.closed * np.where(lone, SETTINGS.closer, 1.0)
         open_ = open_[worst > closed * rounds.accuracy]
         if open_.size == 0:
             break

@@ -8,6 +8,7 @@ class Settings(NamedTuple):
 
     # Rounds (`close.py`).
     closed: float = 0.5  # of the accuracy: gaps of brackets accepted
+    closer: float = 0.2  # of it, where one lane goes on alone
     rounds: int = 3
     earlier: int = 4  # times as far back in each round
     margin: int = 3  # one to fall behind, one to catch up, one to forget
