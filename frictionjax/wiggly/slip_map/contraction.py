@@ -27,8 +27,8 @@ class Wells(NamedTuple):
     """The way through a well, from fold to fold, shape (wells, grid).
 
     `gaps`: force in N below the fold's. `stretch`: `G`. `folds` (wells,): how many are
-    nearly as high. `second` (wells,): by how much in N the next one is lower, infinite
-    where there is none.
+    nearly as high. `second` (wells,): by how much in N the next one is lower, at
+    least; infinite where there is none.
     """
 
     gaps: Any
@@ -68,18 +68,16 @@ def _wells(
     def one(eps: Real, place: Real, side: Real) -> Wells:
         forces, stretch = force_at(jnp.concatenate([place + GRID, scan]), eps)
         way, heights = jnp.split(side * forces, [GRID.size])
-        before, after = jnp.roll(heights, 1), jnp.roll(heights, -1)
-        bump = (heights >= before) & (heights > after)
+        bump = (heights >= jnp.roll(heights, 1)) & (heights > jnp.roll(heights, -1))
         least = heights.max() - SETTINGS.as_high * jnp.ptp(heights)
-        # Of the parabola through three samples.
-        bend = jnp.where(bump, 2 * heights - before - after, 1.0)
-        tops = jnp.where(bump, heights + (after - before) ** 2 / (8 * bend), -jnp.inf)
+        tops = jnp.sort(jnp.where(bump, heights, -jnp.inf))
         top = way[GRID.size // 2]
+        second = top - tops[-2] - SETTINGS.missed * jnp.ptp(heights)
         return Wells(
             gaps=jnp.maximum(top - way, 0.0),
             stretch=stretch[: GRID.size],
             folds=jnp.maximum(jnp.sum(bump & (heights > least)), 1),
-            second=jnp.maximum(top - jnp.sort(tops)[-2], 0.0),
+            second=jnp.maximum(second, 0.0),
         )
 
     return jax.vmap(one)(eps, place, side)

@@ -44,6 +44,8 @@ class Settings(NamedTuple):
     thin: int = 3  # 255 is a multiple, so that the fold stays on the grid
     lag_forces: tuple[int, int, int] = (-24, 4, 85)  # decades from, to; how many
     as_high: float = 0.05  # of the range of forces: how much lower other folds may be
+    # Of that range: by how much samples may miss a fold (0.0012 of a wave with 64 of them).
+    missed: float = 2e-3
     wells_together: int = 2  # in a compiled call
 
     # How soon tips are beyond a fold (`landings.py`).

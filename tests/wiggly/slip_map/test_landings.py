@@ -128,6 +128,16 @@ def test_a_narrow_second_fold_is_not_stepped_over():
     )
 
 
+@pytest.mark.parametrize("phase", [0.0, 0.1, 0.7])
+@pytest.mark.parametrize("share", [0.0, 1e-6])
+def test_folds_nearly_alike_have_no_landings(phase, share):
+    """Wherever samples are: tips rest at each of the three."""
+    wave = 0.008 * np.exp(2j * np.pi * np.array([0.0, 0.0, phase])) * [share, 0.0, 1.0]
+    profile = fx.profiles.Fourier(wave.real, wave.imag)
+    found = landings_of(profile, np.array([1e-6]), np.array([6e-7]))
+    assert np.all(np.isinf(found))
+
+
 def test_supports_that_stiffen_land_later():
     """The least pull before a fold, the most while the tip is let go."""
     eps, drag = np.array([1e-3]), viscosity_of(np.array([1e-3]), np.array([1.5]))
