@@ -128,6 +128,17 @@ def test_a_narrow_second_fold_is_not_stepped_over():
     )
 
 
+@pytest.mark.parametrize("drag", [1e-9, 1e-8])
+def test_landings_near_a_fold_are_those_of_airys_equation(drag):
+    """Riccati's, `drag dY/ds = k s + c Y^2 / 2`, blows up at Airy's first zero."""
+    eps, profile = 1e-6, fx.profiles.Sine(0.1)
+    found = landings_of(profile, np.array([eps]), np.array([drag]))
+    curvature = (2 * np.pi) ** 2 * float(fx.friction(profile, VERTICAL).rho_plus)
+    airy = 2.3381 * np.cbrt(2 * drag**2 / (eps * curvature))
+    # The least force of each stretch in place of the force: a bound from above.
+    assert found / airy == pytest.approx(1.13, abs=0.02)
+
+
 @pytest.mark.parametrize("phase", [0.0, 0.1, 0.7])
 @pytest.mark.parametrize("share", [0.0, 1e-6])
 def test_folds_nearly_alike_have_no_landings(phase, share):
