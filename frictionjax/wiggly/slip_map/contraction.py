@@ -37,7 +37,7 @@ class Wells(NamedTuple):
     second: Any
 
     def thinned(self) -> "Wells":
-        """Every eleventh point: integrals to about a percent."""
+        """Every third point: integrals to about a percent."""
         every = slice(None, None, SETTINGS.thin)
         thin = {"gaps": self.gaps[:, every], "stretch": self.stretch[:, every]}
         return self._replace(**thin)

@@ -35,7 +35,8 @@ def _landed(
             time += jnp.maximum(-held, 0.0) / stiffest
             force, needed = jnp.maximum(held, 0.0), drag * way
             root = jnp.sqrt(force**2 + 2 * softest * needed)
-            return time + 2 * needed / (force + root), None
+            # Nothing drags where nothing slides.
+            return time + 2 * needed / jnp.maximum(force + root, 1e-300), None
 
         return jax.lax.scan(through, start, (gaps, ends, ways))[0]
 
