@@ -66,7 +66,8 @@ def ground_of(
     forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
     memories = lags.power * lags.force / path.stiffness
     shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
-    landed = latest_landings(wells, drag, eps * path.stiffness, eps * path.stiffest)
+    pulls = eps * path.stiffness, eps * path.stiffest
+    landed = latest_landings(wells, lags.force / pulls[0], drag, *pulls)
     return CellBounds(
         eps,
         folds,

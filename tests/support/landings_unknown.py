@@ -17,5 +17,5 @@ def without_landings() -> Iterator[None]:
         yield
 
 
-def _unknown(wells, drag, *stiffness):
-    return np.full((2, drag.size), np.inf)
+def _unknown(wells, lag, *pulls):
+    return np.full(lag.shape, np.inf)

@@ -43,7 +43,9 @@ def _landed(
     return (jax.vmap(one)(gaps, ends, ways, drag, softest, stiffest),)
 
 
-def latest_landings(wells: Wells, drag: np.ndarray, softest, stiffest) -> np.ndarray:
+def latest_landings(
+    wells: Wells, lag: np.ndarray, drag: np.ndarray, softest, stiffest
+) -> np.ndarray:
     """Wells from a fold on which tips are half a well beyond it, at most; (2, cells).
 
     A bound from above for slides that have come a few wells: the path goes `s` wells beyond
@@ -52,8 +54,12 @@ def latest_landings(wells: Wells, drag: np.ndarray, softest, stiffest) -> np.nda
     where it is that late after the last one, through stretches in which the force is no
     less than at their ends, nor than at the second highest fold, which they may step over.
     `softest`, `stiffest`: the least and the largest `k` that a well is pulled back by, in
-    N, (cells,). Infinite beyond `SETTINGS.latest`, where slides are not slow.
+    N, (cells,). Infinite beyond `SETTINGS.latest`, where slides are not slow: all are that
+    lag as much (`lag`: in wells, (2, cells)), as a smaller force lets none pass in time.
     """
+    near = lag < SETTINGS.latest
+    if not near.any():
+        return np.full(lag.shape, np.inf)
     count = drag.size
     # To the left tips come from the grid's other end.
     gaps, stretch = (
@@ -68,5 +74,5 @@ def latest_landings(wells: Wells, drag: np.ndarray, softest, stiffest) -> np.nda
     least = np.minimum(np.minimum.reduceat(gaps[:, :-1], _FIRST, axis=1), least)
     forces = (np.tile(each, 2) for each in (drag, softest, stiffest))
     (found,) = in_chunks(_landed, SETTINGS.landings, (), (least, ends, ways, *forces))
-    slow = found <= SETTINGS.latest
-    return np.where(slow, found, np.inf).reshape(2, count)
+    found = found.reshape(lag.shape)
+    return np.where(near & (found <= SETTINGS.latest), found, np.inf)

@@ -10,7 +10,7 @@ import frictionjax as fx
 from frictionjax._checks import viscosity_of
 from frictionjax.model import tabulated_scene
 from frictionjax.wiggly.plan import planned
-from frictionjax.wiggly.slip_map import latest_landings, wells_both_ways
+from frictionjax.wiggly.slip_map import latest_landings, steady_lags, wells_both_ways
 
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
 ANGULAR = fx.bristles.AngularSpring(1.0, 1.414, 1.0, 0.3)
@@ -90,13 +90,15 @@ def test_fast_slides_and_folds_alike_have_no_landings():
 PULL = fx.loads.Sine(1.0, 3.0)
 
 
-def landings_of(profile, eps, drag, stiffness=1.0):
+def landings_of(profile, eps, drag, softest=1.0, stiffest=None):
     """Of a vertical bristle, both ways."""
-    scene = fx.Scene(profile, VERTICAL, fx.supports.Spring(stiffness), PULL, 3.0)
+    scene = fx.Scene(profile, VERTICAL, fx.supports.Spring(1.0), PULL, 3.0)
     tables = tabulated_scene(scene, eps)
     plan = planned(tables, path_of(scene), eps, np.ones(1), 3, 1e-3, "auto")
     wells = wells_both_ways(tables.potential, eps, plan.ground.folds)
-    return latest_landings(wells, drag, stiffness * eps, stiffness * eps)
+    pulls = softest * eps, (stiffest or softest) * eps
+    lag = steady_lags(wells, drag).force / pulls[0]
+    return latest_landings(wells, lag, drag, *pulls)
 
 
 def test_a_mirrored_surface_swaps_the_sides():
@@ -151,11 +153,7 @@ def test_folds_nearly_alike_have_no_landings(phase, share):
 
 def test_supports_that_stiffen_land_later():
     """The least pull before a fold, the most while the tip is let go."""
-    eps, drag = np.array([1e-3]), viscosity_of(np.array([1e-3]), np.array([1.5]))
-    scene = fx.Scene(*PARTS["sine"], fx.supports.Spring(1.0), PULL, 3.0)
-    tables = tabulated_scene(scene, eps)
-    plan = planned(tables, path_of(scene), eps, np.array([1.5]), 3, 1e-3, "auto")
-    wells = wells_both_ways(tables.potential, eps, plan.ground.folds)
-    plain = latest_landings(wells, drag, eps, eps)
-    assert np.all(latest_landings(wells, drag, 0.5 * eps, eps) > 1.2 * plain)
-    assert np.all(latest_landings(wells, drag, eps, 20 * eps) > plain)
+    cell = fx.profiles.Sine(0.1), np.array([1e-3]), viscosity_of(np.array([1e-3]), 1.5)
+    plain = landings_of(*cell)
+    assert np.all(landings_of(*cell, softest=0.5, stiffest=1.0) > 1.2 * plain)
+    assert np.all(landings_of(*cell, stiffest=20.0) > plain)
