@@ -148,11 +148,9 @@ def small(fx, options):
     eps = np.geomspace(1e-4, 1e-7, 8)
     found = swept(fx, many, eps)
     figures = {f"a scene of a sine x 8 small eps, {how}, ms": s for how, s in found.items()}
-    for name, options in {
-        "all": {},
-        "values": {"dissipation": False, "suprema": False},
-    }.items():
-        steps = [fx.sweep(one, eps, [1.0], **options).steps.sum() for one in many]
+    values = {"dissipation": False, "suprema": False}
+    for name, asked in {"all": {}, "values": values}.items():
+        steps = [fx.sweep(one, eps, [1.0], **asked).steps.sum() for one in many]
         figures[f"steps a cell, {name}"] = float(np.mean(steps)) / eps.size
     return figures
 

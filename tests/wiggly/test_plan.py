@@ -84,7 +84,7 @@ def test_no_more_slips_are_remembered_than_there_are():
 
 
 def test_run_ups_are_what_is_left_of_half_a_well_after_landing():
-    """Where a tenth of it is enough to forget; lanes then set off with the tip at rest."""
+    """Where that is long enough to forget: lanes set off where the tip has just landed."""
     sine = scene_of(fx.profiles.Sine(0.1), SCENES["sawtooth"].bristle)
     eps, gamma = np.array([1e-4, 3e-5]), np.array([1.0, 1.0])
     scene, path = tabulated_scene(sine, eps), path_of(sine)

@@ -115,7 +115,7 @@ def starts_of(
     On a slide the tip cannot be past the first fold beyond the strip's edge: it would have
     had to climb it against a force. Nor can it be further behind than a steady slide at
     the largest speed of the scene; where that is many wells, of the moment. Both hold once
-    the path has come further than the lag of the slide before in the other direction. Some
+    the path has come further than the lag of the slide before in the other direction. Two
     wells later, on a slow slide, the tip has been through every slip that is over by
     `landed`: both lanes set off in the well where it rests (with the other bound the lane
     behind went through two slips first, two fifths of all steps at small eps).
@@ -129,7 +129,7 @@ def starts_of(
     astray = path.speed * ground.relaxed[cell]
     clear = (lag + astray + 2 * eps)[:, None] - _run_up(path)
     opens = path.travel[:-1] + np.maximum(clear, 0.0)
-    settled = path.travel[:-1] + clear + SETTINGS.settles * eps[:, None]
+    settled = path.travel[:-1] + clear + SETTINGS.settling * eps[:, None]
     closes = path.travel[1:]
     usable = (path.direction != 0) & (opens <= closes) & (opens <= wanted[:, None])
     last = opens.shape[1] - 1 - np.argmax(usable[:, ::-1], axis=1)
@@ -152,7 +152,7 @@ def starts_of(
     lagging = _still_lagging(path, slides, which, time)
     share = np.where(lagging, 1.0, share)
     rests = ~lagging & (way >= settled[np.arange(way.size), piece])
-    behind, ahead = _bracket(ground, cell, direction, level, known, share, rests)
+    lane_wells, lane_tips = _bracket(ground, cell, direction, level, known, share, rests)
     plain = Starts(
         time=time,
         known_start=known,
@@ -160,10 +160,10 @@ def starts_of(
         lagging=lagging,
         until=np.full(begin.size, -np.inf),
         pace=np.full(begin.size, np.inf),
-        behind_well=behind[0],
-        behind_tip=behind[1],
-        ahead_well=ahead[0],
-        ahead_tip=ahead[1],
+        behind_well=lane_wells[0],
+        behind_tip=lane_tips[0],
+        ahead_well=lane_wells[1],
+        ahead_tip=lane_tips[1],
     )
     # Way in m that a lane goes until the bracket begins, its lag included.
     reach = wells * eps + 2 * share * lag
@@ -265,7 +265,7 @@ def lag_share(ground: CellBounds, cell: np.ndarray, share: np.ndarray) -> np.nda
 
 
 def _bracket(ground: CellBounds, cell, direction, level, known, share, rests):
-    """Well and tip of the lanes behind and ahead of the edge at `level`.
+    """Wells and tips of the lanes behind and ahead of the edge at `level`, (2, W) each.
 
     `rests`: where the tip has been through all slips that should be over.
     """
@@ -289,10 +289,5 @@ def _bracket(ground: CellBounds, cell, direction, level, known, share, rests):
     behind_tip = place + np.where(slow, 0.5 * sign, 0.0)
     start, tip = ground.start_well[cell], ground.start_tip[cell]
     phase = ground.phase[cell]
-    return (
-        (
-            np.where(known, start, sign * behind - phase),
-            np.where(known, tip, behind_tip),
-        ),
-        (np.where(known, start, sign * ahead - phase), np.where(known, tip, place)),
-    )
+    wells = np.where(known, start, sign * np.stack([behind, ahead]) - phase)
+    return wells, np.where(known, tip, np.stack([behind_tip, place]))

@@ -17,6 +17,7 @@ ANGULAR = fx.bristles.AngularSpring(1.0, 1.414, 1.0, 0.3)
 VERTICAL = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
 TWO_FOLDS = fx.profiles.Fourier([0.0, 0.0024, 0.0, 0.0012], [0.0096, 0.0, -0.0024, 0.0006])
 NEARLY_ALIKE = fx.profiles.Fourier([0.0003, 0.0], [0.0003, 0.012])
+PULL = fx.loads.Sine(1.0, 3.0)
 PARTS = {
     "sine": (fx.profiles.Sine(0.1), VERTICAL),
     "slanted": (fx.profiles.Sine(0.1), SLANTED),
@@ -85,9 +86,6 @@ def test_fast_slides_and_folds_alike_have_no_landings():
     alike = fx.profiles.Fourier([0.0, 0.0], [0.0, 0.012])
     for profile, viscous in ((alike, drag), (fx.profiles.Sine(0.1), 1e3 * drag)):
         assert np.all(np.isinf(landings_of(profile, eps, viscous, 1.3)))
-
-
-PULL = fx.loads.Sine(1.0, 3.0)
 
 
 def landings_of(profile, eps, drag, softest=1.0, stiffest=None):
