@@ -72,9 +72,7 @@ class Settings(NamedTuple):
     leg_places: tuple[float, float] = (0.27, 0.62)
 
     # Starts (`starts.py`).
-    settling: float = (
-        2.0  # wells, from where lags are bounded to where slips are over in time
-    )
+    settling: float = 2.0  # from where lags are bounded to where slips are over in time
     aside: float = 1e-6  # of a stretch of time: where one-sided slopes are taken
     gap: float = 1e-6  # rounding of z/eps
     faster: float = 1.5  # how much slides may have been, squared, where lanes set off
