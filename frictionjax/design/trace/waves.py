@@ -57,6 +57,8 @@ def _unseen(order: int, size: Real, centre: Real, width: Real, y: Real) -> Real:
 def _unseen_jvp(order: int, primals: tuple, tangents: tuple) -> tuple[Array, Array]:
     size, centre, width, y = primals
     size_dot, _, _, y_dot = tangents
+    # The value by its name, not as 0: an outer derivative by the size goes through it.
+    value = _unseen(order, size, centre, width, y)
     change = jnp.zeros_like(y)
     if not isinstance(y_dot, SymbolicZero):
         change = _unseen(order + 1, size, centre, width, y) * y_dot
@@ -64,7 +66,7 @@ def _unseen_jvp(order: int, primals: tuple, tangents: tuple) -> tuple[Array, Arr
         away = y - centre
         share = (away - jnp.round(away)) / width
         change = change + size_dot * _bump(share, order) * width ** (1 - order)
-    return jnp.zeros_like(y), change
+    return value, change
 
 
 _unseen.defjvp(_unseen_jvp, symbolic_zeros=True)
