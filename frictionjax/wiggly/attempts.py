@@ -87,7 +87,6 @@ class AttemptContext(NamedTuple):
         """Answers of some cells, and which of them have a bracket that stays open."""
         rounds = self.rounds_of(some)
         layout = lay_out(
-            scene=rounds.scene,
             path=rounds.path,
             eps=some.ground.eps,
             ts=self.ts,

@@ -83,7 +83,7 @@ def ground_of(
         landed_minus=landed[1],
         start_well=start[0],
         start_tip=start[1],
-        relaxed=_relaxation(scene, path, eps, gamma),
+        relaxed=_relaxation(path, eps, gamma),
         phase=np.zeros(eps.size),
         fast_slides=none_known(eps.size),
     )
@@ -101,10 +101,9 @@ def _lags(wells: Wells, drag: np.ndarray) -> tuple[SteadyLags, np.ndarray]:
     return lags, np.where(powers > SETTINGS.square, 2.0, np.maximum(powers, 1.0))
 
 
-def _relaxation(scene: TabulatedScene, path: Path, eps: np.ndarray, gamma: np.ndarray):
+def _relaxation(path: Path, eps: np.ndarray, gamma: np.ndarray):
     """Time in s until z0 is within a thousandth of a well of the strip (Lemma 7)."""
-    far = abs(scene.z0 - path.states[0])
-    efolds = np.log(np.maximum(far / (SETTINGS.near_strip * eps), 1.0))
+    efolds = np.log(np.maximum(path.outside / (SETTINGS.near_strip * eps), 1.0))
     return efolds * viscosity_of(eps, gamma) / path.stiffness
 
 
@@ -118,9 +117,7 @@ def lane_scene(scene: TabulatedScene) -> LaneScene:
     return LaneScene(potential, scene.support, bent_part(scene.load), *rho)
 
 
-def _needs(
-    scene: TabulatedScene, path: Path, ground: CellBounds, accuracy: float
-) -> Requirements:
+def _needs(path: Path, ground: CellBounds, accuracy: float) -> Requirements:
     """How far back brackets start: until one as wide as the lag has closed.
 
     (The closed form of step control is that for one fold far below the others: on the
@@ -137,7 +134,7 @@ def _needs(
         run_up=run_up,
         transient=np.ceil(lag + run_up + 2),
         tile=SETTINGS.tile * slow,
-        share=_shares(scene, path, ground, run_up),
+        share=_shares(path, ground, run_up),
         samples=np.zeros(lag.size),
         lattice_offset=offset,
         restarts=np.zeros(offset.shape, dtype=bool),
@@ -145,9 +142,7 @@ def _needs(
     )
 
 
-def _shares(
-    scene: TabulatedScene, path: Path, ground: CellBounds, run_up: np.ndarray
-) -> np.ndarray:
+def _shares(path: Path, ground: CellBounds, run_up: np.ndarray) -> np.ndarray:
     """Of what the slides need that remember longest, for each piece, (cells, pieces).
 
     Slides one way may remember less than those the other way, unless the one before ends
@@ -157,7 +152,7 @@ def _shares(
     some = np.flatnonzero(run_up > ENCLOSURE_SETTINGS.some_memory)
     if some.size == 0:
         return share
-    slow = _slow_ends(scene, path, ground, some)
+    slow = _slow_ends(path, ground, some)
     own = ground.memory(some[:, None], path.direction[None, :])
     own = own / np.maximum(ground.longest_memory[some, None], 1e-300)
     before = np.zeros(some.size)
@@ -169,9 +164,7 @@ def _shares(
     return share
 
 
-def _slow_ends(
-    scene: TabulatedScene, path: Path, ground: CellBounds, some: np.ndarray
-) -> np.ndarray:
+def _slow_ends(path: Path, ground: CellBounds, some: np.ndarray) -> np.ndarray:
     """Whether pieces should end slow in some cells, (some, pieces).
 
     Slides remember twice the wells that they lag by, at most.
@@ -179,7 +172,7 @@ def _slow_ends(
     cell, direction = some[:, None], path.direction[None, :]
     lag = np.where(direction > 0, ground.lag_plus[cell], ground.lag_minus[cell])
     eps, power = ground.eps[some], ground.power(cell, direction)
-    return slow_ends(scene, path, eps, 2 * lag / eps[:, None], power)
+    return slow_ends(path, eps, 2 * lag / eps[:, None], power)
 
 
 def _lattice_offsets(ground: CellBounds, path: Path) -> np.ndarray:
@@ -201,7 +194,6 @@ def _with_brackets(
 
 
 def _along(
-    scene: TabulatedScene,
     path: Path,
     ground: CellBounds,
     needs: Requirements,
@@ -216,7 +208,7 @@ def _along(
     if not np.any(alone | by_map):
         return needs
     late = ends_before_tips_follow(path, ground.eps, follows)
-    restarts = _slow_ends(scene, path, ground, np.arange(ground.eps.size))
+    restarts = _slow_ends(path, ground, np.arange(ground.eps.size))
     return needs._replace(
         samples=np.where(alone, 0, needs.samples),
         tile=np.where(alone, np.inf, needs.tile),
@@ -276,7 +268,7 @@ def planned(
     """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
     control, start = _controls(scene, path, eps, gamma, accuracy)
     ground = ground_of(scene, path, eps, gamma, control.folds, start)
-    needs = _needs(scene, path, ground, accuracy)
+    needs = _needs(path, ground, accuracy)
     brackets = by_brackets(path, eps, needs, times, method)
     needs = _with_brackets(path, eps, needs, brackets)
     follows = viscosity_of(eps, gamma) / path.stiffness
@@ -289,5 +281,5 @@ def planned(
         brackets=brackets,
         method=method,
     )
-    needs = _along(scene, path, ground, needs, follows, way)
+    needs = _along(path, ground, needs, follows, way)
     return Planned(control, ground, needs, way)

@@ -175,7 +175,7 @@ def test_tables_grow_with_the_times_and_not_their_square():
     ts = np.sort(np.concatenate([np.linspace(0.0, 3.0, 20_000), [1.5, 1.5]]))
     plan = planned(scene, path, *cell, ts.size, accuracy=1e-3, method="resolved")
     tracemalloc.start()
-    parts = scene, path, cell[0], ts, plan.needs, plan.ground.fast_slides
+    parts = path, cell[0], ts, plan.needs, plan.ground.fast_slides
     found = lay_out(*parts, 1e-3)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()

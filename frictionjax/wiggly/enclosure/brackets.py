@@ -4,10 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import TabulatedScene
 from ...numerics import rows_of
 from ..lanes import Lanes, Segments
-from ..limit_path import Path, motion_at
+from ..limit_path import Path
 from .settings import SETTINGS
 from .starts import CellBounds, Starts
 
@@ -102,7 +101,6 @@ def _lane_segments(
 
 
 def plan_brackets(
-    scene: TabulatedScene,
     path: Path,
     ground: CellBounds,
     brackets: Brackets,
@@ -132,11 +130,11 @@ def plan_brackets(
         first_leg=first,
         past_leg=past,
     )
-    segments = segments_of(scene, path, start, end)
+    segments = segments_of(path, start, end)
     cell = np.concatenate([brackets.cell[lanes[0][0]], second_brackets.cell[lanes[1][0]]])
     wells = np.abs(segments.guide1 - segments.guide0) / ground.eps[cell]
     # A lane from far outside the strip passes through wells that the path does not.
-    far = np.abs(float(scene.z0) - path.states[0]) / ground.eps[cell]
+    far = path.outside / ground.eps[cell]
     far = np.where(
         np.concatenate(
             [starts.known_start[lanes[0][0]], second_starts.known_start[lanes[1][0]]]
@@ -205,14 +203,12 @@ def _forgetful(
     return has[jobs.cell] & inside & slower & (memory <= 0.5 * SETTINGS.brief)
 
 
-def segments_of(
-    scene: TabulatedScene, path: Path, start: np.ndarray, end: np.ndarray
-) -> Segments:
+def segments_of(path: Path, start: np.ndarray, end: np.ndarray) -> Segments:
     """Segments with the path as their guide; slopes from inside each segment."""
     length = np.maximum(end - start, 0.0)
     aside = SETTINGS.aside * length
     inside = np.concatenate([start + aside, end - aside])
-    motion = motion_at(scene, path, np.concatenate([start, end]), beside=inside)
+    motion = path.motion_at(np.concatenate([start, end]), beside=inside)
     guide0, guide1 = np.split(motion.states, 2)
     slope0, slope1 = np.split(motion.speeds, 2)
     middle = path.piece_of(0.5 * (start + end))

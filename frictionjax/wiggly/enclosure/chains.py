@@ -9,7 +9,6 @@ from .requirements import tiles_at, wells_a_leg
 from .sampled_parts import CellSlides, Parts, uneven_pieces
 from .segment_ends import Cut, follow_path, stretches_of
 from .settings import SETTINGS
-from .starts import way_at
 
 
 class Chains(NamedTuple):
@@ -49,10 +48,10 @@ def chains_of(
         _cut(parts, cell, fixed, lattice_time[lattice_cell == cell]) for cell in chained
     ]
     if summed:
-        cuts = follow_path(slides.scene, path, eps[chained], accuracy, cuts)
+        cuts = follow_path(path, eps[chained], accuracy, cuts)
     # Of all cells at once: a call each took 0.1 ms.
     times = [t for cut in cuts for t in cut]
-    every = way_at(slides.scene, path, np.concatenate([*times, np.zeros(0)]))
+    every = path.motion_at(np.concatenate([*times, np.zeros(0)])).ways
     ways = np.split(every, np.cumsum([t.size for t in times]))
     chain = [np.zeros(0, dtype=int)] * eps.size
     for k, (cell, (opening, stops)) in enumerate(zip(chained, cuts, strict=True)):
@@ -84,7 +83,7 @@ def _lattice(slides: CellSlides, parts: Parts, chosen: list[int]):
     """Cell and time of each segment's end on slides of cells, outside inner parts."""
     path, eps = slides.path, slides.eps
     segments = wells_a_leg(path, eps)
-    lows, highs = (slides.states_at(times) for times in (parts.low, parts.high))
+    lows, highs = (slides.path.states_at(times) for times in (parts.low, parts.high))
     cells, pieces, wells = [], [], []
     for cell in chosen:
         segment = float(segments[cell])

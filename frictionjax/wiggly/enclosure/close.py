@@ -3,7 +3,6 @@
 import numpy as np
 
 from ..lanes import SegmentEnds, Segments
-from ..limit_path import states_at
 from .bracket_values import BracketValues
 from .brackets import Brackets
 from .closeness import gaps_of, shifts_of
@@ -86,9 +85,8 @@ def run_ups(rounds: BracketContext, brackets: Brackets, needed: np.ndarray) -> n
     if not some.any():
         return wells
     near = np.full(wells.size, SETTINGS.margin + 1.0)
-    scene, path = rounds.scene, rounds.path
+    path = rounds.path
     starts = starts_of(
-        scene=scene,
         path=path,
         ground=rounds.ground,
         cell=brackets.cell,
@@ -97,11 +95,11 @@ def run_ups(rounds: BracketContext, brackets: Brackets, needed: np.ndarray) -> n
         back=near,
         measured=False,
     )
-    states = states_at(scene, path, starts.time)
+    states = path.states_at(starts.time)
     own, ground = brackets.cell, rounds.ground
     direction = path.direction[path.piece_of(starts.time)]
     power = np.where(wells > SETTINGS.long_memory, 2.0, ground.power(own, direction))
-    share = slow_share(scene, path, starts.time, states, power)
+    share = slow_share(path, starts.time, states, power)
     slow = _slow_run_ups(ground, own, direction, share, rounds.accuracy)
     fast = starts.from_slide | starts.lagging
     # Others keep theirs: what they find must not depend on their neighbours.

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import TabulatedScene
 from ...numerics import rows_of
 from ..limit_path import Path
 from .bracket_rows import BracketRows
@@ -48,7 +47,6 @@ class Layout(NamedTuple):
 
 
 def lay_out(
-    scene: TabulatedScene,
     path: Path,
     eps: np.ndarray,
     ts: np.ndarray,
@@ -66,7 +64,7 @@ def lay_out(
     `summed`, only brackets with requested times are left.
     """
     summed = summed or not np.any(ts > 0)
-    slides = CellSlides(scene, path, eps, needs, fast_slides)
+    slides = CellSlides(path, eps, needs, fast_slides)
     parts = inner_parts(slides)
     rows = BracketRows()
     chains = chains_of(slides, parts, ts, accuracy, summed, rows)
@@ -86,7 +84,7 @@ def _sampled_periods(
 ) -> list[SampledPeriods]:
     """A bracket for each period that is measured inside a slide."""
     who, starts, ends = sampled(slides, parts)
-    lows, highs = (slides.states_at(times) for times in (parts.low, parts.high))
+    lows, highs = (slides.path.states_at(times) for times in (parts.low, parts.high))
     periods = []
     for i in range(parts.cell.size):
         own = np.flatnonzero(who == i)

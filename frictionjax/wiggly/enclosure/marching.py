@@ -109,7 +109,6 @@ class BracketContext(NamedTuple):
     def run(self, brackets: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
         """March all brackets, from `wells` of the path or `back` of a fast slide before."""
         starts = starts_of(
-            scene=self.scene,
             path=self.path,
             ground=self.ground,
             cell=brackets.cell,
@@ -125,7 +124,7 @@ class BracketContext(NamedTuple):
 
     def planned(self, brackets: Brackets, starts: Starts) -> BracketPlan:
         """What lanes are to do for brackets, from their starts."""
-        return plan_brackets(self.scene, self.path, self.ground, brackets, starts)
+        return plan_brackets(self.path, self.ground, brackets, starts)
 
     def through(self, plan: BracketPlan) -> BracketRound:
         """March all brackets of a plan."""

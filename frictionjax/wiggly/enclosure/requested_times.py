@@ -47,7 +47,7 @@ def _period_before(slides: CellSlides, cell, times) -> np.ndarray:
     """Start of the slip period of the path that holds each time."""
     path = slides.path
     piece = path.piece_of(times)
-    way = np.abs(slides.states_at(times) - path.states[piece])
+    way = np.abs(slides.path.states_at(times) - path.states[piece])
     offset = slides.needs.lattice_offset[cell, piece]
     well = np.maximum(np.ceil(way / slides.eps[cell] - offset) - 1, 0)
     inside = (path.direction[piece] != 0) & (times > path.touch[piece])

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import TabulatedScene
 from ...numerics import concatenated, rows_of, stacked
 from ..limit_path import SETTINGS as PATH_SETTINGS
 from ..limit_path import (
@@ -12,10 +11,7 @@ from ..limit_path import (
     nodes_inside,
     nodes_of,
     probes_of,
-    speeds_at,
-    states_at,
     strictly_between,
-    times_at,
     unseen_of,
 )
 from .requirements import Requirements, inner_wells, transients
@@ -42,7 +38,6 @@ class Parts(NamedTuple):
 class CellSlides(NamedTuple):
     """Slides of all cells, shape (cells,) each: those of the path, and the fast ones."""
 
-    scene: TabulatedScene
     path: Path
     eps: np.ndarray
     needs: Requirements
@@ -52,11 +47,7 @@ class CellSlides(NamedTuple):
         """When the path is at lattice points of slides, in s."""
         way = (well + self.needs.lattice_offset[cell, piece]) * self.eps[cell]
         levels = self.path.states[piece] + self.path.direction[piece] * way
-        return times_at(self.scene, self.path, piece, levels)
-
-    def states_at(self, times: np.ndarray) -> np.ndarray:
-        """The path's, in m."""
-        return states_at(self.scene, self.path, times)
+        return self.path.times_at(piece, levels)
 
 
 class _WellRange(NamedTuple):
@@ -121,7 +112,7 @@ def _slow_ends(slides: CellSlides) -> list[_WellRange]:
         for c in np.flatnonzero(samples > 0).tolist()
         for slide in _last_of_pieces(path, slides.fast_slides[c])
     ]
-    states = slides.states_at(np.array([slide.end for _, slide in last]))
+    states = slides.path.states_at(np.array([slide.end for _, slide in last]))
     rows = []
     for (c, slide), at in zip(last, states, strict=True):
         piece = slide.piece
@@ -182,7 +173,7 @@ def _graded(slides: CellSlides, parts: Parts) -> list[Parts]:
         parts = rows_of(parts, parts.last - parts.first > SETTINGS.sparse * parts.nodes)
         if parts.cell.size == 0:
             break
-        even = _is_even(slides.scene, slides.path, parts)
+        even = _is_even(slides.path, parts)
         done.append(rows_of(parts, even))
         left = rows_of(parts, ~even)
         middle = np.floor(0.5 * (left.first + left.last))
@@ -197,13 +188,13 @@ def _graded(slides: CellSlides, parts: Parts) -> list[Parts]:
     return done
 
 
-def _is_even(scene: TabulatedScene, path: Path, parts: Parts) -> np.ndarray:
+def _is_even(path: Path, parts: Parts) -> np.ndarray:
     """Whether nodes of each part see the path's speed, which is much the same there."""
     low, high = parts.low, parts.high
-    nodes = speeds_at(scene, path, nodes_inside(low, high))
-    own = probes_of(scene, path, low, high, PATH_SETTINGS.fewer_samples)
+    nodes = path.speeds_at(nodes_inside(low, high))
+    own = probes_of(path, low, high, PATH_SETTINGS.fewer_samples)
     times = np.concatenate([own, path.probes.times[parts.piece]], axis=1)
-    probes = [speeds_at(scene, path, own), path.probes.speeds[parts.piece]]
+    probes = [path.speeds_at(own), path.probes.speeds[parts.piece]]
     speeds = np.concatenate(probes, axis=1)
     unseen = unseen_of(low, high, nodes, times, speeds)
     inside = strictly_between(low, high, times)
@@ -221,7 +212,7 @@ def sampled(slides: CellSlides, parts: Parts):
         nodes_of(float(low), float(high), int(count))
         for count, low, high in zip(parts.nodes, parts.low, parts.high, strict=True)
     ]
-    states = slides.states_at(np.concatenate([*nodes, np.zeros(0)]))
+    states = slides.path.states_at(np.concatenate([*nodes, np.zeros(0)]))
     cuts = np.cumsum([times.size for times in nodes])
     for i, here in enumerate(np.split(states, cuts)[:-1] if nodes else []):
         cell, piece = parts.cell[i], parts.piece[i]

@@ -4,9 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import TabulatedScene
 from ..lanes import guide_of
-from ..limit_path import Path, states_at
+from ..limit_path import Path
 from .brackets import segments_of
 from .settings import SETTINGS
 
@@ -23,9 +22,7 @@ def stretches_of(opening: np.ndarray, stops: np.ndarray) -> np.ndarray:
     return np.searchsorted(opening, stops, side="left") - 1
 
 
-def follow_path(
-    scene: TabulatedScene, path: Path, eps: np.ndarray, accuracy: float, cuts: list[Cut]
-) -> list[Cut]:
+def follow_path(path: Path, eps: np.ndarray, accuracy: float, cuts: list[Cut]) -> list[Cut]:
     """With more stops where cubics of segments would leave the path; a cut for each eps.
 
     What it is off is added to the deviation of z. (Segments of 16 wells before a turn of
@@ -40,7 +37,7 @@ def follow_path(
     starts, ends = (np.concatenate(side) for side in zip(*segments, strict=True))
     owners, middles = [], []
     for _ in range(SETTINGS.leg_halvings):
-        off = _off_path(scene, path, starts, ends) > allowed[owner]
+        off = _off_path(path, starts, ends) > allowed[owner]
         if not off.any():
             break
         owner, starts, ends = owner[off], starts[off], ends[off]
@@ -77,9 +74,9 @@ def _segments_between(cut: Cut) -> tuple[np.ndarray, np.ndarray]:
     return starts[long], cut.stops[long]
 
 
-def _off_path(scene, path: Path, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
+def _off_path(path: Path, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """How far the cubics of segments are off the path at some times inside, in m."""
     share = np.array(SETTINGS.leg_places)[:, None]
     times = starts + share * (ends - starts)
-    guide = guide_of(segments_of(scene, path, starts, ends))
-    return np.max(np.abs(guide(times) - states_at(scene, path, times)), axis=0)
+    guide = guide_of(segments_of(path, starts, ends))
+    return np.max(np.abs(guide(times) - path.states_at(times)), axis=0)

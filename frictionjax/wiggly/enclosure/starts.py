@@ -4,10 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model import TabulatedScene
 from ...numerics import rows_of
 from ..equation import WiggleFolds
-from ..limit_path import Path, motion_at, slopes_at, times_at
+from ..limit_path import Path
 from ..slip_map import FastSlide, ManyTransitTimes, last_begun
 from .settings import SETTINGS
 
@@ -80,11 +79,6 @@ class Starts(NamedTuple):
     ahead_tip: np.ndarray
 
 
-def way_at(scene: TabulatedScene, path: Path, times: np.ndarray) -> np.ndarray:
-    """Way in m that the path has come at each time."""
-    return motion_at(scene, path, times).ways
-
-
 def _run_up(path: Path) -> np.ndarray:
     """Way in m that the path has come in a piece's direction before it, (P,).
 
@@ -101,7 +95,6 @@ def _run_up(path: Path) -> np.ndarray:
 
 
 def starts_of(
-    scene: TabulatedScene,
     path: Path,
     ground: CellBounds,
     cell: np.ndarray,
@@ -124,7 +117,7 @@ def starts_of(
     """
     eps = ground.eps[cell]
     lag = np.maximum(ground.lag_plus, ground.lag_minus)[cell]
-    wanted = way_at(scene, path, begin) - wells * eps
+    wanted = path.motion_at(begin).ways - wells * eps
     # A start outside the strip rests where it has relaxed to, off the path by this much.
     astray = path.speed * ground.relaxed[cell]
     clear = (lag + astray + 2 * eps)[:, None] - _run_up(path)
@@ -140,13 +133,13 @@ def starts_of(
     level = path.states[piece] + direction * (way - path.travel[piece])
     slide = np.flatnonzero(~known)
     time = np.zeros(begin.size)
-    time[slide] = times_at(scene, path, piece[slide], level[slide])
+    time[slide] = path.times_at(piece[slide], level[slide])
     known |= time < ground.relaxed[cell]
     time[known] = 0.0
     slide = np.flatnonzero(~known)
     share = np.ones(begin.size)
     power = ground.power(cell[slide], direction[slide])
-    share[slide] = slow_share(scene, path, time[slide], level[slide], power)
+    share[slide] = slow_share(path, time[slide], level[slide], power)
     share = lag_share(ground, cell, share)
     slides, which = last_begun(ground.fast_slides, cell, begin)
     lagging = _still_lagging(path, slides, which, time)
@@ -174,7 +167,7 @@ def starts_of(
         slides, which[after_slide], begin[after_slide], back[after_slide], measured
     )
     near = near._replace(pace=np.where(inside, near.pace * eps[after_slide], np.inf))
-    late, early = np.split(way_at(scene, path, np.append(begin[after_slide], near.time)), 2)
+    late, early = np.split(path.motion_at(np.append(begin[after_slide], near.time)).ways, 2)
     nearer = known[after_slide] | inside | (late - early <= reach[after_slide])
     return _replaced(plain, after_slide[nearer], rows_of(near, nearer))
 
@@ -238,7 +231,6 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
 
 
 def slow_share(
-    scene: TabulatedScene,
     path: Path,
     time: np.ndarray,
     state: np.ndarray,
@@ -252,7 +244,7 @@ def slow_share(
     # A slide may end at full speed, in a kink.
     before = time - SETTINGS.aside * path.edges[-1]
     both = np.append(time, np.maximum(before, 0.0))
-    speeds = np.abs(slopes_at(scene, path, both, np.tile(state, 2)))
+    speeds = np.abs(path.slopes_at(both, np.tile(state, 2)))
     # Nothing slides at 0.
     share = np.maximum(*np.split(speeds, 2)) / (path.speed or 1.0)
     return np.minimum(SETTINGS.faster * share**power, 1.0)

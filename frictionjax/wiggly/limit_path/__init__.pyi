@@ -4,14 +4,9 @@ from .fast_stretches import strictly_between as strictly_between
 from .fast_stretches import unseen_of as unseen_of
 from .find_path import known_path as known_path
 from .find_path import path_of as path_of
+from .motion import arrivals_at as arrivals_at
+from .motion import state_under as state_under
 from .path import Path as Path
-from .path import arrivals_at as arrivals_at
-from .path import motion_at as motion_at
-from .path import slopes_at as slopes_at
-from .path import speeds_at as speeds_at
-from .path import state_under as state_under
-from .path import states_at as states_at
-from .path import times_at as times_at
 from .resting_ends import slow_ends as slow_ends
 from .sampled_slide import DEFICIT as DEFICIT
 from .sampled_slide import RESIDUAL as RESIDUAL

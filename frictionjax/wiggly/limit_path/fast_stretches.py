@@ -12,9 +12,9 @@ from jaxtyping import Array, Bool, Float
 from ..._checks import Real
 from ..._compile import in_chunks, once_a_scene
 from ...loads import AbstractPull
-from ...model import TabulatedScene
 from ...supports import AbstractSupport
-from .path import Path, motion_at, state_on_path
+from .motion import state_on_path
+from .path import Path
 from .sampled_slide import nodes_of, through_nodes
 from .settings import SETTINGS
 
@@ -45,7 +45,6 @@ def _zoomed(
 
 
 def probes_of(
-    scene: TabulatedScene,
     path: Path,
     low: Float[np.ndarray, " n"],
     high: Float[np.ndarray, " n"],
@@ -59,7 +58,7 @@ def probes_of(
     """
     edges = low[:, None] + (high - low)[:, None] * np.arange(samples + 1) / samples
     middles = 0.5 * (edges[:, 1:] + edges[:, :-1])
-    both = motion_at(scene, path, np.append(edges, middles))
+    both = path.motion_at(np.append(edges, middles))
     ways = np.diff(both.states[: edges.size].reshape(edges.shape))
     speeds = both.speeds[edges.size :].reshape(middles.shape)
     gaps = np.abs(ways - speeds * np.diff(edges))
@@ -70,10 +69,10 @@ def probes_of(
     )
     suspects = np.argpartition(-gaps, count, axis=1)[:, :count]
     columns = [np.take_along_axis(edges, suspects + k, 1).ravel() for k in (0, 1)]
-    parts = scene.load, scene.support, path.rows
+    parts = path.load, path.support, path.rows
     (closer,) = in_chunks(_zoomed, SETTINGS.zoomed, parts, tuple(columns))
     found = [middles, closer.reshape(low.size, -1)]
-    known = getattr(scene.load, "steepest", None)
+    known = getattr(path.load, "steepest", None)
     if known is not None:
         times = np.full((low.size, 1), float(known))
         inside = (times > low[:, None]) & (times < high[:, None])

@@ -7,19 +7,19 @@ from ..._compile import once_a_scene
 from ...model import Scene, TabulatedScene, padded_edges, strips_at
 from ..equation import pull_between
 from .fast_stretches import nodes_inside, probes_of, unseen_of
-from .path import Path, Probes, motion_at, rows_of_path, times_at
+from .path import Path, Probes, rows_of_path
 from .settings import SETTINGS
 
 _pull = once_a_scene(pull_between)
 _PATHS = ByIdentity()  # of scenes, whatever the eps
 
 
-def _looked_at(scene: TabulatedScene, path: Path) -> Path:
+def _looked_at(path: Path) -> Path:
     """With the largest speed on slides, probed, and the extremes of the stiffness there."""
     low, high = path.touch, path.edges[1:]
-    probes = probes_of(scene, path, low, high)
+    probes = probes_of(path, low, high)
     times = np.concatenate([probes, nodes_inside(low, high)], axis=1)
-    motion = motion_at(scene, path, times.ravel())
+    motion = path.motion_at(times.ravel())
     speeds = motion.speeds.reshape(times.shape)
     count = times.shape[1] - SETTINGS.nodes
     times, seen, known = times[:, :count], speeds[:, :count], speeds[:, count:]
@@ -62,6 +62,8 @@ def path_of(scene: TabulatedScene) -> Path | None:
     direction = np.sign(moves)
     rho = np.where(direction > 0, rho_plus, rho_minus)
     path = Path(
+        load=scene.load,
+        support=scene.support,
         edges=edges,
         states=states,
         direction=direction,
@@ -71,12 +73,13 @@ def path_of(scene: TabulatedScene) -> Path | None:
         rho_plus=rho_plus,
         rho_minus=rho_minus,
         pulled=float(np.abs(np.diff(loads)).sum()),
+        outside=float(np.abs(states[0] - scene.z0)),
     )
     sliding = np.flatnonzero(direction)
     touch = path.touch.copy()
-    touch[sliding] = times_at(scene, path, sliding, states[sliding])
+    touch[sliding] = path.times_at(sliding, states[sliding])
     path = path._replace(touch=touch)
     rho_ends = np.asarray(rho_plus), np.asarray(rho_minus)
     pull = _pull(scene.load, scene.support, padded_edges(turns, duration), *rho_ends)
     pull = pull._replace(total=path.travel[-1])
-    return _looked_at(scene, path._replace(rows=rows_of_path(path), pull=pull))
+    return _looked_at(path._replace(rows=rows_of_path(path), pull=pull))

@@ -3,13 +3,11 @@
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ...model import TabulatedScene
-from .path import Path, slopes_at, times_at
+from .path import Path
 from .settings import SETTINGS
 
 
 def slow_ends(
-    scene: TabulatedScene,
     path: Path,
     eps: Float[np.ndarray, " cells"],
     memory: Float[np.ndarray, "cells pieces"],
@@ -27,8 +25,8 @@ def slow_ends(
     ends = np.abs(path.states[slides + 1] - path.states[slides])
     level = np.maximum(ends - SETTINGS.end * eps[:, None], 0.0)
     state = path.states[slides] + path.direction[slides] * level
-    times = times_at(scene, path, np.tile(slides, eps.size), state.ravel())
-    speed = slopes_at(scene, path, times, state.ravel()).reshape(state.shape)
+    times = path.times_at(np.tile(slides, eps.size), state.ravel())
+    speed = path.slopes_at(times, state.ravel()).reshape(state.shape)
     share = np.abs(speed) / (path.speed or 1.0)  # nothing slides at 0
     left = memory[:, slides] * share ** power[:, slides]
     slow[:, slides] = left * -np.log(SETTINGS.rests) < 1

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from ..limit_path import Path, arrivals_at, slopes_at, states_at
+from ..limit_path import Path, arrivals_at
 from .fast_slides import Candidates, FastSlide, FastSlideFinder, FoundTips, none_known
 from .settings import SETTINGS
 from .slow_flow import first_wells
@@ -63,8 +63,8 @@ def _set_off(finder: FastSlideFinder, cell: np.ndarray, piece: np.ndarray) -> np
     own, which = np.unique(piece, return_inverse=True)
     touch = path.touch[own]
     inside = touch + 1e-6 * (path.edges[own + 1] - touch)
-    state = states_at(scene, path, inside)
-    speed = np.abs(slopes_at(scene, path, inside, state))[which]
+    state = path.states_at(inside)
+    speed = np.abs(path.slopes_at(inside, state))[which]
     stiffness = pull_at(scene, inside, state).support[which, 1]
     moves = speed > 0
     cell, sign = cell[moves], path.direction[piece[moves]]

@@ -8,7 +8,7 @@ from ...model import TabulatedScene
 from ...numerics import stacked
 from ..enclosure import BracketValues, CellBounds, Layout
 from ..equation import Status
-from ..limit_path import Path, states_at
+from ..limit_path import Path
 from .cell_sums import (
     NO_DEVIATIONS,
     CellWay,
@@ -81,7 +81,7 @@ def evaluate(
     """
     eps = ground.eps
     stops, z_start, energy0 = stop_values_of(scene, path, ground, layout, values)
-    guides = states_at(scene, path, ts)
+    guides = path.states_at(ts)
     of_path = _dissipation_of_path(path, ts, guides)
     whole = float(path.travel[-1])
     surveys = sampled_slides_at(layout.slides, stops)

@@ -13,7 +13,6 @@ from frictionjax.model import tabulated_scene
 from frictionjax.wiggly import plan as planning
 from frictionjax.wiggly.enclosure import close as rounds
 from frictionjax.wiggly.enclosure.brackets import Brackets, _lane_segments
-from frictionjax.wiggly.limit_path.path import states_at, times_at
 
 
 @pytest.mark.parametrize(
@@ -142,7 +141,7 @@ def test_values_just_before_slips_at_small_eps():
     wells = np.round(np.linspace(0.1, 0.9, 300) / eps)
     # 0.6% of a period before the strip's edge is at a fold; slides at gamma = 2 hardly lag.
     levels = float(control.folds.state_plus[0]) + (wells - 0.006) * eps
-    times = np.sort(times_at(scene, path, np.zeros(300, dtype=int), levels))
+    times = np.sort(path.times_at(np.zeros(300, dtype=int), levels))
     loose = cells(scene, eps, gamma, "windowed", 1e-2, times, balanced=False).z[0]
     tight = cells(scene, eps, gamma, "windowed", 1e-5, times, balanced=False).z[0]
     assert np.abs(loose - tight).max() < 1e-2 * eps
@@ -152,7 +151,7 @@ def test_path_is_the_limit():
     for name in ("sine load", "piecewise load"):
         scene = SCENES[name]
         limit = fx.solve_limit(scene, TIMES)
-        assert np.abs(states_at(scene, path_of(scene), TIMES) - limit.z).max() < 1e-13
+        assert np.abs(path_of(scene).states_at(TIMES) - limit.z).max() < 1e-13
 
 
 @pytest.mark.slow

@@ -12,7 +12,6 @@ from frictionjax.wiggly.enclosure.brackets import segments_of
 from frictionjax.wiggly.enclosure.segment_ends import Cut, follow_path
 from frictionjax.wiggly.lanes.queue import guide_of
 from frictionjax.wiggly.lanes.running_extrema import Guide
-from frictionjax.wiggly.limit_path.path import states_at
 
 BRISTLE = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
 
@@ -90,31 +89,29 @@ def test_guides_move_as_fast_as_they_come_further():
 
 @pytest.fixture(scope="module")
 def path():
-    scene = scene_under(fx.loads.Sine(1.0488, 1.0))
-    return scene, path_of(scene)
+    return path_of(scene_under(fx.loads.Sine(1.0488, 1.0)))
 
 
-def off_path(scene, path, stops, shares):
+def off_path(path, stops, shares):
     """How far cubics between the stops leave the path inside, m."""
-    segments = segments_of(scene, path, np.append(0.0, stops[:-1]), stops)
+    segments = segments_of(path, np.append(0.0, stops[:-1]), stops)
     off = []
     for share in shares:
         times = segments.start + share * (segments.end - segments.start)
-        off.append(np.abs(guide_of(segments)(times) - states_at(scene, path, times)))
+        off.append(np.abs(guide_of(segments)(times) - path.states_at(times)))
     return np.max(off)
 
 
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-6])
 def test_cubics_of_legs_follow_the_path(path, accuracy):
-    scene, path = path
     eps = np.array([0.1, 1e-3])
     fixed = np.unique(np.concatenate([path.edges[1:], path.touch[path.touch < 3]]))
     cuts = [Cut(np.zeros(1), fixed), Cut(np.zeros(1), np.union1d(fixed, [0.1, 2.9]))]
-    assert off_path(scene, path, fixed, [0.5]) > 1e-3
-    found = follow_path(scene, path, eps, accuracy, cuts)
+    assert off_path(path, fixed, [0.5]) > 1e-3
+    found = follow_path(path, eps, accuracy, cuts)
     for size, before, after in zip(eps, cuts, found, strict=True):
         assert np.all(np.isin(before.stops, after.stops))
-        worst = off_path(scene, path, after.stops, np.linspace(0.02, 0.98, 25))
+        worst = off_path(path, after.stops, np.linspace(0.02, 0.98, 25))
         assert worst < 0.06 * accuracy * size
-        (alone,) = follow_path(scene, path, np.array([size]), accuracy, [before])
+        (alone,) = follow_path(path, np.array([size]), accuracy, [before])
         assert np.array_equal(alone.stops, after.stops)

@@ -61,7 +61,7 @@ def test_lanes_set_off_below_and_above_the_tip(name, gamma):
         tables, path, np.array([eps]), np.array([gamma]), 31, 1e-3, "auto"
     )
     none = np.zeros(cell.size)
-    starts = starts_of(tables, path, plan.ground, cell, begin, none, none)
+    starts = starts_of(path, plan.ground, cell, begin, none, none)
     time, which = np.unique(starts.time, return_inverse=True)
     with without_landings():
         solution = fx.solve(scene, eps, gamma, time, 1e-5)
@@ -115,7 +115,7 @@ def test_brackets_hold_the_tip():
     )
     begin = np.linspace(0.1, 2.9, 200)
     far = np.full(200, 3.0)
-    starts = starts_of(scene, path, ground, np.zeros(200, int), begin, far, far)
+    starts = starts_of(path, ground, np.zeros(200, int), begin, far, far)
     slides = np.flatnonzero(~starts.known_start)
     assert slides.size > 150
     time = np.unique(starts.time[slides])

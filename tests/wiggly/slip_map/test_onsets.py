@@ -8,7 +8,6 @@ import frictionjax as fx
 from frictionjax.model import tabulated_scene
 from frictionjax.wiggly import batch as engine
 from frictionjax.wiggly.limit_path import resting_ends as slow_ends
-from frictionjax.wiggly.limit_path import states_at
 from frictionjax.wiggly.plan import planned
 from frictionjax.wiggly.slip_map import fast_slides, onsets
 
@@ -126,7 +125,7 @@ def test_slides_are_found_from_answers_alone(gap):
         asked.append((wanted, [len(own) for own in wanted.known]))
         if isinstance(wanted, onsets.Measure):
             return [lambda: np.zeros(1)] * len(wanted.slides)
-        states = states_at(SCENE, path, wanted.stops)
+        states = path.states_at(wanted.stops)
         # Behind the edge, where the pull is a little beyond the fold.
         behind = 2e-2 * path.direction[path.piece_of(wanted.stops)]
         wells = (states - behind) / eps[wanted.cells]

@@ -36,6 +36,8 @@ from frictionjax.wiggly.sums.stop_values import StopValues
 
 LOW, HIGH, COUNT, PERIOD = 1.0, 3.0, 17, 1e-3
 
+NONE = (None, None, *[np.zeros(2)] * 5)  # of a path, what these sums do not read
+
 
 def survey(density):
     """A slide whose sums of one period have this density, (3, n)."""
@@ -144,7 +146,7 @@ def test_errors_of_surveys_that_reach_the_largest_count(behind):
 
 
 def test_a_rough_surplus_is_an_error_of_the_dissipation():
-    path = Path(*[np.zeros(2)] * 5, rho=np.full(1, 0.1), rho_plus=0.1, rho_minus=-0.1)
+    path = Path(*NONE, rho=np.full(1, 0.1), rho_plus=0.1, rho_minus=-0.1)
     layout = SimpleNamespace(
         brackets=SimpleNamespace(begin=np.zeros(2), owner=np.arange(2)),
     )
@@ -158,7 +160,7 @@ def test_a_rough_surplus_is_an_error_of_the_dissipation():
 
 def test_an_unknown_error_of_a_survey_is_not_forgotten():
     """`max(0.0, nan)` is 0: the largest of errors must be asked of NumPy."""
-    path = Path(*[np.zeros(2)] * 5, rho=np.full(1, 0.1), rho_plus=0.1, rho_minus=-0.1)
+    path = Path(*NONE, rho=np.full(1, 0.1), rho_plus=0.1, rho_minus=-0.1)
     layout = SimpleNamespace(
         brackets=SimpleNamespace(begin=np.zeros(2), owner=np.arange(2)),
     )
@@ -181,7 +183,7 @@ def test_an_unknown_error_of_a_survey_is_not_forgotten():
 def test_surveys_decide_which_sum_is_the_dissipation(errors, pulled, summed):
     cell, stops = way(rough_survey(1.0, 0.0)._replace(**errors))
     cell.totals[VISCOUS], cell.totals[RESIDUAL] = 1.0, 1e-8
-    path = Path(*[np.zeros(2)] * 5, np.full(1, 0.1), 0.1, -0.1, pulled=pulled)
+    path = Path(*NONE, np.full(1, 0.1), 0.1, -0.1, pulled=pulled)
     found = _errors(cell, stops, path, 1e-4)
     assert _is_summed(cell, found, path, 0.1) is summed
 
