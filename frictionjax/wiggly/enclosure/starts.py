@@ -122,7 +122,8 @@ def starts_of(
     astray = path.speed * ground.relaxed[cell]
     clear = (lag + astray + 2 * eps)[:, None] - _run_up(path)
     opens = path.travel[:-1] + np.maximum(clear, 0.0)
-    settled = path.travel[:-1] + clear + SETTINGS.settling * eps[:, None]
+    # In this piece: where the load lets go for a moment, slips are not over in time.
+    settled = opens + SETTINGS.settling * eps[:, None]
     closes = path.travel[1:]
     usable = (path.direction != 0) & (opens <= closes) & (opens <= wanted[:, None])
     last = opens.shape[1] - 1 - np.argmax(usable[:, ::-1], axis=1)

@@ -159,3 +159,28 @@ def test_a_far_start_is_not_forgotten_before_it_has_relaxed(z0):
     error = np.abs(np.asarray(found.z) - truth.z)
     assert np.max(error[~truth.in_slip]) < 1e-3 * eps
     assert found.ok
+
+
+def test_tips_of_a_slide_that_is_let_go_again_and_again_land_late():
+    """Each time they fall back, and the path does not: values were a well off, with OK."""
+    eps, speed, level = 1e-3, 1.29, 0.11098
+    time, load = [0.0, level / speed], [0.0, level]
+    while level < 0.1 + 12.5 * eps:
+        step = 0.06 * eps / speed
+        time += [time[-1] + share * step for share in (0.01, 0.02, 1.02)]
+        load += [level - 0.08, level, level + 0.06 * eps]
+        level = load[-1]
+    scene = fx.Scene(
+        fx.profiles.Sine(0.1),
+        fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+        fx.supports.Spring(1.0),
+        fx.loads.PiecewiseLinear(time, load),
+        time[-1],
+        -0.35 * eps,
+    )
+    found = cells(scene, eps, 1.0, "auto", times=np.array(time))
+    with without_landings():
+        far = cells(scene, eps, 1.0, "auto", times=np.array(time))
+    assert found.status == far.status == fx.Status.OK
+    assert np.sum(found.how == 1) > 20
+    assert np.abs(found.z - far.z).max() < 1e-3 * eps
