@@ -120,9 +120,7 @@ def _pulled_back(
 
 def _of_tips(past: Past) -> Past:
     """The way without the energies that go with it."""
-    fronts, log = past
-    begins = log.begins._replace(y=log.begins.y[:1])
-    return Past(fronts._replace(y=fronts.y[:1]), log._replace(begins=begins))
+    return past._replace(fronts=past.fronts._replace(y=past.fronts.y[:1]))
 
 
 def solve_one_after_the_other(problem: Problem, options: Options) -> Solution:

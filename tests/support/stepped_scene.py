@@ -10,7 +10,7 @@ import frictionjax as fx
 from frictionjax.wiggly.sequential.augmented_solver import AugmentedSolver, Recorder
 from frictionjax.wiggly.sequential.integration import field_of
 from frictionjax.wiggly.sequential.solvers_by_name import solver_of, with_tolerance
-from frictionjax.wiggly.sequential.stepper import Stepper, step_to
+from frictionjax.wiggly.sequential.stepper import Stepper, blank_log, step_to
 
 SCENE = fx.Scene(
     fx.profiles.Sine(0.1),
@@ -46,4 +46,5 @@ def stepped(stepper, t, stop, most=10_000):
 @eqx.filter_jit
 def _stepped(stepper, t, stop, most):
     start = start_of(stepper)
-    return step_to(stop, stepper, CONTROLLER, t, start, FIRST, most=most, room=ROOM)
+    log = blank_log(stepper, start, ROOM)
+    return step_to(stop, stepper, CONTROLLER, t, start, FIRST, most=most, log=log)

@@ -1,7 +1,6 @@
 """Fronts of an integration: stretches between stops, each a loop of its own."""
 
 from functools import partial
-from typing import Any, NamedTuple
 
 import diffrax
 import equinox as eqx
@@ -12,22 +11,9 @@ from jaxtyping import Array, Float, Int, PyTree
 from ..._checks import Real
 from ..equation import Status, StepPlan, TipField
 from .augmented_solver import augmented_field
-from .segment_adjoint import Past, segment_adjoint
-from .settings import SETTINGS
-from .step_adjoint import Ends, made_again
-from .stepper import Stepper, code_of, step_to
+from .step_adjoint import Checkpoint, Past, goes_on, way_through
+from .stepper import Stepper, code_of
 from .well_guard import WellGuard
-
-
-class Checkpoint(NamedTuple):
-    """How far an integration has come: the last step's length opens the next interval."""
-
-    t: Real
-    y: tuple
-    step: Real
-    code: Int[Array, ""]
-    steps: Int[Array, ""]
-    rejected: Int[Array, ""]
 
 
 def checkpoint_at_start(y: tuple, plan: StepPlan) -> Checkpoint:
@@ -104,82 +90,12 @@ def checkpoints_at(
     if adjoint:
         whole = partial(_solved, field, plan, solver, controller, max_steps, adjoint)
         return jax.lax.scan(lambda f, stop: (whole(f, stop),) * 2, start, stops)[1], None
-    stepper = Stepper(field, solver)
-
-    def closed(piece: partial) -> Any:
-        return eqx.filter_closure_convert(piece, start, stops[0])
-
-    again = closed(partial(_again, stepper, controller))
-    made = past is not None
-    piece = None if made else closed(partial(_piece, stepper, plan, controller, max_steps))
-    goes_on = jax.tree_util.Partial(_goes_on, plan.shortest_step)
-    found = segment_adjoint((piece, again, start, stops), goes_on, past)
-    return found.fronts, found
-
-
-def _goes_on(rounding: Real, front: Checkpoint, stop: Real) -> Array:
-    """Not where it failed, or is a rounding away from the stop (written differently)."""
-    return (front.code == Status.OK) & (stop - front.t > rounding)
-
-
-def _piece(
-    stepper: Stepper,
-    plan: StepPlan,
-    controller: WellGuard,
-    max_steps: int,
-    front: Checkpoint,
-    stop: Real,
-) -> Checkpoint:
-    """At most so many steps towards the stop; none where the front does not go on."""
-    stop = jnp.where(_goes_on(plan.shortest_step, front, stop), stop, front.t)
-    most = min(max_steps, SETTINGS.piece)
-    parts = stepper, controller, front.t, (*front.y, front.step), front.step
-    found, _ = step_to(stop, *parts, most=most)
-    taken = front.steps + found.steps
-    unfinished = (found.code == Status.OK) & (found.t < stop)
-    spent = jnp.where(taken < max_steps, int(Status.OK), int(Status.MAX_STEPS))
-    return _further(
-        front,
-        t=jnp.where(unfinished, found.t, stop),
-        y=found.y,
-        code=jnp.where(unfinished, spent, found.code),
-        steps=taken,
-        rejected=found.steps - found.accepted,
-    )
-
-
-def _further(
-    front: Checkpoint, *, t: Real, y: Any, code: Array, steps: Any, rejected: Any
-) -> Checkpoint:
-    *y, step = y
-    return Checkpoint(
-        t=t,
-        y=tuple(y),
-        step=jax.lax.stop_gradient(step),
-        code=jnp.where(front.code == Status.OK, code, front.code),
-        steps=steps,
-        rejected=front.rejected + rejected,
-    )
-
-
-def _again(
-    stepper: Stepper,
-    controller: WellGuard,
-    front: Checkpoint,
-    end: Real,
-) -> Checkpoint:
-    """All the way to where a piece has ended, for derivatives.
-
-    Where there is no room for all steps, `t` is NaN.
-    """
-    room = SETTINGS.piece + SETTINGS.more
     still = jax.tree_util.tree_map(
         lambda leaf: jax.lax.stop_gradient(leaf) if eqx.is_inexact_array(leaf) else leaf,
-        (controller, front.step),
+        (controller, (plan.shortest_step, max_steps)),
     )
-    ends = Ends(stepper, front.t, (*front.y, front.step), end)
-    (*y, _), fits = made_again(ends, *still, room)
-    return front._replace(t=jnp.where(fits, end, jnp.nan), y=tuple(y))
+    found = way_through((Stepper(field, solver), start, stops), *still, past)
+    return found.fronts, found
 
 
 def _solved(
@@ -193,7 +109,7 @@ def _solved(
     stop: Real,
 ) -> Checkpoint:
     """All the way to the stop by diffrax, and differentiated as it does."""
-    stop = jnp.where(_goes_on(plan.shortest_step, front, stop), stop, front.t)
+    stop = jnp.where(goes_on(front, stop, plan.shortest_step), stop, front.t)
     found = diffrax.diffeqsolve(
         diffrax.ODETerm(augmented_field(field)),
         solver,
@@ -209,13 +125,14 @@ def _solved(
     )
     reached, *y = jax.tree_util.tree_map(lambda leaf: leaf[0], (found.ts, *found.ys))
     unfinished = found.result == diffrax.RESULTS.max_steps_reached
-    return _further(
-        front,
+    *y, step = y
+    return Checkpoint(
         t=jnp.where(unfinished, reached, stop),
-        y=y,
-        code=code_of(found.result),
+        y=tuple(y),
+        step=jax.lax.stop_gradient(step),
+        code=jnp.where(front.code == Status.OK, code_of(found.result), front.code),
         steps=front.steps + found.stats["num_steps"],
-        rejected=found.stats["num_rejected_steps"],
+        rejected=front.rejected + found.stats["num_rejected_steps"],
     )
 
 

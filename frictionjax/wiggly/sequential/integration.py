@@ -18,9 +18,9 @@ from .checkpoints import (
     times_of_stops,
 )
 from .own_methods import MAX_STEPS
-from .segment_adjoint import Past
 from .settings import SETTINGS
 from .solvers_by_name import with_tolerance
+from .step_adjoint import Past
 
 
 class Trajectory(NamedTuple):

@@ -56,11 +56,22 @@ class Stepping(NamedTuple):
 
 
 class StepLog(NamedTuple):
-    """Times, states and memories at which accepted steps began; padded."""
+    """Times, tips and memories at which accepted steps began, and how many; padded."""
 
     t: Float[Array, " room"]
-    y: tuple
+    tip: Float[Array, " room"]
     memory: PyTree
+    filled: Int[Array, ""]
+
+
+def blank_log(stepper: Stepper, y: tuple, room: int) -> StepLog:
+    """Room for so many steps."""
+    zero = jnp.zeros_like(y[0])
+    rows = jax.tree_util.tree_map(
+        lambda leaf: jnp.zeros((room, *leaf.shape), leaf.dtype),
+        (zero, zero, stepper.memory(zero, zero, y)),
+    )
+    return StepLog._make((*rows, jnp.asarray(0)))
 
 
 def step_to(
@@ -71,24 +82,21 @@ def step_to(
     y: tuple,
     first_step: Real,
     *,
-    most: int,
-    room: int = 0,
-) -> tuple[Stepping, StepLog]:
+    most: Any,
+    log: Any = None,
+) -> tuple[Stepping, Any]:
     """At most `most` steps from `t` to `stop`, as diffrax makes them.
 
-    `room`: for how many accepted steps there is a place in the log.
+    `log`: a `StepLog`, where accepted ones are noted; None: nowhere.
     """
     order: Any = stepper.solver.error_order(stepper.term)
     known = stepper.term, t, stop, y, first_step, None, stepper.solver.func, order
     end, control = controller.init(*known)
     end, none = jnp.minimum(end, stop), jnp.asarray(0)
     start = Stepping(t, end, y, stepper.memory(t, end, y), control, none, none, none)
-    blank = jax.tree_util.tree_map(
-        lambda leaf: jnp.zeros((room, *leaf.shape), leaf.dtype), (t, y, start.memory)
-    )
     nearly = stop - _NEARLY * jnp.abs(stop)
 
-    def advance(carry: tuple[Stepping, StepLog]) -> tuple[Stepping, StepLog]:
+    def advance(carry: tuple) -> tuple:
         now, log = carry
         after, error, memory, result = stepper.step(now.t, now.end, now.y, now.memory)
         error = jax.tree_util.tree_map(lambda e: jnp.where(jnp.isnan(e), jnp.inf, e), error)
@@ -104,16 +112,19 @@ def step_to(
         code = jnp.where(code == Status.OK, code_of(verdict), code)
         end = jnp.where(end > nearly, half, end)
         counts = now.steps + 1, now.accepted + keep
-        if room:  # a step that is rejected is written over
-            here = StepLog(now.t, now.y, now.memory)
-            log = jax.tree_util.tree_map(lambda a, v: a.at[now.accepted].set(v), log, here)
+        if log is not None:  # a step that is rejected is written over
+            at = log.filled
+            rows = jax.tree_util.tree_map(
+                lambda a, v: a.at[at].set(v), log[:3], (now.t, now.y[0], now.memory)
+            )
+            log = StepLog._make((*rows, at + keep))
         return Stepping(t, end, y, memory, control, code, *counts), log
 
-    def goes_on(carry: tuple[Stepping, StepLog]) -> Array:
+    def goes_on(carry: tuple) -> Array:
         now, _ = carry
         return (now.t < stop) & (now.code == Status.OK) & (now.steps < most)
 
-    return jax.lax.while_loop(goes_on, advance, (start, StepLog(*blank)))
+    return jax.lax.while_loop(goes_on, advance, (start, log))
 
 
 def code_of(result: diffrax.RESULTS) -> Array:
