@@ -58,7 +58,7 @@ def resting_after(lag, landed, shift, forgets):
         return np.where(rest > least, wells, np.inf)
 
     slow = resting(SETTINGS.after_slip + lag, SETTINGS.short_rest)
-    return np.minimum(slow, resting(landed, SETTINGS.short_stay))
+    return np.minimum(slow, resting(landed + SETTINGS.beyond, SETTINGS.short_stay))
 
 
 def wells_of(

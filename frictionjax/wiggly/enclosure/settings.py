@@ -75,6 +75,8 @@ class Settings(NamedTuple):
     settling: float = 2.0  # from where lags are bounded to where slips are over in time
     aside: float = 1e-6  # of a stretch of time: where one-sided slopes are taken
     gap: float = 1e-6  # rounding of z/eps
+    # Wells: at the bound itself lanes behind set off a well earlier, a fifth more steps.
+    beyond: float = 1e-4
     faster: float = 1.5  # how much slides may have been, squared, where lanes set off
     # Lags that are longer are taken at the speed of the moment. (At the largest speed
     # always: lanes of 300 wells in slow parts of slides at gamma = 0.4, where ten do.)

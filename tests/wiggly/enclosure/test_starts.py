@@ -29,7 +29,7 @@ def test_lanes_that_set_off_in_the_tips_well_find_the_same_in_fewer_steps(name, 
         alone = cells(scene, eps, 1.0, "windowed", times=TIMES, **options)
         far = cells(scene, eps, 1.0, "windowed", times=around, **options)
     assert near.status == alone.status == far.status == fx.Status.OK
-    assert near.steps.sum() < 0.8 * alone.steps.sum()
+    assert near.steps.sum() < 0.65 * alone.steps.sum()
     first = np.searchsorted(around, np.maximum(TIMES - shift, 0.0))
     last = np.searchsorted(around, np.minimum(TIMES + shift, 3.0))
     low, high = np.sort([far.z[0][first], far.z[0][last]], axis=0)
@@ -39,7 +39,7 @@ def test_lanes_that_set_off_in_the_tips_well_find_the_same_in_fewer_steps(name, 
 
 def test_lanes_that_one_leaves_alone_have_met_ten_times_as_closely(monkeypatch):
     """As what is left is not looked at again: others set off from further back."""
-    wanted = SCENES["sine load"], 5e-4, 1.0, "windowed"
+    wanted = SCENES["sine load"], 1e-3, 1.0, "windowed"
     options = {"balanced": False, "suprema": False}
     plain = cells(*wanted, **options)
     hasty = requirements.SETTINGS._replace(slips_forget=0.0)
