@@ -5,7 +5,6 @@ from .interpreted import Interpreted as Interpreted
 from .interpreted import values_at as values_at
 from .programs import ARRAYS as ARRAYS
 from .programs import Program as Program
-from .programs import flattened as flattened
 from .programs import in_chunks as in_chunks
 from .programs import once_a_scene as once_a_scene
 from .programs import padded_size as padded_size

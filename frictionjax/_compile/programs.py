@@ -13,7 +13,6 @@ from .flags import brief_options
 from .program_cache import kept
 
 _MOST = 256  # programs kept of one function
-_MOST_PARTS = 64  # whose leaves are kept
 
 
 class Program:
@@ -33,8 +32,7 @@ class Program:
         numbers, key = taken_apart(args)
         program = self._known.get(key)
         if program is None:
-            whole = jax.tree_util.tree_structure(args)
-            program = self._compiled(whole, key[1])
+            program = self._compiled(*key)
             if len(self._known) >= _MOST:
                 self._known.clear()
             self._known[key] = program
@@ -65,49 +63,6 @@ def once_a_scene(fn: Callable) -> Program:
 ARRAYS = (jax.Array, np.ndarray, np.generic)
 
 
-class _Flat:
-    """Leaves and structures of parts, which do not change once they are made.
-
-    A scene takes 30 us to flatten, hundreds of times a sweep. What is kept is kept alive,
-    so that no other part can have its number.
-    """
-
-    def __init__(self) -> None:
-        self._known: dict[int, tuple[eqx.Module, list, Any]] = {}
-
-    def of(self, part: eqx.Module) -> tuple[list, Any]:
-        """Its leaves and their structure."""
-        found = self._known.get(id(part))
-        if found is None:
-            leaves, structure = jax.tree_util.tree_flatten(part)
-            # What is traced must not outlive its trace.
-            if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
-                return leaves, structure
-            if len(self._known) >= _MOST_PARTS:
-                self._known.clear()
-            found = self._known[id(part)] = part, leaves, structure
-        return found[1:]
-
-
-_FLAT = _Flat()
-
-
-def flattened(args: tuple) -> tuple[list, tuple]:
-    """Leaves of some arguments, and what tells their structures apart."""
-    leaves: list = []
-    structures: list = []
-    for arg in args:
-        if isinstance(arg, ARRAYS):
-            leaves.append(arg)
-            structures.append(None)
-            continue
-        flat = _FLAT.of if isinstance(arg, eqx.Module) else jax.tree_util.tree_flatten
-        own, structure = flat(arg)
-        leaves += own
-        structures.append(structure)
-    return leaves, tuple(structures)
-
-
 def strong_arrays(tree: Any) -> Any:
     """Plain floats that hide in the tracers of `jax.grad(f)(0.1)` as arrays.
 
@@ -122,7 +77,7 @@ def strong_arrays(tree: Any) -> Any:
 
 def taken_apart(args: tuple) -> tuple[list, tuple]:
     """Arrays of some arguments, and what else there is: structures, other leaves."""
-    leaves, structure = flattened(args)
+    leaves, structure = jax.tree_util.tree_flatten(args)
     numbers = [leaf for leaf in leaves if isinstance(leaf, ARRAYS)]
     rest: tuple = ()
     if len(numbers) < len(leaves):

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax._compile import programs
 from frictionjax.tables import PiecewiseProfile, Waves, profile_tables
 
 P = fx.profiles
@@ -138,7 +137,6 @@ def test_what_is_known_of_a_profile_does_not_keep_it_alive(power):
     assert profile_tables(profile).is_table == (power == 3.0)
     assert profile_tables(profile).height == pytest.approx(0.02, rel=1e-5)
     gone = weakref.ref(profile)
-    programs._FLAT._known.clear()  # leaves of the last parts are kept, on purpose
     del profile
     gc.collect()
     gc.unfreeze()

@@ -4,10 +4,11 @@ import threading
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import jax
 import numpy as np
 from jaxtyping import Array, Shaped
 
-from ..._compile import ARRAYS, flattened, in_background
+from ..._compile import ARRAYS, in_background
 from ..rosenbrock import Tableau
 from .lane import LaneCells, LaneScene
 from .queue import Lanes, SegmentEnds, Segments, Tables, run_queue
@@ -139,7 +140,7 @@ def _nothing(room: Room) -> Tables:
 
 def _kind(fixed: tuple) -> tuple:
     """What compiled loops of a scene and a tableau depend on, numbers left out."""
-    leaves, structure = flattened(fixed)
+    leaves, structure = jax.tree_util.tree_flatten(fixed)
     shapes = (x.shape if isinstance(x, ARRAYS) else x for x in leaves)
     return structure, *shapes
 
