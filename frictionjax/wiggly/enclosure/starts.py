@@ -109,9 +109,10 @@ def starts_of(
     had to climb it against a force. Nor can it be further behind than a steady slide at
     the largest speed of the scene; where that is many wells, of the moment. Both hold once
     the path has come further than the lag of the slide before in the other direction. Two
-    wells later, on a slow slide, the tip has been through every slip that is over by
-    `landed`: both lanes set off in the well where it rests (with the other bound the lane
-    behind went through two slips first, two fifths of all steps at small eps).
+    wells later in the same piece, on a slow slide, the tip has been through every slip that
+    is over by `landed`: both lanes set off in the well where it rests (with the other bound
+    the lane behind went through two slips first, half of all steps at small eps; counted
+    from before a rest, tips of a load that lets go every 0.06 wells were a well behind).
     Where no such place is left, lanes start from z0; from a fast slide where one is nearer.
     Where not `measured`, errors of fast slides are not waited for: both lanes start there.
     """
@@ -122,7 +123,6 @@ def starts_of(
     astray = path.speed * ground.relaxed[cell]
     clear = (lag + astray + 2 * eps)[:, None] - _run_up(path)
     opens = path.travel[:-1] + np.maximum(clear, 0.0)
-    # In this piece: where the load lets go for a moment, slips are not over in time.
     settled = opens + SETTINGS.settling * eps[:, None]
     closes = path.travel[1:]
     usable = (path.direction != 0) & (opens <= closes) & (opens <= wanted[:, None])

@@ -48,8 +48,9 @@ def latest_landings(
 ) -> np.ndarray:
     """Wells from a fold on which tips are half a well beyond it, at most; (2, cells).
 
-    A bound from above for slides that have come a few wells: the path goes `s` wells beyond
-    the fold at its largest speed, and the tip, in z, `Z` wells: `dZ/ds` is the force
+    A bound from above for slides that have come a few wells without a rest, in which tips
+    fall back and the path does not: the path goes `s` wells beyond the fold at its largest
+    speed on slides, and the tip, in z, `Z` wells: `dZ/ds` is the force
     `k (s - Z) + gap(Z)` over the `drag` (N, (cells,)). From half a well before the fold,
     where it is that late after the last one, through stretches in which the force is no
     less than at their ends, nor than at the second highest fold, which they may step over.
