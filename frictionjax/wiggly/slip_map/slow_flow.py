@@ -28,8 +28,9 @@ def first_wells(
     """
     sides = np.stack([eps, side])
     _, first, which = np.unique(sides, axis=1, return_index=True, return_inverse=True)
-    one = from_fold_to_fold(potential, eps[first], fold[first], side[first])
-    speeds = one.speeds[which] - np.log(viscosity)[:, None]
+    one = from_fold_to_fold(potential, eps[first], fold[first], side[first]).thinned()
+    passages = one.passages(np.tile(LAG_FORCES, (first.size, 1)))[which]
+    speeds = -np.log(viscosity[:, None] * passages)
     return _waits(eps, speeds, rate, stiffness, wells)
 
 
