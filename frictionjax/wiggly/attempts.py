@@ -86,26 +86,10 @@ class AttemptContext(NamedTuple):
     def attempt(self, some: Cellwise) -> SoFar:
         """Answers of some cells, and which of them have a bracket that stays open."""
         rounds = self.rounds_of(some)
-        layout = lay_out(
-            path=rounds.path,
-            eps=some.ground.eps,
-            ts=self.ts,
-            needs=some.needs,
-            fast_slides=some.ground.fast_slides,
-            accuracy=rounds.accuracy,
-            summed=rounds.summed or self.every_slip,
-        )
+        summed = rounds.summed or self.every_slip
+        layout = lay_out(rounds, self.ts, some.needs, summed)
         values, left = close_brackets(rounds, layout, some.needs)
-        answers = evaluate(
-            scene=rounds.scene,
-            path=rounds.path,
-            ground=some.ground,
-            ts=self.ts,
-            layout=layout,
-            values=values,
-            wanted=self.wanted,
-            accuracy=rounds.accuracy,
-        )
+        answers = evaluate(rounds, self.ts, layout, values, self.wanted)
         open_ = np.isin(np.arange(some.brief.size), layout.brackets.cell[left])
         return SoFar(some, answers, open_)
 

@@ -20,8 +20,7 @@ from frictionjax.cost.machine_cost import (
 from frictionjax.model import tabulated_scene
 from frictionjax.report.job import read_job
 from frictionjax.report.study import expectation, expected_cost, within_budget
-from frictionjax.wiggly.enclosure import marching
-from frictionjax.wiggly.enclosure.layout import lay_out
+from frictionjax.wiggly.enclosure import BracketContext, lay_out, marching
 from frictionjax.wiggly.limit_path import path_of
 from frictionjax.wiggly.plan import planned
 from frictionjax.wiggly.predicted_work import _longest_chains, _weight_of, workload
@@ -175,8 +174,9 @@ def test_tables_grow_with_the_times_and_not_their_square():
     ts = np.sort(np.concatenate([np.linspace(0.0, 3.0, 20_000), [1.5, 1.5]]))
     plan = planned(scene, path, *cell, ts.size, accuracy=1e-3, method="resolved")
     tracemalloc.start()
-    parts = path, cell[0], ts, plan.needs, plan.ground.fast_slides
-    found = lay_out(*parts, 1e-3)
+    blank = BracketContext(*[None] * 11)
+    rounds = blank._replace(path=path, ground=plan.ground, accuracy=1e-3)
+    found = lay_out(rounds, ts, plan.needs)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert most < 1000 * ts.size, most / ts.size

@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ...numerics import rows_of
-from ..limit_path import Path
 from .bracket_rows import BracketRows
 from .brackets import Brackets
 from .chains import chains_of
+from .marching import BracketContext
 from .requested_times import stops_at_times
 from .requirements import Requirements
 from .sampled_parts import CellSlides, Parts, inner_parts, sampled
@@ -47,27 +47,22 @@ class Layout(NamedTuple):
 
 
 def lay_out(
-    path: Path,
-    eps: np.ndarray,
-    ts: np.ndarray,
-    needs: Requirements,
-    fast_slides: np.ndarray,
-    accuracy: float,
-    summed: bool = True,
+    rounds: BracketContext, ts: np.ndarray, needs: Requirements, summed: bool = True
 ) -> Layout:
     """Brackets that give every requested time, and sums and extremes over [0, T].
 
-    Segments are short enough for extremes good to `accuracy`, in eps.
+    Segments are short enough for extremes good to the accuracy, in eps.
 
     Outside the inner parts of slides everything is measured, in tiles that follow each
     other; inside, some periods, and one bracket for each requested time. Where nothing is
     `summed`, only brackets with requested times are left.
     """
     summed = summed or not np.any(ts > 0)
-    slides = CellSlides(path, eps, needs, fast_slides)
+    ground = rounds.ground
+    slides = CellSlides(rounds.path, ground.eps, needs, ground.fast_slides)
     parts = inner_parts(slides)
     rows = BracketRows()
-    chains = chains_of(slides, parts, ts, accuracy, summed, rows)
+    chains = chains_of(slides, parts, ts, rounds.accuracy, summed, rows)
     periods = _sampled_periods(slides, parts if summed else rows_of(parts, slice(0)), rows)
     output = stops_at_times(slides, ts, chains.hit, rows)
     return Layout(

@@ -4,9 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...model import TabulatedScene
 from ...numerics import stacked
-from ..enclosure import BracketValues, CellBounds, Layout
+from ..enclosure import BracketContext, BracketValues, Layout
 from ..equation import Status
 from ..limit_path import Path
 from .cell_sums import (
@@ -66,21 +65,18 @@ def _dissipation_of_path(path: Path, times: np.ndarray, states: np.ndarray) -> n
 
 
 def evaluate(
-    scene: TabulatedScene,
-    path: Path,
-    ground: CellBounds,
+    rounds: BracketContext,
     ts: np.ndarray,
     layout: Layout,
     values: BracketValues,
     wanted: Sums,
-    accuracy: float,
 ) -> CellResults:
     """Values of all cells from what was found at the stops of the layout.
 
     Suprema are NaN where no extremes were `wanted`.
     """
-    eps = ground.eps
-    stops, z_start, energy0 = stop_values_of(scene, path, ground, layout, values)
+    path, eps = rounds.path, rounds.ground.eps
+    stops, z_start, energy0 = stop_values_of(rounds, layout, values)
     guides = path.states_at(ts)
     of_path = _dissipation_of_path(path, ts, guides)
     whole = float(path.travel[-1])
@@ -106,7 +102,7 @@ def evaluate(
                 energy0=energy0[c],
                 of_path=of_path,
                 path=path,
-                unit=accuracy * eps[c],
+                unit=rounds.accuracy * eps[c],
                 eps=eps[c],
             )
         off = deviations(cell, stops) if wanted.extremes else NO_DEVIATIONS

@@ -9,10 +9,10 @@ import numpy as np
 from ..._checks import Real
 from ..._compile import Program, in_chunks
 from ...loads import AbstractPull
-from ...model import AbstractPotential, TabulatedScene
+from ...model import AbstractPotential
 from ...supports import AbstractSupport
-from ..enclosure import BracketValues, CellBounds, Layout, SampledPeriods
-from ..limit_path import SURPLUS, WORK, Path, SampledSlide, sampled_slides_of
+from ..enclosure import BracketContext, BracketValues, Layout, SampledPeriods
+from ..limit_path import SURPLUS, WORK, SampledSlide, sampled_slides_of
 from .settings import SETTINGS
 
 
@@ -56,13 +56,10 @@ class StopValues(NamedTuple):
 
 
 def stop_values_of(
-    scene: TabulatedScene,
-    path: Path,
-    ground: CellBounds,
-    layout: Layout,
-    values: BracketValues,
+    rounds: BracketContext, layout: Layout, values: BracketValues
 ) -> tuple[StopValues, np.ndarray, np.ndarray]:
     """What was found at every stop of a layout; state and energy where cells start."""
+    scene, ground = rounds.scene, rounds.ground
     brackets, a, segments = layout.brackets, values.arrivals, values.segments
     count = ground.eps.size
     columns = (
@@ -70,7 +67,7 @@ def stop_values_of(
         np.append(ground.start_well, a.well),
         np.append(ground.start_tip, a.tip),
         np.append(np.zeros(count), brackets.stop),
-        np.append(np.full(count, path.states[0]), segments.guide1),
+        np.append(np.full(count, rounds.path.states[0]), segments.guide1),
     )
     parts = scene.potential, scene.support, scene.load
     z, energy, size = in_chunks(_energies, SETTINGS.stops, parts, columns)
