@@ -95,11 +95,10 @@ def run_ups(rounds: BracketContext, brackets: Brackets, needed: np.ndarray) -> n
         back=near,
         measured=False,
     )
-    states = path.states_at(starts.time)
     own, ground = brackets.cell, rounds.ground
     direction = path.direction[path.piece_of(starts.time)]
     power = np.where(wells > SETTINGS.long_memory, 2.0, ground.power(own, direction))
-    share = slow_share(path, starts.time, states, power)
+    share = slow_share(path, starts.time, power)
     slow = _slow_run_ups(ground, own, direction, share, rounds.accuracy)
     fast = starts.from_slide | starts.lagging
     # Others keep theirs: what they find must not depend on their neighbours.

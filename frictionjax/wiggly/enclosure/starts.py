@@ -140,7 +140,7 @@ def starts_of(
     slide = np.flatnonzero(~known)
     share = np.ones(begin.size)
     power = ground.power(cell[slide], direction[slide])
-    share[slide] = slow_share(path, time[slide], level[slide], power)
+    share[slide] = slow_share(path, time[slide], power)
     share = lag_share(ground, cell, share)
     slides, which = last_begun(ground.fast_slides, cell, begin)
     lagging = _still_lagging(path, slides, which, time)
@@ -231,12 +231,7 @@ def _on_slides(slides: list[FastSlide], which: np.ndarray, begin, back, measured
     return starts, begin <= end
 
 
-def slow_share(
-    path: Path,
-    time: np.ndarray,
-    state: np.ndarray,
-    power: np.ndarray,
-) -> np.ndarray:
+def slow_share(path: Path, time: np.ndarray, power: np.ndarray) -> np.ndarray:
     """Share of the lag and memory of the fastest slide that there is at these times.
 
     Both grow with a `power` of the speed: its square where folds have a curvature, less
@@ -245,7 +240,7 @@ def slow_share(
     # A slide may end at full speed, in a kink.
     before = time - SETTINGS.aside * path.edges[-1]
     both = np.append(time, np.maximum(before, 0.0))
-    speeds = np.abs(path.slopes_at(both, np.tile(state, 2)))
+    speeds = np.abs(path.speeds_at(both))
     # Nothing slides at 0.
     share = np.maximum(*np.split(speeds, 2)) / (path.speed or 1.0)
     return np.minimum(SETTINGS.faster * share**power, 1.0)

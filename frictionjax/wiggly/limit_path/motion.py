@@ -1,6 +1,5 @@
 """Where the path is at a time, and when at a state: programs on the tables of a scene."""
 
-from functools import partial
 from typing import Any, NamedTuple, Protocol
 
 import jax
@@ -94,12 +93,6 @@ def motion_program(
         )
 
     return jax.vmap(at)(times, beside)
-
-
-@Program
-def speeds_program(load: AbstractPull, support: AbstractSupport, rows, times, states):
-    stiffness = jax.vmap(support.stiffness_at)(states)
-    return (jax.vmap(partial(_speed, load, rows))(times, stiffness),)
 
 
 @Program

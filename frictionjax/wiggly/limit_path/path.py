@@ -14,7 +14,7 @@ from ...loads import AbstractPull
 from ...model import SETTINGS as MODEL_SETTINGS
 from ...supports import AbstractSupport
 from ..equation import PullRange
-from .motion import Motion, Piece, arrivals_at, motion_program, speeds_program
+from .motion import Motion, Piece, arrivals_at, motion_program
 
 
 class Probes(NamedTuple):
@@ -83,7 +83,8 @@ class Path(NamedTuple):
         if times.size == 0:
             return Motion(*[times] * len(Motion._fields))
         columns = times, times if beside is None else beside
-        return in_chunks(motion_program, MODEL_SETTINGS.times, self._known, columns)
+        fixed = self.load, self.support, self.rows
+        return in_chunks(motion_program, MODEL_SETTINGS.times, fixed, columns)
 
     def states_at(self, times: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
         """State in m at times of any shape."""
@@ -92,15 +93,6 @@ class Path(NamedTuple):
     def speeds_at(self, times: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
         """Speed in m/s at times of any shape, from the right at kinks."""
         return self.motion_at(times.ravel()).speeds.reshape(times.shape)
-
-    def slopes_at(
-        self, times: Float[np.ndarray, " n"], states: Float[np.ndarray, " n"]
-    ) -> Float[np.ndarray, " n"]:
-        """Speed in m/s at times at which the states are known."""
-        if times.size == 0:
-            return times
-        columns = times, states
-        return in_chunks(speeds_program, MODEL_SETTINGS.times, self._known, columns)[0]
 
     def times_at(
         self, piece: Int[np.ndarray, " n"], states: Float[np.ndarray, " n"]
@@ -111,10 +103,6 @@ class Path(NamedTuple):
         early, late = self.touch[piece], self.edges[piece + 1]
         found = arrivals_at(self, states, self.rho[piece], early, late)
         return np.clip(found, early, late)
-
-    @property
-    def _known(self) -> tuple:
-        return self.load, self.support, self.rows
 
 
 def rows_of_path(path: Path) -> Float[np.ndarray, "room 7"]:

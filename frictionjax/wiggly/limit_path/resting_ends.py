@@ -26,7 +26,7 @@ def slow_ends(
     level = np.maximum(ends - SETTINGS.end * eps[:, None], 0.0)
     state = path.states[slides] + path.direction[slides] * level
     times = path.times_at(np.tile(slides, eps.size), state.ravel())
-    speed = path.slopes_at(times, state.ravel()).reshape(state.shape)
+    speed = path.speeds_at(times).reshape(state.shape)
     share = np.abs(speed) / (path.speed or 1.0)  # nothing slides at 0
     left = memory[:, slides] * share ** power[:, slides]
     slow[:, slides] = left * -np.log(SETTINGS.rests) < 1

@@ -15,7 +15,6 @@ from ..limit_path import Path, arrivals_at
 from .fast_slides import Candidates, FastSlide, FastSlideFinder, FoundTips, none_known
 from .settings import SETTINGS
 from .slow_flow import first_wells
-from .transit import pull_at
 
 
 class LookAt(NamedTuple):
@@ -63,9 +62,8 @@ def _set_off(finder: FastSlideFinder, cell: np.ndarray, piece: np.ndarray) -> np
     own, which = np.unique(piece, return_inverse=True)
     touch = path.touch[own]
     inside = touch + 1e-6 * (path.edges[own + 1] - touch)
-    state = path.states_at(inside)
-    speed = np.abs(path.slopes_at(inside, state))[which]
-    stiffness = pull_at(scene, inside, state).support[which, 1]
+    motion = path.motion_at(inside)
+    speed, stiffness = np.abs(motion.speeds)[which], motion.stiffness[which]
     moves = speed > 0
     cell, sign = cell[moves], path.direction[piece[moves]]
     times = np.full(moves.size, np.inf)
