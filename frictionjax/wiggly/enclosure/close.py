@@ -5,7 +5,7 @@ import numpy as np
 from ..lanes import SegmentEnds, Segments
 from .bracket_values import BracketValues
 from .brackets import Brackets
-from .closeness import gaps_of, shifts_of
+from .closeness import meetings_at
 from .layout import Layout
 from .marching import BracketContext
 from .requirements import Requirements, forgotten_after, resting_after
@@ -32,9 +32,9 @@ def close_brackets(
         plan, ends, effort = rounds.run(open_brackets, wells[open_], back[open_])
         rounds = rounds._replace(effort=effort)
         speed = rounds.path.speed
-        gaps = gaps_of(ends, plan.segments, plan.behind, plan.ahead, speed)
+        gaps = meetings_at(ends, plan.segments, plan.behind, plan.ahead, speed).gap
         where = plan.segments, plan.meet_behind, plan.meet_ahead, speed, plan.pace
-        meets = gaps_of(ends, *where)
+        meets, shifts = meetings_at(ends, *where)
         # Stops that one lane alone has reached count as closed as their bracket's begin.
         alone = plan.ahead < 0
         gaps = np.where(alone, meets[open_brackets.owner], gaps)
@@ -49,7 +49,6 @@ def close_brackets(
         # close by have had steps of their own, which part them further: they go back once,
         # and so do those that set off from a fast slide where their bracket begins.
         far = (wells[open_] > SETTINGS.margin) & ~(plan.from_slide & (back[open_] < 1))
-        shifts = shifts_of(ends, *where)
         met = np.maximum(meets, shifts)
         met = np.where(far, np.nan_to_num(met, nan=np.inf), np.inf)
         worst = np.minimum(worst, met)
