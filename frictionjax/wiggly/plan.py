@@ -10,7 +10,14 @@ from .._compile import Program, in_chunks, once_a_scene
 from ..model import AbstractPotential, BristlePotential, TabulatedScene
 from ..tables import bent_part, unsampled
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
-from .enclosure import CellBounds, Requirements, forgotten_after, resting_after, wells_of
+from .enclosure import (
+    CellBounds,
+    Requirements,
+    forgotten_after,
+    resting_after,
+    side_column,
+    wells_of,
+)
 from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps
 from .equation import StepPlan as StepPlan
 from .lanes import LaneScene
@@ -63,24 +70,18 @@ def ground_of(
     drag = path.speed * viscosity_of(eps, gamma)
     wells = wells_both_ways(scene.potential, eps, folds)
     lags, powers = _lags(wells, drag)
-    forces = (folds.force_plus, path.rho_plus), (folds.force_minus, path.rho_minus)
-    memories = lags.power * lags.force / path.stiffness
-    shifts = [np.abs(force - rho) / path.stiffness for force, rho in forces]
+    forces = np.stack([folds.force_plus, folds.force_minus], axis=1)
+    shifts = np.abs(forces - [path.rho_plus, path.rho_minus]) / path.stiffness
     pulls = eps * path.stiffness, eps * path.stiffest
     landed = latest_landings(wells, lags.force / pulls[0], drag, *pulls)
     return CellBounds(
         eps,
         folds,
-        lag_plus=lags.force[0] / path.stiffness,
-        lag_minus=lags.force[1] / path.stiffness,
-        power_plus=powers[0],
-        power_minus=powers[1],
-        memory_plus=memories[0],
-        memory_minus=memories[1],
-        shift_plus=shifts[0],
-        shift_minus=shifts[1],
-        landed_plus=landed[0],
-        landed_minus=landed[1],
+        lags=lags.force.T / path.stiffness,
+        powers=powers.T,
+        memories=(lags.power * lags.force).T / path.stiffness,
+        shifts=shifts,
+        landed=landed.T,
         start_well=start[0],
         start_tip=start[1],
         relaxed=_relaxation(path, eps, gamma),
@@ -124,10 +125,9 @@ def _needs(path: Path, ground: CellBounds, accuracy: float) -> Requirements:
     angular scene of the benchmarks, gamma = 1/2, memory was a third of it at eps = 1e-3,
     and 119 of 354 brackets stayed open.)
     """
-    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
-    shift = np.maximum(ground.shift_plus, ground.shift_minus) / ground.eps
+    lag, shift = ground.longest_lag, ground.shifts.max(axis=1) / ground.eps
     forgets, slow = forgotten_after(lag, ground.longest_memory, accuracy)
-    landed = np.maximum(ground.landed_plus, ground.landed_minus)
+    landed = ground.landed.max(axis=1)
     run_up = np.minimum(slow, resting_after(lag, landed, shift, forgets))
     offset = _lattice_offsets(ground, path)
     return Requirements(
@@ -170,7 +170,7 @@ def _slow_ends(path: Path, ground: CellBounds, some: np.ndarray) -> np.ndarray:
     Slides remember twice the wells that they lag by, at most.
     """
     cell, direction = some[:, None], path.direction[None, :]
-    lag = np.where(direction > 0, ground.lag_plus[cell], ground.lag_minus[cell])
+    lag = ground.lags[cell, side_column(direction)]
     eps, power = ground.eps[some], ground.power(cell, direction)
     return slow_ends(path, eps, 2 * lag / eps[:, None], power)
 

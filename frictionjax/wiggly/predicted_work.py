@@ -52,7 +52,7 @@ def workload(
     plan = planned(tables, path, eps, gamma, times, accuracy, method)
     control, ground, needs, way = plan
     by_map = way == Way.SLIP_MAP
-    lag = np.maximum(ground.lag_plus, ground.lag_minus) / eps
+    lag = ground.longest_lag
     steps = _steps_a_well(control, lag, _drag_of(path, eps, gamma))
     total = steps * cost_of(path, eps, needs, times)
     chain = steps * longest_lane(path, eps, needs)

@@ -19,3 +19,4 @@ from .requirements import wells_a_leg as wells_a_leg
 from .requirements import wells_of as wells_of
 from .settings import SETTINGS as SETTINGS
 from .starts import CellBounds as CellBounds
+from .starts import side_column as side_column

@@ -134,19 +134,12 @@ def plan_brackets(
     cell = np.concatenate([brackets.cell[lanes[0][0]], second_brackets.cell[lanes[1][0]]])
     wells = np.abs(segments.guide1 - segments.guide0) / ground.eps[cell]
     # A lane from far outside the strip passes through wells that the path does not.
-    far = path.outside / ground.eps[cell]
-    far = np.where(
-        np.concatenate(
-            [starts.known_start[lanes[0][0]], second_starts.known_start[lanes[1][0]]]
-        ),
-        far,
-        0,
-    )
+    known = np.concatenate([starts.known_start[lanes[0][0]], np.zeros(lanes[1][0].size)])
+    far = known * path.outside / ground.eps[cell]
     # Nor does the path pass through those that a lane has to catch up with after a jump.
-    late = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
-    late = np.minimum(late, np.minimum(path.travel[-1] / ground.eps, SETTINGS.affordable))[
-        cell
-    ]
+    late = np.minimum(
+        ground.longest_lag, np.minimum(path.travel[-1] / ground.eps, SETTINGS.affordable)
+    )[cell]
     budget = (
         SETTINGS.lane_steps * (wells + far + SETTINGS.some_wells)
         + SETTINGS.steps_behind * late

@@ -10,7 +10,7 @@ from .layout import Layout
 from .marching import BracketContext
 from .requirements import Requirements, forgotten_after, resting_after
 from .settings import SETTINGS
-from .starts import CellBounds, lag_share, slow_share, starts_of
+from .starts import CellBounds, lag_share, side_column, slow_share, starts_of
 
 
 def close_brackets(
@@ -108,12 +108,8 @@ def _slow_run_ups(
     ground: CellBounds, cell: np.ndarray, direction: np.ndarray, share, accuracy: float
 ) -> np.ndarray:
     """Wells where there is this `share` of the lag and memory of a direction, (W,)."""
-
-    def own(plus, minus) -> np.ndarray:
-        return np.where(direction > 0, plus[cell], minus[cell]) / ground.eps[cell]
-
-    lag = lag_share(ground, cell, share) * own(ground.lag_plus, ground.lag_minus)
+    own, eps = (cell, side_column(direction)), ground.eps[cell]
+    lag = lag_share(ground, cell, share) * ground.lags[own] / eps
     memory = share * ground.memory(cell, direction)
     forgets, slow = forgotten_after(lag, memory, accuracy)
-    shift = own(ground.shift_plus, ground.shift_minus)
-    return np.minimum(slow, resting_after(lag, np.inf, shift, forgets))
+    return np.minimum(slow, resting_after(lag, np.inf, ground.shifts[own] / eps, forgets))

@@ -78,7 +78,7 @@ def _finder_of(rounds: BracketContext, needs: Requirements) -> FastSlideFinder:
         path=rounds.path,
         eps=ground.eps,
         viscosity=rounds.cells.viscosity,
-        lag=np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps,
+        lag=ground.longest_lag,
         folds={
             1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
             -1.0: (np.asarray(folds.place_minus), np.asarray(folds.force_minus)),

@@ -14,11 +14,11 @@ from .settings import SETTINGS
 class CellBounds(NamedTuple):
     """What brackets need to know of each cell, shape (cells,) each.
 
-    `lag_plus`, `lag_minus`: how far in m a steady slide stays behind the strip's edge, at
-    most. `power_plus`, `power_minus`: of the speed that lags grow with. `memory_plus`,
-    `memory_minus`: way in m in which it forgets all but 1/e. `shift_plus`,
-    `shift_minus`: by how much in m folds at this eps differ from rho. `landed_plus`,
-    `landed_minus`: wells beyond a fold at which tips are half a well further, at most.
+    Of slides to the right and to the left, (cells, 2): `lags`: how far in m steady ones
+    stay behind the strip's edge, at most. `powers`: of the speed that lags grow with.
+    `memories`: way in m in which they forget all but 1/e. `shifts`: by how much in m folds
+    at this eps differ from rho. `landed`: wells beyond a fold at which tips are half a well
+    further, at most.
     `phase`: how far ahead on the surface the bristle stands, in periods: its wells have
     numbers less by that.
     `relaxed`: time in s from which on a start outside the strip is forgotten, by Lemma 7.
@@ -27,16 +27,11 @@ class CellBounds(NamedTuple):
 
     eps: np.ndarray
     folds: WiggleFolds
-    lag_plus: np.ndarray
-    lag_minus: np.ndarray
-    power_plus: np.ndarray
-    power_minus: np.ndarray
-    memory_plus: np.ndarray
-    memory_minus: np.ndarray
-    shift_plus: np.ndarray
-    shift_minus: np.ndarray
-    landed_plus: np.ndarray
-    landed_minus: np.ndarray
+    lags: np.ndarray
+    powers: np.ndarray
+    memories: np.ndarray
+    shifts: np.ndarray
+    landed: np.ndarray
     start_well: np.ndarray
     start_tip: np.ndarray
     relaxed: np.ndarray
@@ -45,17 +40,26 @@ class CellBounds(NamedTuple):
 
     def power(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
         """Of slides of cells in a direction."""
-        return np.where(direction > 0, self.power_plus[cell], self.power_minus[cell])
+        return self.powers[cell, side_column(direction)]
 
     def memory(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
         """Of the fastest slides of cells in a direction, in wells."""
-        own = np.where(direction > 0, self.memory_plus[cell], self.memory_minus[cell])
-        return own / self.eps[cell]
+        return self.memories[cell, side_column(direction)] / self.eps[cell]
 
     @property
     def longest_memory(self) -> np.ndarray:
         """Of both directions, in wells, (cells,)."""
-        return np.maximum(self.memory_plus, self.memory_minus) / self.eps
+        return self.memories.max(axis=1) / self.eps
+
+    @property
+    def longest_lag(self) -> np.ndarray:
+        """Of both directions, in wells, (cells,)."""
+        return self.lags.max(axis=1) / self.eps
+
+
+def side_column(direction: np.ndarray) -> np.ndarray:
+    """The column of slides in a direction."""
+    return (direction <= 0).astype(int)
 
 
 class Starts(NamedTuple):
@@ -117,7 +121,7 @@ def starts_of(
     Where not `measured`, errors of fast slides are not waited for: both lanes start there.
     """
     eps = ground.eps[cell]
-    lag = np.maximum(ground.lag_plus, ground.lag_minus)[cell]
+    lag = ground.lags.max(axis=1)[cell]
     wanted = path.motion_at(begin).ways - wells * eps
     # A start outside the strip rests where it has relaxed to, off the path by this much.
     astray = path.speed * ground.relaxed[cell]
@@ -248,8 +252,7 @@ def slow_share(path: Path, time: np.ndarray, power: np.ndarray) -> np.ndarray:
 
 def lag_share(ground: CellBounds, cell: np.ndarray, share: np.ndarray) -> np.ndarray:
     """Share of the largest lag that brackets count with, where slides have that share."""
-    lag = np.maximum(ground.lag_plus, ground.lag_minus) / ground.eps
-    return np.where(lag[cell] > SETTINGS.long_lag, share, 1.0)
+    return np.where(ground.longest_lag[cell] > SETTINGS.long_lag, share, 1.0)
 
 
 def _bracket(ground: CellBounds, cell, direction, level, known, share, rests):
@@ -257,19 +260,15 @@ def _bracket(ground: CellBounds, cell, direction, level, known, share, rests):
 
     `rests`: where the tip has been through all slips that should be over.
     """
-    up, eps, folds = direction > 0, ground.eps[cell], ground.folds
-
-    def side(plus, minus) -> np.ndarray:
-        return np.where(up, np.asarray(plus)[cell], np.asarray(minus)[cell])
-
-    place = side(folds.place_plus, folds.place_minus)
-    fold = side(folds.state_plus, folds.state_minus)
-    shift = side(ground.shift_plus, ground.shift_minus) / eps
-    lag = share * side(ground.lag_plus, ground.lag_minus) / eps
-    landed = side(ground.landed_plus, ground.landed_minus)
-    landed = np.where(rests, landed, np.inf)
+    eps, folds = ground.eps[cell], ground.folds
+    places = np.stack([folds.place_plus, folds.place_minus], axis=1)
+    states = np.stack([folds.state_plus, folds.state_minus], axis=1)
+    own = cell, side_column(direction)
+    place, fold = places[own], states[own]
+    shift, lag = ground.shifts[own] / eps, share * ground.lags[own] / eps
+    landed = np.where(rests, ground.landed[own], np.inf)
     # Mirrored for slides to the left, so that the tip moves up in both.
-    sign = np.where(up, 1.0, -1.0)
+    sign = np.where(direction > 0, 1.0, -1.0)
     at = sign * (level - fold) / eps
     ahead = np.ceil(at + shift + SETTINGS.gap)
     slow = np.isfinite(landed)

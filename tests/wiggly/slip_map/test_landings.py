@@ -51,7 +51,7 @@ def test_tips_are_half_a_well_further_by_then_and_not_long_before(
     cell = np.array([eps]), np.array([gamma])
     plan = planned(tables, path, *cell, 3, 1e-3, "auto")
     ground, folds = plan.ground, plan.ground.folds
-    landed = (ground.landed_plus, ground.landed_minus)[way][0]
+    landed = ground.landed[0, way]
     assert 0.02 < landed < 0.45
     fold = (folds.state_plus, folds.state_minus)[way][0]
     place = (folds.place_plus, folds.place_minus)[way][0]

@@ -110,7 +110,7 @@ def test_slides_are_found_from_answers_alone(gap):
         path=path,
         eps=eps,
         viscosity=eps**0.5,
-        lag=ground.lag_plus / eps,
+        lag=ground.lags[:, 0] / eps,
         folds={
             1.0: (np.asarray(folds.place_plus), np.asarray(folds.force_plus)),
             -1.0: (np.asarray(folds.place_minus), np.asarray(folds.force_minus)),
