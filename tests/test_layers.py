@@ -40,7 +40,7 @@ FLOORS = {
     ],
     "wiggly": [
         {"stepping"},
-        {"equation", "rosenbrock", "solved_scene"},
+        {"equation", "rosenbrock", "solved_scene", "problem"},
         {"sequential", "lanes", "limit_path", "settings", "solution", "turning"},
         {"slip_map", "inertial"},
         {"enclosure"},

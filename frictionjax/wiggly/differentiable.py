@@ -5,24 +5,12 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array
 
-from .._checks import Real
 from .._compile import Program, once_a_scene, strong_arrays
-from ..model import Scene
 from .equation import StepPlan, plan_steps
+from .problem import Problem
 from .sequential import Past, integrate
 from .solution import Solution
-
-
-class Problem(NamedTuple):
-    """What trajectories have derivatives by."""
-
-    scene: Scene
-    eps: Real
-    gamma: Real
-    ts: Array
-    accuracy: Real
 
 
 class Options(NamedTuple):

@@ -6,22 +6,23 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from .._checks import as_real
 from ..effects import Noise
-from ..model import Scene, tabulated_scene
+from ..model import tabulated_scene
 from ..numerics import rows_of
 from .arrays import integrate_scene
 from .equation import Status
+from .problem import Problem
 from .solution import Solution
 
 
-def _one_cell(eps: Any, gamma: Any, ts: Array, accuracy: Any) -> dict[str, Any]:
+def _one_cell(problem: Problem) -> dict[str, Any]:
     """Arguments of what integrates cells."""
     return {
-        "eps": np.atleast_1d(float(eps)),
-        "gamma": np.atleast_1d(float(gamma)),
-        "ts": np.asarray(ts),
-        "accuracy": float(as_real(accuracy)),
+        "scene": problem.scene,
+        "eps": np.atleast_1d(float(problem.eps)),
+        "gamma": np.atleast_1d(float(problem.gamma)),
+        "ts": np.asarray(problem.ts),
+        "accuracy": float(problem.accuracy),
     }
 
 
@@ -32,22 +33,14 @@ def _energies(
     return (jnp.asarray(dissipation), jnp.asarray(residual)) if balanced else (None, None)
 
 
-def through_lanes(
-    scene: Scene,
-    eps: Any,
-    gamma: Any,
-    ts: Array,
-    accuracy: Any,
-    method: str,
-    balanced: bool,
-) -> Solution | None:
+def through_lanes(problem: Problem, method: str, balanced: bool) -> Solution | None:
     """The solution by lanes; None where the scene has no room for the load's turns."""
-    asked = _one_cell(eps, gamma, ts, accuracy) | {"method": method, "balanced": balanced}
-    found, apart = integrate_scene(scene=scene, suprema=False, **asked)
+    asked = _one_cell(problem) | {"method": method, "balanced": balanced}
+    found, apart = integrate_scene(suprema=False, **asked)
     if found is None:
         return None
     one, sampled = rows_of(found, 0), float(found.sampled[0])
-    own = tabulated_scene(scene, eps).untabulated
+    own = tabulated_scene(problem.scene, problem.eps).untabulated
     counts = {
         "steps": int(one.steps),
         "rejected": int(one.rejected),
@@ -60,7 +53,7 @@ def through_lanes(
     if apart is not None:
         counts["spread"] = apart[0]
     return Solution(
-        ts,
+        problem.ts,
         jnp.asarray(one.z),
         *_energies(balanced, one.dissipation, one.running_residual),
         jnp.asarray(one.status),
@@ -82,13 +75,11 @@ def _in_words(how: np.ndarray, sampled: float) -> str:
     return f"resolved, every slip, in tiles; {share}"
 
 
-def along_one_path(
-    scene: Scene, noise: Noise, eps: Any, gamma: Any, ts: Array, key: Any
-) -> Solution:
+def along_one_path(problem: Problem, noise: Noise, key: Any) -> Solution:
     from ..stochastic import key_words, noisy_path  # nothing else needs it
 
-    words = key_words(key)
-    found = noisy_path(scene, noise, eps=eps, gamma=gamma, key=words, ts=ts)
+    scene, eps, gamma, ts, _ = problem
+    found = noisy_path(scene, noise, eps=eps, gamma=gamma, key=key_words(key), ts=ts)
     status = Status.OK if found.ok else Status.NOT_FINITE
     counts = {
         "steps": found.steps,
@@ -103,20 +94,11 @@ def along_one_path(
     return Solution(ts, z, None, None, jnp.asarray(int(status)), counts, how)
 
 
-def with_mass(
-    scene: Scene,
-    eps: Any,
-    gamma: Any,
-    ts: Array,
-    accuracy: Any,
-    effect: Any,
-    balanced: bool,
-    max_steps: int,
-) -> Solution:
+def with_mass(problem: Problem, effect: Any, balanced: bool, max_steps: int) -> Solution:
     from .inertial import integrate_with_mass  # nothing else needs it
 
-    asked = _one_cell(eps, gamma, ts, accuracy) | {"inertia": effect, "budget": max_steps}
-    found = rows_of(integrate_with_mass(scene, suprema=False, **asked), 0)
+    asked = _one_cell(problem) | {"inertia": effect, "budget": max_steps}
+    found = rows_of(integrate_with_mass(suprema=False, **asked), 0)
     counts = {
         "steps": int(found.steps),
         "rejected": int(found.rejected),
@@ -126,7 +108,7 @@ def with_mass(
         "beta": float(found.beta),
     }
     return Solution(
-        ts,
+        problem.ts,
         jnp.asarray(found.z),
         *_energies(balanced, found.dissipation, found.running_residual),
         jnp.asarray(found.status),
@@ -136,25 +118,16 @@ def with_mass(
     )
 
 
-def with_turning(
-    scene: Scene,
-    eps: Any,
-    gamma: Any,
-    ts: Array,
-    accuracy: Any,
-    effect: Any,
-    balanced: bool,
-    max_steps: int,
-) -> Solution:
+def with_turning(problem: Problem, effect: Any, balanced: bool, max_steps: int) -> Solution:
     from .turning import integrate_turning  # nothing else needs it
 
     found = integrate_turning(
-        scene,
-        float(eps),
-        float(gamma),
+        problem.scene,
+        float(problem.eps),
+        float(problem.gamma),
         effect=effect,
-        ts=np.asarray(ts),
-        accuracy=float(as_real(accuracy)),
+        ts=np.asarray(problem.ts),
+        accuracy=float(problem.accuracy),
         budget=max_steps,
     )
     counts = {
@@ -164,7 +137,7 @@ def with_turning(
         "dissipation_gap": found.gap if balanced else None,
     }
     return Solution(
-        ts,
+        problem.ts,
         jnp.asarray(found.z),
         *_energies(balanced, found.dissipation, found.residual),
         jnp.asarray(found.status),

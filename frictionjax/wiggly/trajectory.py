@@ -34,6 +34,7 @@ from ..model import (
 )
 from .engine_solutions import along_one_path, through_lanes, with_mass, with_turning
 from .equation import require_accuracy
+from .problem import Problem
 from .sequential import MAX_STEPS, is_ours
 from .solution import Solution
 
@@ -187,30 +188,29 @@ def _solve(
     noise = noise_among(scene.effects)
     if noise is not None:
         _require_unasked(accuracy, max_steps, adjoint)
-        return along_one_path(scene, noise, eps, gamma, ts, key)
+        return along_one_path(Problem(scene, eps, gamma, ts, accuracy), noise, key)
     require(key is None, "key", key, "None, or a scene with effects.Noise")
     eps, gamma = jnp.asarray(as_real(eps)), jnp.asarray(as_real(gamma))
     require_reach(scene.potential, eps)
     require_told_apart(scene, eps)
     known = is_concrete(scene, eps, gamma, ts, accuracy)
-    numbers = scene, eps, gamma, ts, accuracy
+    problem = Problem(scene, eps, gamma, ts, as_real(accuracy))
     for effect, by in (
         (inertia_among(scene.effects), with_mass),
         (nap_flip_among(scene.effects), with_turning),
     ):
         if effect is not None:
             _require_known(known and adjoint is None, effect)
-            return by(*numbers, effect, bool(dissipation), int(max_steps))
+            return by(problem, effect, bool(dissipation), int(max_steps))
     plain = adjoint is None and max_steps == MAX_STEPS
     if plain and is_ours(method) and known:
-        found = through_lanes(*numbers, str(method), bool(dissipation))
+        found = through_lanes(problem, str(method), bool(dissipation))
         if found is not None:
             return found
-    from .differentiable import Options, Problem, solve_one_after_the_other
+    from .differentiable import Options, solve_one_after_the_other
     from .sequential import solver_of  # and diffrax, 0.5 s
 
     if known and adjoint is None:
-        scene = scene_of_tables(scene, eps)
-    problem = Problem(scene, eps, gamma, ts, jnp.asarray(as_real(accuracy)))
+        problem = problem._replace(scene=scene_of_tables(scene, eps))
     options = Options(solver_of(method), bool(dissipation), int(max_steps), adjoint)
     return solve_one_after_the_other(problem, options)
