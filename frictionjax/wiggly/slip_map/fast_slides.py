@@ -92,10 +92,6 @@ class FoundTips(NamedTuple):
     tip: np.ndarray
     gap: np.ndarray
 
-    def chosen(self, which: np.ndarray) -> "FoundTips":
-        """Some of them."""
-        return rows_of(self, which)
-
 
 class Candidates(NamedTuple):
     """Slides that may be fast, shape (n,): at `time` (s) the tip is at `tip` in `well`.
@@ -113,10 +109,6 @@ class Candidates(NamedTuple):
     piece: np.ndarray
     least: np.ndarray
     gap: np.ndarray
-
-    def chosen(self, which: np.ndarray) -> "Candidates":
-        """Some of them."""
-        return rows_of(self, which)
 
 
 class FastSlideFinder(NamedTuple):
@@ -202,13 +194,13 @@ class FastSlideFinder(NamedTuple):
         found: list[FastSlide | None] = [None] * some.cell.size
         if able.size == 0:
             return found
-        some = some.chosen(able)
+        some = rows_of(some, able)
         to_fold, track = self._tracks(some, least[able])
         time, well = self._to_fold(some, to_fold)
         fits = np.isfinite(time) & (time < some.late)
         if not fits.any():
             return found
-        able, some, time, well = able[fits], some.chosen(fits), time[fits], well[fits]
+        able, some, time, well = able[fits], rows_of(some, fits), time[fits], well[fits]
         track = rows_of(track, fits)
         place, _ = self.fold(some.cell, some.sign)
         slides = Slides(

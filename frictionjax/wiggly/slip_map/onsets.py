@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from ...numerics import rows_of
 from ..limit_path import Path, arrivals_at
 from .fast_slides import Candidates, FastSlide, FastSlideFinder, FoundTips, none_known
 from .settings import SETTINGS
@@ -124,7 +125,7 @@ def _starting(
         return None, able
     cell, piece, late = cell[able], piece[able], late[able]
     stops = (touch + wait)[able]
-    tips = None if tips is None else tips.chosen(able)
+    tips = None if tips is None else rows_of(tips, able)
     seen = yield from _look(known, cell, begin[able], stops, tips)
     candidates = Candidates(
         cell=cell,
@@ -138,7 +139,7 @@ def _starting(
         gap=seen.gap,
     )
     closed = seen.gap < SETTINGS.closed
-    return candidates.chosen(closed), able[closed]
+    return rows_of(candidates, closed), able[closed]
 
 
 def _overshooting(
@@ -182,7 +183,7 @@ def _overshooting(
     beyond = finder.beyond(every)
     soft = finder.path.stiffness * finder.eps[cell]
     every = every._replace(least=np.minimum(np.maximum(0.02 * beyond, soft), beyond))
-    return every.chosen(on)
+    return rows_of(every, on)
 
 
 def _pace(slide: FastSlide) -> float:
