@@ -6,4 +6,4 @@ from .own_methods import OURS as OURS
 from .own_methods import is_ours as is_ours
 from .rosenbrock_solvers import Rodas4P2 as Rodas4P2
 from .solvers_by_name import solver_of as solver_of
-from .step_adjoint import Past as Past
+from .way_adjoint import Past as Past

@@ -11,8 +11,8 @@ from jaxtyping import Array, Float, Int, PyTree
 from ..._checks import Real
 from ..equation import Status, StepPlan, TipField
 from .augmented_solver import augmented_field
-from .step_adjoint import Checkpoint, Past, goes_on, way_through
 from .stepper import Stepper, code_of
+from .way_adjoint import Checkpoint, Past, goes_on, way_through
 from .well_guard import WellGuard
 
 

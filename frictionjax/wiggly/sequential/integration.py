@@ -20,7 +20,7 @@ from .checkpoints import (
 from .own_methods import MAX_STEPS
 from .settings import SETTINGS
 from .solvers_by_name import with_tolerance
-from .step_adjoint import Past
+from .way_adjoint import Past
 
 
 class Trajectory(NamedTuple):

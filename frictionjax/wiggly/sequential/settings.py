@@ -12,7 +12,7 @@ class Settings(NamedTuple):
     # 1e-6 of it.
     residual: float = 0.05
 
-    # Derivatives in reverse mode (`step_adjoint.py`).
+    # Derivatives in reverse mode (`way_adjoint.py`).
     # Steps of a piece, all of which are kept. Memory of all is cleared for each piece: 2^14
     # took 1.3 to 2.3 times as long.
     piece: int = 3840

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.wiggly.sequential import step_adjoint as fronts
+from frictionjax.wiggly.sequential import way_adjoint as fronts
 
 EPS = 0.05
 TIMES = np.linspace(0.1, 1.4, 9)

@@ -8,9 +8,9 @@ import pytest
 from stepped_scene import CONTROLLER, FIRST, start_of, stepper_of
 
 from frictionjax.wiggly import Status
-from frictionjax.wiggly.sequential import step_adjoint
-from frictionjax.wiggly.sequential.step_adjoint import Checkpoint, way_through
+from frictionjax.wiggly.sequential import way_adjoint
 from frictionjax.wiggly.sequential.stepper import blank_log, step_to
+from frictionjax.wiggly.sequential.way_adjoint import Checkpoint, way_through
 
 ROOM = 400
 # One of them at the start, and one twice: nothing is done there.
@@ -96,8 +96,8 @@ def pieces_of(past, stepper, start):
 @pytest.mark.slow  # two programs each; that of all steps: ../test_differentiable.py
 @pytest.mark.parametrize(("solver", "length"), [("resolved", 3), *SOLVERS])
 def test_derivatives_are_those_of_the_steps(solver, length, monkeypatch):
-    short = step_adjoint.SETTINGS._replace(piece=length)
-    monkeypatch.setattr(step_adjoint, "SETTINGS", short)
+    short = way_adjoint.SETTINGS._replace(piece=length)
+    monkeypatch.setattr(way_adjoint, "SETTINGS", short)
     stepper = stepper_of(solver)
     point = stepper, start_of(stepper), STOPS
     (value, past), ours = slopes()(point)
@@ -121,9 +121,9 @@ def test_derivatives_are_those_of_the_steps(solver, length, monkeypatch):
 @pytest.mark.parametrize("lacks", ["pieces", pytest.param("steps", marks=pytest.mark.slow)])
 def test_no_derivative_where_room_runs_out(monkeypatch, lacks):
     stepper = stepper_of()
-    settings = step_adjoint.SETTINGS._replace(piece=3)
+    settings = way_adjoint.SETTINGS._replace(piece=3)
     lack = {"pieces": {"most_pieces": 2}, "steps": {"more": -2}}[lacks]
-    monkeypatch.setattr(step_adjoint, "SETTINGS", settings._replace(**lack))
+    monkeypatch.setattr(way_adjoint, "SETTINGS", settings._replace(**lack))
     (value, _), by = slopes()((stepper, start_of(stepper), STOPS))
     assert np.isfinite(value)
     assert np.isnan(by[1][0])
