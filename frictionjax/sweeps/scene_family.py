@@ -1,6 +1,6 @@
 """Scenes of one sweep: one alone, or several under their labels."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -71,6 +71,8 @@ def family_of(
     elif isinstance(given, list | tuple):
         asked, labels = list(given), list(range(len(given)))
     else:
+        several = "a Scene, or several in a list, a tuple or a mapping"
+        require(not isinstance(given, Iterator), "scene", type(given).__name__, several)
         asked, labels = [given], None
     require(asked, "scene", given, "a Scene, or several")
     family = SceneFamily(asked, labels, asked)
@@ -99,11 +101,14 @@ def _left_out(found: list[Simulated], labels: list[Any] | None) -> str:
 
 
 def _labels(names: list[Any]) -> list[Any]:
-    require(names, "scenes", names, "a Scene, or several")
-    kinds = {type(name) for name in names}
-    good = kinds in ({str}, {int})
-    require(good, "scenes", f"labels {names[:4]}", "labels that are all str, or all int")
-    return names
+    require(names, "scene", names, "a Scene, or several")
+    plain = [int(name) if isinstance(name, np.integer) else name for name in names]
+    kinds = {type(name) for name in plain}
+    # Larger ones a file has no room for.
+    good = kinds == {str} or (kinds == {int} and max(map(abs, plain)) < 2**63)
+    allowed = "labels that are all str, or all int of 64 bits"
+    require(good, "scene", f"labels {names[:4]}", allowed)
+    return plain
 
 
 def times_of(family: SceneFamily, ts: Any) -> Float[Array, " n"]:
