@@ -1,4 +1,4 @@
-"""What a trajectory is asked for of."""
+"""What `solve` hands to its engines."""
 
 from typing import Any, NamedTuple
 

@@ -43,6 +43,8 @@ def known_path(scene: Scene, tables: TabulatedScene) -> Path | None:
         path = path_of(tables)
         if path is not None and path.direction.size <= SETTINGS.few_pieces:
             _PATHS.put(scene, path)
+    elif path.support is not tables.support:  # of which the table is for an eps
+        return path._replace(support=tables.support)
     return path
 
 

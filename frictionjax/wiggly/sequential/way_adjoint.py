@@ -65,9 +65,9 @@ def way_through(
     rounding, most = limits
 
     def piece(front: Checkpoint, stop: Real) -> Checkpoint:
-        least = jnp.minimum(most - front.steps, SETTINGS.piece)
+        left = jnp.minimum(most - front.steps, SETTINGS.piece)
         start = front.t, (*front.y, front.step), front.step
-        now, _ = step_to(stop, stepper, controller, *start, most=least)
+        now, _ = step_to(stop, stepper, controller, *start, most=left)
         *y, step = now.y
         steps = front.steps + now.steps
         unfinished = (now.code == Status.OK) & (now.t < stop)
@@ -145,7 +145,7 @@ def _back(
     past = jnp.where(whole, made, 0)
     first = jnp.concatenate([jnp.zeros_like(past[:1]), past[:-1]])
     moved = (by.fronts.t, by.fronts.y), (front.t, front.y)
-    given = first, past, _whole(*moved, stops.shape[0])
+    given = first, past, _filled(*moved, stops.shape[0])
     none = jax.tree_util.tree_map(jnp.zeros_like, (wanted, front.t, front.y))
     (*found, whole), by_stops = jax.lax.scan(over_stop, (*none, whole), given, reverse=True)
     # Where room ran out, for pieces or for the steps of one, there is no derivative.
@@ -156,7 +156,7 @@ def _back(
     return by_stepper, nothing._replace(t=by_t, y=by_y), by_stops
 
 
-def _whole(by: PyTree, like: PyTree, count: int) -> PyTree:
+def _filled(by: PyTree, like: PyTree, count: int) -> PyTree:
     """Zeros for what nothing depends on."""
     return jax.tree_util.tree_map(
         lambda b, leaf: jnp.zeros((count, *leaf.shape)) if b is None else b,

@@ -28,6 +28,16 @@ def test_the_path_of_a_scene_is_found_once_whatever_the_eps():
     np.testing.assert_array_equal(other.probes.speeds, path.probes.speeds)
 
 
+def test_a_path_found_before_has_the_support_of_this_eps():
+    curved = fx.supports.Convex(lambda z: z**2 / 2 + z**4 / 4)
+    scene = scene_under(fx.loads.Sine(1.2, 3.0)).replace(support=curved)
+    times = np.linspace(0.0, 3.0, 20)
+    before, tables = known(scene, 0.1), tabulated_scene(scene, 1e-3)
+    path = limit_path.known_path(scene, tables)
+    assert path.support is tables.support is not before.support
+    np.testing.assert_allclose(path.states_at(times), before.states_at(times), atol=1e-14)
+
+
 def test_another_support_is_another_scene():
     scene = scene_under(fx.loads.Sine(1.2, 3.0))
     soft, stiff = (known(scene.replace(support=fx.supports.Spring(k)), 0.1) for k in (1, 2))
