@@ -45,6 +45,7 @@ FLOORS = {
         {"slip_map", "inertial"},
         {"enclosure"},
         {"sums", "ways"},
+        {"lane_steps"},
         {"plan"},
         {"attempts"},
         {"predicted_work"},

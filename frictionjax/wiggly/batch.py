@@ -7,16 +7,24 @@ from ..model import Scene, SummedPotential, tabulated_scene
 from ..numerics import concatenated, rows_of
 from .attempts import AttemptContext, Cellwise, SoFar, with_rows
 from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
-from .enclosure import BracketContext, Report, find_fast_slides, no_effort
+from .enclosure import (
+    BracketContext,
+    CellSlides,
+    Report,
+    find_fast_slides,
+    inner_parts,
+    no_effort,
+    wells_outside,
+)
 from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
-from .limit_path import Path, known_path
+from .limit_path import known_path
 from .plan import Planned, in_phases, lane_scene, planned
 from .rosenbrock import Tableau
 from .settings import SETTINGS
 from .slip_map import none_known
-from .sums import CellResults, Sums
+from .sums import CellResults, Sums, nothing_found
 from .ways import Way
 
 
@@ -152,7 +160,7 @@ def _surveyed_again(sweep: AttemptContext, so_far: SoFar, rough: np.ndarray) -> 
     """Twice as many slips of the `rough` cells, at last all."""
     some = rows_of(so_far.cells, rough)
     samples = some.needs.samples * 2 * (some.needs.samples < SETTINGS.most_nodes)
-    can = _affordable(sweep.rounds.path, some) | (samples > 0)
+    can = some.ground.is_affordable(sweep.rounds.path) | (samples > 0)
     so_far = so_far.with_status(rough[~can], Status.ROUGH_SURVEY)
     again = rough[can]
     if again.size == 0:
@@ -169,7 +177,8 @@ def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
 
     At gamma = 0.75, eps = 1e-4, accuracy 1e-6: 1.5 s, where one lane takes 30.
     """
-    chosen = np.flatnonzero(so_far.open_ & _affordable(sweep.rounds.path, so_far.cells))
+    can = so_far.cells.ground.is_affordable(sweep.rounds.path)
+    chosen = np.flatnonzero(so_far.open_ & can)
     if chosen.size == 0:
         return so_far
     some = rows_of(so_far.cells, chosen)
@@ -184,7 +193,7 @@ def _first_attempt(sweep: AttemptContext, every: Cellwise, by_map: np.ndarray) -
     """Answers of all cells; the fast slides of those `by_map` are found before."""
     some = np.flatnonzero(by_map)
     if some.size == 0:
-        return sweep.attempt(every)
+        return _of_what_ends(sweep, every)
     needs = rows_of(every.needs, some)
     found = find_fast_slides(sweep.rounds_of(rows_of(every, some)), needs)
     has = np.array([len(own) > 0 for own in found.slides])
@@ -194,7 +203,7 @@ def _first_attempt(sweep: AttemptContext, every: Cellwise, by_map: np.ndarray) -
         ground=every.ground._replace(fast_slides=slides),
         needs=every.needs._replace(samples=with_rows(every.needs.samples, some, samples)),
     )
-    so_far = sweep.attempt(every)
+    so_far = _of_what_ends(sweep, every)
     steps, rejected, _ = found.effort()
     answers = so_far.answers
     answers = answers._replace(
@@ -202,6 +211,26 @@ def _first_attempt(sweep: AttemptContext, every: Cellwise, by_map: np.ndarray) -
         rejected=with_rows(answers.rejected, some, answers.rejected[some] + rejected),
     )
     return so_far._replace(answers=answers)
+
+
+def _of_what_ends(sweep: AttemptContext, every: Cellwise) -> SoFar:
+    """Answers of all cells but those with so many wells outside slides that none comes."""
+    ground, path = every.ground, sweep.rounds.path
+    most = ENCLOSURE_SETTINGS.outside
+    # One lane that goes through all is planned where that ends.
+    long = (path.travel[-1] / ground.eps > most) & np.isfinite(every.needs.tile)
+    some = np.flatnonzero(long)
+    if some.size == 0 or sweep.every_slip:
+        return sweep.attempt(every)
+    its = rows_of(every, some)
+    slides = CellSlides(path, its.ground.eps, its.needs, its.ground.fast_slides)
+    outside = wells_outside(slides, inner_parts(slides))
+    ends = np.delete(np.arange(ground.eps.size), some[outside > most])
+    nothing = nothing_found(ground.eps.size, sweep.ts.size)
+    so_far = SoFar(every, nothing, np.ones(ground.eps.size, dtype=bool))
+    if ends.size == 0:
+        return so_far
+    return so_far.with_attempt(sweep.attempt(rows_of(every, ends)), ends)
 
 
 def prepare_cells(scene: Scene, eps: np.ndarray, times: int) -> None:
@@ -225,13 +254,9 @@ def _prepare(
         prepare(lanes, tableau, room, summed, narrow=True)
 
 
-def _affordable(path: Path, cells: Cellwise) -> np.ndarray:
-    return path.travel[-1] / cells.ground.eps <= ENCLOSURE_SETTINGS.affordable
-
-
 def _from_the_start(sweep: AttemptContext, so_far: SoFar) -> SoFar:
     """One lane from z0 through everything, for cells whose brackets stay open."""
-    can = _affordable(sweep.rounds.path, so_far.cells)
+    can = so_far.cells.ground.is_affordable(sweep.rounds.path)
     chosen, never = np.flatnonzero(so_far.open_ & can), so_far.open_ & ~can
     answers = so_far.answers._replace(
         z=np.where(never[:, None], np.nan, so_far.answers.z),

@@ -16,10 +16,12 @@ from .enclosure import (
     forgotten_after,
     resting_after,
     side_column,
+    wells_a_leg,
     wells_of,
 )
 from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps
 from .equation import StepPlan as StepPlan
+from .lane_steps import affordable_wells, drag_of
 from .lanes import LaneScene
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, slow_ends
@@ -85,6 +87,7 @@ def ground_of(
         start_well=start[0],
         start_tip=start[1],
         relaxed=_relaxation(path, eps, gamma),
+        affordable=np.full(eps.size, ENCLOSURE_SETTINGS.affordable),
         phase=np.zeros(eps.size),
         fast_slides=none_known(eps.size),
     )
@@ -139,6 +142,9 @@ def _needs(path: Path, ground: CellBounds, accuracy: float) -> Requirements:
         lattice_offset=offset,
         restarts=np.zeros(offset.shape, dtype=bool),
         settles=np.isfinite(landed),
+        leg=wells_a_leg(
+            path, ground.eps, ground.affordable / ENCLOSURE_SETTINGS.affordable
+        ),
     )
 
 
@@ -207,7 +213,7 @@ def _along(
     alone, by_map = way == Way.ONE_LANE, way == Way.SLIP_MAP
     if not np.any(alone | by_map):
         return needs
-    late = ends_before_tips_follow(path, ground.eps, follows)
+    late = ends_before_tips_follow(path, ground, follows)
     restarts = _slow_ends(path, ground, np.arange(ground.eps.size))
     return needs._replace(
         samples=np.where(alone, 0, needs.samples),
@@ -268,13 +274,15 @@ def planned(
     """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
     control, start = _controls(scene, path, eps, gamma, accuracy)
     ground = ground_of(scene, path, eps, gamma, control.folds, start)
+    most = affordable_wells(control, ground.longest_lag, drag_of(path, eps, gamma))
+    ground = ground._replace(affordable=most)
     needs = _needs(path, ground, accuracy)
     brackets = by_brackets(path, eps, needs, times, method)
     needs = _with_brackets(path, eps, needs, brackets)
     follows = viscosity_of(eps, gamma) / path.stiffness
     way = ways_of(
         path=path,
-        eps=eps,
+        ground=ground,
         needs=needs,
         reach=np.asarray(control.reach),
         follows=follows,

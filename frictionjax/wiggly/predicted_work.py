@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._checks import quiet_where_extreme, viscosity_of
+from .._checks import quiet_where_extreme
 from ..model import BristlePotential, Scene, TabulatedScene, tabulated_scene
 from ..tables import SETTINGS as TABLES
 from ..tables import SeriesBristle, SeriesProfile
-from .enclosure import Requirements, cost_of, longest_lane, wells_a_leg, wells_of
-from .equation import StepPlan as StepPlan
+from .enclosure import Requirements, cost_of, longest_lane, wells_of
+from .lane_steps import drag_of, steps_a_well
 from .limit_path import Path, known_path
 from .plan import planned
 from .settings import SETTINGS
@@ -53,7 +53,7 @@ def workload(
     control, ground, needs, way = plan
     by_map = way == Way.SLIP_MAP
     lag = ground.longest_lag
-    steps = _steps_a_well(control, lag, _drag_of(path, eps, gamma))
+    steps = steps_a_well(control, lag, drag_of(path, eps, gamma))
     total = steps * cost_of(path, eps, needs, times)
     chain = steps * longest_lane(path, eps, needs)
     wells = path.travel[-1] / eps / np.maximum(np.count_nonzero(path.direction), 1)
@@ -79,30 +79,6 @@ def _longest_chains(slides: np.ndarray, cut: np.ndarray) -> np.ndarray:
     return np.array(counts)
 
 
-def _drag_of(path: Path, eps: np.ndarray, gamma: np.ndarray) -> np.ndarray:
-    """Of the fastest slide, over friction; less where tips follow only after it."""
-    viscosity = np.asarray(viscosity_of(eps, gamma))
-    drag = viscosity * path.speed / (path.rho_plus - path.rho_minus)
-    follows, longs = viscosity[:, None] / path.stiffness, np.diff(path.edges)
-    sudden = (path.direction != 0) & (follows > longs)
-    waits = np.pad((path.direction == 0) & (follows < longs), ((0, 0), (0, 1)))[:, 1:]
-    late = np.any(sudden & waits, axis=1)
-    return np.where(late, np.minimum(drag, SETTINGS.behind), drag)
-
-
-def _steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
-    smooth = np.minimum(-np.log10(drag), SETTINGS.smoothest)
-    return np.exp(
-        SETTINGS.constant
-        - SETTINGS.by_tolerance * np.log10(control.tolerance)
-        + SETTINGS.by_lag * np.log1p(lag)
-        + SETTINGS.by_reach * np.log(SETTINGS.widest / np.asarray(control.reach))
-        + SETTINGS.by_drag * smooth
-        + SETTINGS.above_tenth * np.minimum(smooth, 1.0)
-        + SETTINGS.above_one * np.minimum(smooth, 0.0)
-    )
-
-
 def _rows(
     path: Path, eps: np.ndarray, needs: Requirements, times: int
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -114,7 +90,7 @@ def _rows(
     shown = times * inner / np.maximum(inner + outer, 1e-9)
     slides = np.count_nonzero(path.direction)
     tiles, sampled = 1 + outer / needs.tile, needs.samples * slides * (inner > 0) + shown
-    stops = outer / wells_a_leg(path, eps) + times - shown + 2 * path.edges.size
+    stops = outer / needs.leg + times - shown + 2 * path.edges.size
     return 2 * (tiles + sampled), stops + 2 * tiles + (4 - needs.settles) * sampled
 
 

@@ -4,8 +4,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from .enclosure import SETTINGS as ENCLOSURE_SETTINGS
-from .enclosure import Requirements, cost_of
+from .enclosure import CellBounds, Requirements, cost_of
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path
 from .settings import SETTINGS
@@ -44,7 +43,7 @@ def by_brackets(
 
 def ways_of(
     path: Path,
-    eps: np.ndarray,
+    ground: CellBounds,
     needs: Requirements,
     reach: np.ndarray,
     follows: np.ndarray,
@@ -62,10 +61,11 @@ def ways_of(
     if method == "resolved":
         return brackets
     long = _remembers_long(needs)
-    ways = np.where(long & _has_mappable_slides(path, eps), Way.SLIP_MAP, brackets)
+    mappable = _has_mappable_slides(path, ground.eps)
+    ways = np.where(long & mappable, Way.SLIP_MAP, brackets)
     if method != "auto":
         return ways
-    short = _is_short(path, eps, reach) | ends_before_tips_follow(path, eps, follows)
+    short = _is_short(path, ground, reach) | ends_before_tips_follow(path, ground, follows)
     return np.where(long & short, Way.ONE_LANE, ways)
 
 
@@ -87,18 +87,20 @@ def _has_mappable_slides(path: Path, eps: np.ndarray) -> np.ndarray:
     return np.any(slides, axis=1) & ~np.any(bursts, axis=1)
 
 
-def _is_short(path: Path, eps: np.ndarray, reach: np.ndarray) -> np.ndarray:
+def _is_short(path: Path, ground: CellBounds, reach: np.ndarray) -> np.ndarray:
     """Whether one lane has gone through all before slip maps are made."""
     # Steps are the shorter, the narrower the branches.
     narrow = (SETTINGS.widest / reach) ** 0.6
-    way = path.travel[-1] / eps * narrow
-    slides = np.count_nonzero(slides_of(path, eps), axis=1)
-    return way <= np.minimum(
-        SETTINGS.worth_a_map * np.maximum(slides, 3), ENCLOSURE_SETTINGS.affordable
-    )
+    way = path.travel[-1] / ground.eps * narrow
+    slides = np.count_nonzero(slides_of(path, ground.eps), axis=1)
+    worth = SETTINGS.worth_a_map * np.maximum(slides, 3)
+    return way <= np.minimum(worth, ground.affordable)
 
 
-def ends_before_tips_follow(path: Path, eps: np.ndarray, follows: np.ndarray) -> np.ndarray:
+def ends_before_tips_follow(
+    path: Path, ground: CellBounds, follows: np.ndarray
+) -> np.ndarray:
     """Whether a slide does, in a cell that one lane can go through."""
-    brief = slides_of(path, eps) & (follows[:, None] > path.edges[1:] - path.touch)
-    return np.any(brief, axis=1) & (path.travel[-1] / eps <= ENCLOSURE_SETTINGS.affordable)
+    slides = slides_of(path, ground.eps)
+    brief = slides & (follows[:, None] > path.edges[1:] - path.touch)
+    return np.any(brief, axis=1) & ground.is_affordable(path)

@@ -5,7 +5,7 @@ import pytest
 from paths import path_of
 
 import frictionjax as fx
-from frictionjax.wiggly.enclosure import SETTINGS, Requirements
+from frictionjax.wiggly.enclosure import SETTINGS, CellBounds, Requirements
 from frictionjax.wiggly.ways import Way, by_brackets, ways_of
 
 SCENE = fx.Scene(
@@ -29,6 +29,7 @@ def needs_of(path, run_up):
         lattice_offset=np.zeros(pieces),
         restarts=np.zeros(pieces, dtype=bool),
         settles=np.zeros(EPS.size, dtype=bool),
+        leg=one,
     )
 
 
@@ -36,8 +37,10 @@ def chosen(run_up, method, follows=0.0, times=61):
     path = path_of(SCENE)
     needs, one = needs_of(path, run_up), np.ones(EPS.size)
     brackets = by_brackets(path, EPS, needs, times, method)
+    none = dict.fromkeys(CellBounds._fields, None)
+    ground = CellBounds(**none | {"eps": EPS, "affordable": SETTINGS.affordable * one})
     rest = needs, 0.125 * one, follows * one, brackets, method
-    return ways_of(path, EPS, *rest).tolist()
+    return ways_of(path, ground, *rest).tolist()
 
 
 @pytest.mark.parametrize(

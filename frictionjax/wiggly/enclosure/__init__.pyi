@@ -17,6 +17,9 @@ from .requirements import longest_lane as longest_lane
 from .requirements import resting_after as resting_after
 from .requirements import wells_a_leg as wells_a_leg
 from .requirements import wells_of as wells_of
+from .sampled_parts import CellSlides as CellSlides
+from .sampled_parts import inner_parts as inner_parts
+from .sampled_parts import wells_outside as wells_outside
 from .settings import SETTINGS as SETTINGS
 from .starts import CellBounds as CellBounds
 from .starts import side_column as side_column

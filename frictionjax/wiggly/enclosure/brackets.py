@@ -137,9 +137,8 @@ def plan_brackets(
     known = np.concatenate([starts.known_start[lanes[0][0]], np.zeros(lanes[1][0].size)])
     far = known * path.outside / ground.eps[cell]
     # Nor does the path pass through those that a lane has to catch up with after a jump.
-    late = np.minimum(
-        ground.longest_lag, np.minimum(path.travel[-1] / ground.eps, SETTINGS.affordable)
-    )[cell]
+    late = np.minimum(path.travel[-1] / ground.eps, ground.affordable)
+    late = np.minimum(ground.longest_lag, late)[cell]
     budget = (
         SETTINGS.lane_steps * (wells + far + SETTINGS.some_wells)
         + SETTINGS.steps_behind * late

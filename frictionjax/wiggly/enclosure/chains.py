@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .bracket_rows import BracketRows
-from .requirements import tiles_at, wells_a_leg
+from .requirements import tiles_at
 from .sampled_parts import CellSlides, Parts, uneven_pieces
 from .segment_ends import Cut, follow_path, stretches_of
 from .settings import SETTINGS
@@ -82,11 +82,10 @@ def chains_of(
 def _lattice(slides: CellSlides, parts: Parts, chosen: list[int]):
     """Cell and time of each segment's end on slides of cells, outside inner parts."""
     path, eps = slides.path, slides.eps
-    segments = wells_a_leg(path, eps)
     lows, highs = (slides.path.states_at(times) for times in (parts.low, parts.high))
     cells, pieces, wells = [], [], []
     for cell in chosen:
-        segment = float(segments[cell])
+        segment = float(slides.needs.leg[cell])
         of_cell = parts.cell == cell
         for piece in np.flatnonzero(path.direction).tolist():
             way = abs(path.states[piece + 1] - path.states[piece]) / eps[cell]

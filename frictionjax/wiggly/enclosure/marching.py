@@ -91,7 +91,8 @@ class BracketContext(NamedTuple):
     """What all rounds of one sweep share.
 
     `brief` (cells,): tolerances of lanes on fast slides through a few wells; None: those of
-    the others. `effort`: what lanes have taken before.
+    the others. `effort`: what lanes have taken before. `farthest` (cells,): wells of the
+    path that a lane may go through, where all its steps are waited for; None: any number.
     """
 
     scene: TabulatedScene
@@ -105,6 +106,7 @@ class BracketContext(NamedTuple):
     report: Report
     effort: Effort
     brief: np.ndarray | None
+    farthest: np.ndarray | None = None
 
     def run(self, brackets: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
         """March all brackets, from `wells` of the path or `back` of a fast slide before."""
@@ -142,6 +144,11 @@ class BracketContext(NamedTuple):
         )
         return Effort(steps, rejected, self._waited(plan, ends))
 
+    @property
+    def _share(self) -> float:
+        """Steps for a well of the path that no cell is said to wait for."""
+        return SETTINGS.path_steps if self.farthest is None else 0.0
+
     def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
         """Which jobs their cells can still wait for, and the plan with what is left."""
         jobs, segments = plan.jobs, plan.segments
@@ -152,9 +159,12 @@ class BracketContext(NamedTuple):
         wells = (
             np.abs(segments.guide1 - segments.guide0) / self.ground.eps[jobs.cell[owner]]
         )
-        allowed = left[owner] + SETTINGS.path_steps * wells
+        allowed = left[owner] + self._share * wells
         segments = segments._replace(budget=np.minimum(segments.budget, allowed))
-        return left > 0, plan._replace(segments=segments)
+        able = left > 0
+        if self.farthest is not None:
+            able &= self._wells(plan) <= self.farthest[jobs.cell]
+        return able, plan._replace(segments=segments)
 
     def _waited(self, plan: BracketPlan, ends: SegmentEnds) -> np.ndarray:
         """What the longest lane has taken beyond its share, for each cell.
@@ -162,7 +172,7 @@ class BracketContext(NamedTuple):
         Of one that gave up everything counts: it would take its share again in each march.
         """
         cell, steps = plan.jobs.cell, _of_jobs(plan, np.nan_to_num(ends.steps))
-        beyond = np.maximum(steps - SETTINGS.path_steps * self._wells(plan), 0.0)
+        beyond = np.maximum(steps - self._share * self._wells(plan), 0.0)
         gave_up = _of_jobs(plan, np.nan_to_num(ends.code)) > 0
         beyond = np.where(gave_up, steps, beyond)
         longest = np.zeros(self.ground.eps.size)
@@ -173,8 +183,7 @@ class BracketContext(NamedTuple):
         """Jobs from a known start, in cells that one lane can go through, (jobs,)."""
         known = np.zeros(plan.jobs.cell.size, dtype=bool)
         known[: plan.known_start.size] = plan.known_start
-        wells = self.path.travel[-1] / self.ground.eps[plan.jobs.cell]
-        return known & (wells <= SETTINGS.affordable)
+        return known & self.ground.is_affordable(self.path)[plan.jobs.cell]
 
     def _wells(self, plan: BracketPlan) -> np.ndarray:
         """Wells of the path that jobs go through, (jobs,)."""

@@ -18,7 +18,7 @@ def stops_at_times(
     cell, shown = np.nonzero((hit < 0) & (ts > 0))
     begin = _period_before(slides, cell, ts[shown])
     begin = _fast_period_before(slides.fast_slides, cell, ts[shown], begin)
-    order, sizes = _rests_together(slides.path, cell, ts[shown])
+    order, sizes = _rests_together(slides.path, cell, ts[shown], begin)
     cell, shown, begin = cell[order], shown[order], begin[order]
     first = np.cumsum(sizes) - sizes
     output = hit.copy()
@@ -28,14 +28,15 @@ def stops_at_times(
 
 
 def _rests_together(
-    path: Path, cell: np.ndarray, times: np.ndarray
+    path: Path, cell: np.ndarray, times: np.ndarray, begin: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Times, by their indices, and how many follow each other into one bracket.
 
-    Those of one rest of the path share a bracket.
+    Those of one rest of the path share a bracket, unless the tip still slides there and its
+    period has begun before: one bracket of such a rest took 5e6 steps.
     """
     piece = path.piece_of(times)
-    sliding = times > path.touch[piece]
+    sliding = (times > path.touch[piece]) | (begin < times)
     order = np.lexsort((times, piece, cell))
     same = (np.diff(cell[order]) == 0) & (np.diff(piece[order]) == 0)
     cut = ~same | sliding[order[1:]] | sliding[order[:-1]]

@@ -20,7 +20,8 @@ class Requirements(NamedTuple):
     in a slip.
     `restarts` (cells, pieces): where the chain is cut however long its tiles are, at a
     piece's end. `settles`: whether tips are at rest half a period behind slips, so that
-    lanes that have met there need not be two any longer.
+    lanes that have met there need not be two any longer. `leg`: between two stops of a
+    lane, where nothing else stops it.
     """
 
     run_up: np.ndarray
@@ -31,6 +32,7 @@ class Requirements(NamedTuple):
     lattice_offset: np.ndarray
     restarts: np.ndarray
     settles: np.ndarray
+    leg: np.ndarray
 
 
 def forgotten_after(lag, memory, accuracy: float):
@@ -93,10 +95,14 @@ def longest_lane(path: Path, eps: np.ndarray, needs: Requirements) -> np.ndarray
     return np.minimum(between / eps, needs.tile + needs.run_up)
 
 
-def wells_a_leg(path: Path, eps: np.ndarray) -> np.ndarray:
-    """Wells between two stops of each cell's lanes, where nothing else stops them."""
+def wells_a_leg(path: Path, eps: np.ndarray, late: np.ndarray) -> np.ndarray:
+    """Wells between two stops of each cell's lanes, where nothing else stops them.
+
+    `late` (cells,): how many times further lanes may go, as tips stay far behind the path.
+    """
     span = max(float(path.travel[-1]), 1e-300)
-    return np.clip(np.floor(SETTINGS.leg * span / eps), 1, SETTINGS.most_wells_a_leg)
+    most = SETTINGS.most_wells_a_leg * np.floor(late)
+    return np.clip(np.floor(SETTINGS.leg * span / eps), 1, most)
 
 
 def transients(needs: Requirements) -> np.ndarray:

@@ -155,6 +155,13 @@ def inner_parts(slides: CellSlides) -> Parts:
     return concatenated([rows_of(every, ~uneven), *graded])
 
 
+def wells_outside(slides: CellSlides, parts: Parts) -> np.ndarray:
+    """Wells of the path that inner parts leave, (cells,)."""
+    low, high = (slides.path.states_at(times) for times in (parts.low, parts.high))
+    inside = np.bincount(parts.cell, np.abs(high - low), slides.eps.size)
+    return np.maximum(slides.path.travel[-1] - inside, 0.0) / slides.eps
+
+
 def uneven_pieces(path: Path) -> np.ndarray:
     """Pieces on which the path speeds up and slows down between a few nodes, (P,)."""
     return path.probes.unseen > SETTINGS.even

@@ -59,6 +59,9 @@ class Settings(NamedTuple):
     lane: float = 2.0
     settled_lane: float = 0.6
     affordable: float = 2e5  # for one lane alone, at most: a minute or two
+    # Beside fast slides, in many lanes: more are laid out no more. (3.7e9 took minutes to
+    # lay out, and would have taken days; 1e7 took more than two minutes.)
+    outside: float = 2e6
     tail: int = 4  # before a turning point, always measured
 
     # Stretches and their ends (`layout.py`, `segment_ends.py`).

@@ -22,6 +22,7 @@ class CellBounds(NamedTuple):
     `phase`: how far ahead on the surface the bristle stands, in periods: its wells have
     numbers less by that.
     `relaxed`: time in s from which on a start outside the strip is forgotten, by Lemma 7.
+    `affordable`: wells that one lane alone may go through.
     `fast_slides`: tuples of `FastSlide`, in time.
     """
 
@@ -35,6 +36,7 @@ class CellBounds(NamedTuple):
     start_well: np.ndarray
     start_tip: np.ndarray
     relaxed: np.ndarray
+    affordable: np.ndarray
     phase: np.ndarray
     fast_slides: np.ndarray
 
@@ -45,6 +47,10 @@ class CellBounds(NamedTuple):
     def memory(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
         """Of the fastest slides of cells in a direction, in wells."""
         return self.memories[cell, side_column(direction)] / self.eps[cell]
+
+    def is_affordable(self, path: Path) -> np.ndarray:
+        """Whether one lane alone may go through all of the path, (cells,)."""
+        return path.travel[-1] / self.eps <= self.affordable
 
     @property
     def longest_memory(self) -> np.ndarray:

@@ -3,3 +3,4 @@
 from .results import CellResults as CellResults
 from .results import Sums as Sums
 from .results import evaluate as evaluate
+from .results import nothing_found as nothing_found

@@ -57,6 +57,17 @@ class CellResults(NamedTuple):
     tolerance: np.ndarray
 
 
+def nothing_found(cells: int, times: int) -> CellResults:
+    """Of cells through which no lane has gone: no values, and no steps."""
+    in_time = ("z", "dissipation", "running_residual", "gap")
+    columns: dict[str, Any] = dict.fromkeys(CellResults._fields, np.full(cells, np.nan))
+    columns |= dict.fromkeys(in_time, np.full((cells, times), np.nan))
+    columns |= dict.fromkeys(("steps", "rejected"), np.zeros(cells))
+    columns["how"] = np.zeros((cells, times), dtype=int)
+    columns["status"] = np.full(cells, int(Status.OPEN_BRACKET))
+    return CellResults(**columns)
+
+
 def _dissipation_of_path(path: Path, times: np.ndarray, states: np.ndarray) -> np.ndarray:
     """What the path dissipates in J up to each time."""
     spent = np.concatenate([[0.0], np.cumsum(path.rho * np.diff(path.states))])

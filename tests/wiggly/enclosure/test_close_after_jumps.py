@@ -52,6 +52,7 @@ def test_cells_wait_for_lanes_that_go_astray_so_long_only():
     scene = scene_under([0.0, 1.0], [0.0, 1.1])  # one way of 1 m
     eps, none = np.array([1e-4, 1e-5, 1e-6]), np.zeros(6)
     every = dict.fromkeys(CellBounds._fields, None) | {"eps": eps}
+    every["affordable"] = np.full(3, SETTINGS.affordable)
     blank = BracketContext(*[None] * 11)._replace(effort=no_effort(3), path=path_of(scene))
     rounds = blank._replace(ground=CellBounds(**every))
     segments = Segments(*np.zeros((len(Segments._fields), 6)))._replace(
