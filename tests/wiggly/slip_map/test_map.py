@@ -15,7 +15,8 @@ from scipy.integrate import solve_ivp
 
 import frictionjax as fx
 from frictionjax.model import tabulated_scene
-from frictionjax.wiggly import lane_steps
+from frictionjax.wiggly import batch as engine
+from frictionjax.wiggly.enclosure import CellBounds
 from frictionjax.wiggly.equation.landscape import Landscape, landscape
 from frictionjax.wiggly.plan import planned
 from frictionjax.wiggly.slip_map import map as slip_map
@@ -213,8 +214,8 @@ def test_errors_of_a_wrong_map_are_seen(monkeypatch):
         return found._replace(length=found.length * (1 + 1e-4))
 
     scene, eps, gamma = SCENES["sine"], 1e-6, 0.5
-    none_alone = lane_steps.ENCLOSURE_SETTINGS._replace(affordable=0.0)
-    monkeypatch.setattr(lane_steps, "ENCLOSURE_SETTINGS", none_alone)
+    none = np.zeros(1, dtype=bool)
+    monkeypatch.setattr(CellBounds, "is_affordable", lambda ground, path: none)
     monkeypatch.setattr(recursion, "transit_times", wrong)
     found = fx.solve(scene, eps, gamma, TIMES)
     assert found.status != fx.Status.OK or np.max(found.stats["bracket"]) > 5e-4

@@ -1,5 +1,7 @@
 """Slides are followed all at once where those before need not be known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from paths import path_of
@@ -138,3 +140,23 @@ def test_slides_are_found_from_answers_alone(gap):
     assert [len(own) > 1 for own in found] == [gap < 0.1] * 2
     # What is asked with is what was known then: nothing is written into it later.
     assert all([len(own) for own in one.known] == then for one, then in asked)
+
+
+def test_tips_are_looked_at_where_the_slide_before_is_over():
+    """At the path's touch they were still on their way: 6e6 steps a lane, for 5e4."""
+    path = path_of(SCENE)
+    pieces = np.flatnonzero(path.direction)[:3]
+    touch = path.touch[pieces]
+
+    def slide(sign, end):
+        return SimpleNamespace(sign=sign, end=end)
+
+    later, back = touch[1] + 0.1, path.direction[pieces[1]]
+    known = fast_slides.none_known(4)
+    known[0] = (slide(-back, later),)  # goes on beyond the path's touch
+    known[1] = (slide(-back, touch[1] - 0.1),)  # is over before
+    known[2] = (slide(back, later),)  # is the slide of that piece already
+    cell, piece = np.array([3, 2, 1, 0]), np.full(4, pieces[1])
+    over = onsets._over(SimpleNamespace(path=path), known, cell, piece)
+    assert over.tolist() == [touch[1], touch[1], touch[1], later]
+    assert (path.touch[pieces] == touch).all()  # its own are left alone

@@ -1,0 +1,80 @@
+"""Supports a hundred to 1e5 times softer than wells: tips stay a second behind the path."""
+
+import numpy as np
+import pytest
+from paths import path_of
+
+import frictionjax as fx
+from frictionjax.model import tabulated_scene
+from frictionjax.wiggly.plan import planned
+from frictionjax.wiggly.ways import Way
+
+BRISTLE = fx.bristles.SlantedSpring(stiffness=1.0, rest_length=2.4, height=1.0, angle=1.0)
+LOADS = {"sine": fx.loads.Sine(1.05, 3.0), "triangle": fx.loads.Triangle(1.05, 1.5)}
+
+
+def scene_on(stiffness, load="sine"):
+    """Lengths in m, forces in N."""
+    support = fx.supports.Spring(stiffness)
+    return fx.Scene(fx.profiles.Sine(0.1), BRISTLE, support, LOADS[load], 3.0)
+
+
+def way_of(scene, eps, gamma):
+    cell = np.array([eps]), np.array([gamma])
+    plan = planned(tabulated_scene(scene, eps), path_of(scene), *cell, 61, 1e-3, "auto")
+    return plan.way.item()
+
+
+@pytest.mark.filterwarnings("ignore:1 of .* cells failed")
+def test_what_no_lane_can_go_through_ends_at_once_beside_other_scenes():
+    """1.7e7 wells that no map knows: they were laid out, and lanes went on for minutes."""
+    eps, gamma = 5.92e-5, 0.5
+    soft, usual = scene_on(3.54e-3, "triangle"), scene_on(1.0, "triangle")
+    both = fx.sweep([soft, usual], [eps], gamma)
+    alone = fx.sweep(usual, [eps], gamma)
+    ended = fx.Status.OPEN_BRACKET, fx.Status.OK
+    assert both.status.values.ravel().tolist() == [int(status) for status in ended]
+    assert np.isnan(both.z.values[0]).all()
+    assert both.steps.values[0] < 1e6
+    assert (both.z.values[1] == alone.z.values).all()
+    assert both.sup_error.values[1] == alone.sup_error.values
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "eps", "gamma", "way"),
+    [
+        # 1.2e5 and 6.5e5 wells of the path, of which tips pass a few hundred.
+        (6.4e-4, 0.028, 0.5, Way.ONE_LANE),
+        (2e-4, 0.027, 1.0, Way.ONE_LANE),
+        # Tips follow within a hundredth of a second.
+        (1e-3, 1e-5, 1.0, Way.SLIP_MAP),
+    ],
+)
+def test_one_lane_goes_through_where_tips_stay_far_behind(stiffness, eps, gamma, way):
+    """Maps and brackets there ended with `OPEN_BRACKET`."""
+    scene = scene_on(stiffness)
+    assert way_of(scene, eps, gamma) == way
+    found = fx.solve(scene, eps, gamma, np.linspace(0.0, 3.0, 24))
+    assert found.status == fx.Status.OK
+    assert found.stats["bracket"].max() < 1e-3
+
+
+@pytest.mark.slow
+def test_such_a_lane_is_where_another_solver_is():
+    scene, ts = scene_on(6.4e-4), np.linspace(0.01, 3.0, 24)
+    found = fx.solve(scene, 0.028, 0.5, ts)
+    known = fx.solve(scene, 0.028, 0.5, ts, 1e-4, "Kvaerno5")
+    assert known.ok
+    assert np.abs(np.asarray(found.z - known.z)).max() < 1e-6 * 0.028
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:1 of .* cells failed")
+@pytest.mark.parametrize(
+    ("stiffness", "eps", "steps"), [(1e-3, 1e-3, 8e6), (1e-4, 1e-5, 6e7), (1e-3, 1e-2, 4e6)]
+)
+def test_cells_of_which_starts_are_not_forgotten_end_within_seconds(stiffness, eps, steps):
+    """6.4e7 steps in 59 s; no end within three minutes; open after 1.3 s."""
+    data = fx.sweep(scene_on(stiffness), [eps], 1.0)
+    assert data.steps.item() < steps
+    assert data.status.item() == (fx.Status.OK if eps == 1e-2 else fx.Status.OPEN_BRACKET)
