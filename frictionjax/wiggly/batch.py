@@ -216,16 +216,19 @@ def _first_attempt(sweep: AttemptContext, every: Cellwise, by_map: np.ndarray) -
 def _of_what_ends(sweep: AttemptContext, every: Cellwise) -> SoFar:
     """Answers of all cells but those with so many wells outside slides that none comes."""
     ground, path = every.ground, sweep.rounds.path
-    most = ENCLOSURE_SETTINGS.outside
+    wells = path.travel[-1] / ground.eps
+    remembered = ground.longest_memory > wells
+    most = np.where(
+        remembered, ENCLOSURE_SETTINGS.outside_remembered, ENCLOSURE_SETTINGS.outside
+    )
     # One lane that goes through all is planned where that ends.
-    long = (path.travel[-1] / ground.eps > most) & np.isfinite(every.needs.tile)
-    some = np.flatnonzero(long)
+    some = np.flatnonzero((wells > most) & np.isfinite(every.needs.tile))
     if some.size == 0 or sweep.every_slip:
         return sweep.attempt(every)
     its = rows_of(every, some)
     slides = CellSlides(path, its.ground.eps, its.needs, its.ground.fast_slides)
     outside = wells_outside(slides, inner_parts(slides))
-    ends = np.delete(np.arange(ground.eps.size), some[outside > most])
+    ends = np.delete(np.arange(ground.eps.size), some[outside > most[some]])
     nothing = nothing_found(ground.eps.size, sweep.ts.size)
     so_far = SoFar(every, nothing, np.ones(ground.eps.size, dtype=bool))
     if ends.size == 0:

@@ -27,9 +27,9 @@ def way_of(scene, eps, gamma):
 
 @pytest.mark.filterwarnings("ignore:1 of .* cells failed")
 def test_what_no_lane_can_go_through_ends_at_once_beside_other_scenes():
-    """1.7e7 wells that no map knows: they were laid out, and lanes went on for minutes."""
-    eps, gamma = 5.92e-5, 0.5
-    soft, usual = scene_on(3.54e-3, "triangle"), scene_on(1.0, "triangle")
+    """2e10 wells that no map knows: they were laid out, for hours, and held up all others."""
+    eps, gamma = 1e-7, 0.5
+    soft, usual = scene_on(3e-3, "triangle"), scene_on(1.0, "triangle")
     both = fx.sweep([soft, usual], [eps], gamma)
     alone = fx.sweep(usual, [eps], gamma)
     ended = fx.Status.OPEN_BRACKET, fx.Status.OK

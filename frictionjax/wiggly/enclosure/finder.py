@@ -99,10 +99,7 @@ def _seen(
         loosest=SETTINGS.tight_look * cells.loosest,
     )
     ground = rounds.ground._replace(fast_slides=wanted.known)
-    # (Two lanes through 3.7e6 wells took 44 s, of a cell whose brackets stayed open.)
-    looks = rounds._replace(
-        ground=ground, cells=closer, brief=None, farthest=ground.affordable
-    )
+    looks = rounds._replace(ground=ground, cells=closer, brief=None, looking=True)
     count = wanted.cells.size
     paired, one = np.ones(count, dtype=bool), np.arange(count)
     begins = np.minimum(wanted.begins, wanted.stops)

@@ -91,8 +91,8 @@ class BracketContext(NamedTuple):
     """What all rounds of one sweep share.
 
     `brief` (cells,): tolerances of lanes on fast slides through a few wells; None: those of
-    the others. `effort`: what lanes have taken before. `farthest` (cells,): wells of the
-    path that a lane may go through, where all its steps are waited for; None: any number.
+    the others. `effort`: what lanes have taken before. `looking`: whether lanes are for
+    looks, of which all steps are waited for.
     """
 
     scene: TabulatedScene
@@ -106,7 +106,7 @@ class BracketContext(NamedTuple):
     report: Report
     effort: Effort
     brief: np.ndarray | None
-    farthest: np.ndarray | None = None
+    looking: bool = False
 
     def run(self, brackets: Brackets, wells: np.ndarray, back: np.ndarray) -> BracketRound:
         """March all brackets, from `wells` of the path or `back` of a fast slide before."""
@@ -147,7 +147,7 @@ class BracketContext(NamedTuple):
     @property
     def _share(self) -> float:
         """Steps for a well of the path that no cell is said to wait for."""
-        return SETTINGS.path_steps if self.farthest is None else 0.0
+        return 0.0 if self.looking else SETTINGS.path_steps
 
     def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
         """Which jobs their cells can still wait for, and the plan with what is left."""
@@ -161,10 +161,7 @@ class BracketContext(NamedTuple):
         )
         allowed = left[owner] + self._share * wells
         segments = segments._replace(budget=np.minimum(segments.budget, allowed))
-        able = left > 0
-        if self.farthest is not None:
-            able &= self._wells(plan) <= self.farthest[jobs.cell]
-        return able, plan._replace(segments=segments)
+        return left > 0, plan._replace(segments=segments)
 
     def _waited(self, plan: BracketPlan, ends: SegmentEnds) -> np.ndarray:
         """What the longest lane has taken beyond its share, for each cell.

@@ -60,8 +60,11 @@ class Settings(NamedTuple):
     settled_lane: float = 0.6
     affordable: float = 2e5  # for one lane alone, at most: a minute or two
     # Beside fast slides, in many lanes: more are laid out no more. (3.7e9 took minutes to
-    # lay out, and would have taken days; 1e7 took more than two minutes.)
-    outside: float = 2e6
+    # lay out, and would have taken days; 4e6 at turns of a triangle, eps = 1e-8, gamma =
+    # 0.15, take 7 s.) And in cells that remember more than there is, where each lane has to
+    # go through them.
+    outside: float = 1e7
+    outside_remembered: float = 2e6
     tail: int = 4  # before a turning point, always measured
 
     # Stretches and their ends (`layout.py`, `segment_ends.py`).
