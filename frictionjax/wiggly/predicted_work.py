@@ -66,6 +66,10 @@ def workload(
     total = np.where(by_map, maps * each, total)
     chain = np.where(by_map, SETTINGS.map_chain * rounds * steps * growth, chain)
     jobs, segments = _rows(path, eps, needs, times)
+    # Beside maps only turns are gone through, as far as tips lag there.
+    turns = np.minimum(maps * lag, path.travel[-1] / eps) / needs.leg
+    panels = maps * SETTINGS.map_segments * orders**2
+    segments = np.where(by_map, panels + turns, segments)
     return Workload(total, chain, jobs, segments, maps, rounds, _weight_of(tables))
 
 

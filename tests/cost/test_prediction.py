@@ -166,6 +166,23 @@ def test_the_rows_of_tables_are_foreseen(monkeypatch, eps, gamma, times, method)
     assert np.all((ratios > 0.7) & (ratios < 1.3)), ratios
 
 
+@pytest.mark.parametrize(("eps", "gamma"), [(1e-7, 0.25), (1e-5, 0.5)])
+def test_rows_of_lanes_beside_slip_maps_are_foreseen(monkeypatch, eps, gamma):
+    """As many as through all wells between, 3 GB of them, were foretold for 5 MB."""
+    rows, plans = [], marching.plan_brackets
+
+    def plan(*parts):
+        found = plans(*parts)
+        rows.append(found.segments.start.size)
+        return found
+
+    monkeypatch.setattr(marching, "plan_brackets", plan)
+    work = workload(scene_of(), np.array([eps]), np.array([gamma]), 2, 1e-3, "auto")
+    assert work.maps.sum() > 0
+    fx.sweep(scene_of(), eps, gamma, [0.0, 3.0])
+    assert 0.2 < max(rows) / work.segments.sum() < 2
+
+
 def test_tables_grow_with_the_times_and_not_their_square():
     """The layout of 20 001 times took 0.4 GB, of 200 001 it failed."""
     cell = np.array([1e-3]), np.array([1.0])
