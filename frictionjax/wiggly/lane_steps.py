@@ -38,4 +38,5 @@ def affordable_wells(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np
     """That one lane alone may go through, (cells,): more where tips stay far behind."""
     most = np.full(lag.shape, ENCLOSURE_SETTINGS.affordable)
     lone = SETTINGS.lone_steps / steps_a_well(control, lag, np.maximum(drag, 1.0))
-    return np.where(drag > 1, np.maximum(lone, most), most)
+    known = (drag > 1) & np.isfinite(lone)  # at gamma = 400 nothing is
+    return np.where(known, np.maximum(lone, most), most)

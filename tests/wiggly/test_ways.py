@@ -1,11 +1,14 @@
 """Which way cells go, from numbers alone."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from paths import path_of
 
 import frictionjax as fx
 from frictionjax.wiggly.enclosure import SETTINGS, CellBounds, Requirements
+from frictionjax.wiggly.lane_steps import affordable_wells
 from frictionjax.wiggly.ways import Way, by_brackets, ways_of
 
 SCENE = fx.Scene(
@@ -65,6 +68,17 @@ def test_brackets_serve_where_little_is_remembered(method, ways):
 )
 def test_slip_maps_and_one_lane_serve_where_much_is(method, ways):
     assert chosen(2 * SETTINGS.long_memory, method) == ways
+
+
+def test_one_lane_may_go_further_where_drags_are_larger_than_friction():
+    """Never less far, and as usual where nothing is foretold."""
+    lag, tolerance = np.array([0.1, 10.0, 1e6, 1e6, 1e6, 0.0]), 1e-6
+    drag = np.array([0.0, 0.5, 1.0, 100.0, np.inf, np.nan])
+    control = SimpleNamespace(tolerance=tolerance, reach=0.125)
+    with np.errstate(all="ignore"):
+        found = affordable_wells(control, lag, drag) / SETTINGS.affordable
+    assert found[[0, 1, 2, 4, 5]].tolist() == [1.0] * 5
+    assert 5 < found[3] < 100
 
 
 def test_one_lane_goes_where_slides_end_before_tips_follow():
