@@ -214,15 +214,18 @@ def _first_attempt(sweep: AttemptContext, every: Cellwise, by_map: np.ndarray) -
 
 
 def _of_what_ends(sweep: AttemptContext, every: Cellwise) -> SoFar:
-    """Answers of all cells but those with so many wells outside slides that none comes."""
+    """Answers of all cells but those with so many wells outside slides that none comes.
+
+    Those remember long, and slip maps do not know them; what one lane goes through ends.
+    """
     ground, path = every.ground, sweep.rounds.path
     wells = path.travel[-1] / ground.eps
     remembered = ground.longest_memory > wells
     most = np.where(
         remembered, ENCLOSURE_SETTINGS.outside_remembered, ENCLOSURE_SETTINGS.outside
     )
-    # One lane that goes through all is planned where that ends.
-    some = np.flatnonzero((wells > most) & np.isfinite(every.needs.tile))
+    long = (every.needs.run_up > SETTINGS.far_back) & np.isfinite(every.needs.tile)
+    some = np.flatnonzero(long & (wells > most))
     if some.size == 0 or sweep.every_slip:
         return sweep.attempt(every)
     its = rows_of(every, some)
