@@ -19,7 +19,7 @@ from .enclosure import (
     wells_a_leg,
     wells_of,
 )
-from .equation import PullRange, SteppedParts, WiggleFolds, plan_steps
+from .equation import PullRange, SteppedParts, plan_steps
 from .equation import StepPlan as StepPlan
 from .lane_steps import affordable_wells, drag_of
 from .lanes import LaneScene
@@ -65,17 +65,18 @@ def ground_of(
     path: Path,
     eps: np.ndarray,
     gamma: np.ndarray,
-    folds: WiggleFolds,
+    control: StepPlan,
     start: tuple[np.ndarray, np.ndarray],
 ) -> CellBounds:
     """What brackets need to know of each cell; `start`: well and tip of its z0."""
-    drag = path.speed * viscosity_of(eps, gamma)
+    folds, drag = control.folds, path.speed * viscosity_of(eps, gamma)
     wells = wells_both_ways(scene.potential, eps, folds)
     lags, powers = _lags(wells, drag)
     forces = np.stack([folds.force_plus, folds.force_minus], axis=1)
     shifts = np.abs(forces - [path.rho_plus, path.rho_minus]) / path.stiffness
     pulls = eps * path.stiffness, eps * path.stiffest
     landed = latest_landings(wells, lags.force / pulls[0], drag, *pulls)
+    lag = lags.force.max(axis=0) / pulls[0]
     return CellBounds(
         eps,
         folds,
@@ -87,7 +88,7 @@ def ground_of(
         start_well=start[0],
         start_tip=start[1],
         relaxed=_relaxation(path, eps, gamma),
-        affordable=np.full(eps.size, ENCLOSURE_SETTINGS.affordable),
+        affordable=affordable_wells(control, lag, drag_of(path, eps, gamma)),
         phase=np.zeros(eps.size),
         fast_slides=none_known(eps.size),
     )
@@ -273,9 +274,7 @@ def planned(
 ) -> Planned:
     """Plan the cells (eps, gamma), shape (cells,), with values at so many times."""
     control, start = _controls(scene, path, eps, gamma, accuracy)
-    ground = ground_of(scene, path, eps, gamma, control.folds, start)
-    most = affordable_wells(control, ground.longest_lag, drag_of(path, eps, gamma))
-    ground = ground._replace(affordable=most)
+    ground = ground_of(scene, path, eps, gamma, control, start)
     needs = _needs(path, ground, accuracy)
     brackets = by_brackets(path, eps, needs, times, method)
     needs = _with_brackets(path, eps, needs, brackets)

@@ -82,7 +82,7 @@ class Settings(NamedTuple):
     map_steps: float = 919.0
     map_orders: float = 1.85
     map_accuracy: float = 0.247
-    # Segments of the lanes that measure a slide, for the square of these orders. (30 cells,
+    # Segments of the lanes that measure a slide, for the square of these orders. (20 cells,
     # gamma 0.25 to 1, eps 1e-3 to 1e-7: 200 to 1900 a slide, within a factor of 2. As many
     # as brackets would have through the wells between: 3 GB foretold, for 5 MB.)
     map_segments: float = 25.0

@@ -6,7 +6,7 @@ from paths import path_of
 
 import frictionjax as fx
 from frictionjax.model import tabulated_scene
-from frictionjax.wiggly.enclosure import marching
+from frictionjax.wiggly.enclosure import SETTINGS, marching
 from frictionjax.wiggly.plan import planned
 from frictionjax.wiggly.ways import Way
 
@@ -20,10 +20,9 @@ def scene_on(stiffness, load="sine"):
     return fx.Scene(fx.profiles.Sine(0.1), BRISTLE, support, LOADS[load], 3.0)
 
 
-def way_of(scene, eps, gamma):
+def plan_of(scene, eps, gamma):
     cell = np.array([eps]), np.array([gamma])
-    plan = planned(tabulated_scene(scene, eps), path_of(scene), *cell, 61, 1e-3, "auto")
-    return plan.way.item()
+    return planned(tabulated_scene(scene, eps), path_of(scene), *cell, 61, 1e-3, "auto")
 
 
 @pytest.mark.filterwarnings("ignore:1 of .* cells failed")
@@ -49,17 +48,20 @@ def test_what_no_lane_can_go_through_ends_beside_other_scenes(monkeypatch):
 @pytest.mark.parametrize(
     ("stiffness", "eps", "gamma", "way"),
     [
-        # 1.2e5 and 6.5e5 wells of the path, of which tips pass a few hundred.
+        # 2.0e5 and 6.8e5 wells of the path: more than one lane was let through.
         (6.4e-4, 0.028, 0.5, Way.ONE_LANE),
         (2e-4, 0.027, 1.0, Way.ONE_LANE),
-        # Tips follow within a hundredth of a second.
+        # Tips follow within a hundredth of a second: 3.7e8 wells.
         (1e-3, 1e-5, 1.0, Way.SLIP_MAP),
     ],
 )
 def test_one_lane_goes_through_where_tips_stay_far_behind(stiffness, eps, gamma, way):
-    """Maps and brackets there ended with `OPEN_BRACKET`."""
+    """And its stops are as much further apart as it may go further."""
     scene = scene_on(stiffness)
-    assert way_of(scene, eps, gamma) == way
+    plan, alone = plan_of(scene, eps, gamma), way == Way.ONE_LANE
+    assert plan.way.item() == way
+    assert (plan.needs.leg.item() > SETTINGS.most_wells_a_leg) == alone
+    assert (plan.ground.affordable.item() > SETTINGS.affordable) == alone
     found = fx.solve(scene, eps, gamma, np.linspace(0.0, 3.0, 24))
     assert found.status == fx.Status.OK
     assert found.stats["bracket"].max() < 1e-3

@@ -108,10 +108,10 @@ def test_brackets_hold_the_tip():
     control, start = planning._controls(
         tabulated_scene(scene, eps), path, np.full(64, eps), np.full(64, gamma), 1e-3
     )
-    folds, start = rows_of((control.folds, start), slice(1))
+    control, start = rows_of((control, start), slice(1))
     tables = tabulated_scene(scene, eps)
     ground = planning.ground_of(
-        tables, path, np.array([eps]), np.array([gamma]), folds, start
+        tables, path, np.array([eps]), np.array([gamma]), control, start
     )
     begin = np.linspace(0.1, 2.9, 200)
     far = np.full(200, 3.0)
