@@ -162,6 +162,21 @@ def test_what_a_command_does_not_do_is_named_with_its_file(tmp_path):
     assert told.stderr.count("\n") == 1
 
 
+def test_a_study_of_a_scene_with_noise_has_a_seed(tmp_path):
+    file, few = tmp_path / "mine.toml", ["--eps", "0.1,0.05"]
+    run("scenes", "noise", "--out", file)
+    tables = []
+    for name, seed in (("usual", ()), ("none", ("--seed", 0)), ("other", ("--seed", 7))):
+        told = run("study", file, *few, *seed, "--out", tmp_path / name)
+        assert told.exit_code == 0, told.stderr
+        tables.append((tmp_path / name / "tables.txt").read_text())
+    assert tables[0] == tables[1] != tables[2]
+    told = run("study", *few, "--seed", 3, "--out", tmp_path / "plain")
+    assert (
+        error_line(told) == "Error: seed = 3: needs none: the scene has no effects.Noise\n"
+    )
+
+
 def test_nap_of_a_rod_that_turns_over(tmp_path):
     run("scenes", "nap-flip", "--out", tmp_path / "mine.toml")
     told = run("nap", tmp_path / "mine.toml", "--out", tmp_path).stdout
@@ -205,7 +220,7 @@ def test_friction_of_a_measured_map(tmp_path):
     options = ["--heights", grooves(tmp_path), "--harmonics", "2"]
     result = run("friction", *options)
     assert result.exit_code == 0, result.stderr
-    assert "period 9e-06 m" in result.stdout
+    assert "period 9e-06 m, the surface's real eps, explains" in result.stdout
     assert "3 rows, period" in result.stdout
     numbers = json.loads(run("friction", *options, "--json").stdout)
     assert numbers["rows"]["std"]["rho_plus"] > 0

@@ -25,6 +25,7 @@ from .noted_origins import eps_of as eps_of
 from .noted_origins import note_origin as note_origin
 from .noted_origins import noting_the_scene as noting_the_scene
 from .noted_origins import origin_of as origin_of
+from .noted_origins import require_own as require_own
 from .noted_origins import scene_of as scene_of
 from .parts import Asked as Asked
 from .parts import ByIdentity as ByIdentity

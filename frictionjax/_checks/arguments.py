@@ -127,7 +127,8 @@ def as_text(value: Any) -> str:
     if _has_truths(value):
         return repr(value)
     try:
-        if np.asarray(value).dtype.kind == "c":  # a float of it warns
+        # A float of complex numbers warns, and one of texts is no longer a text.
+        if np.asarray(value).dtype.kind in "cSU":
             return repr(value)
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):

@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .._checks import Asked, Real, as_real, is_known, require, require_real
+from .._compile import Interpreted
 from .bristle import AbstractBristle, Rod, SlopeBounds, Stance
 
 
@@ -52,7 +53,7 @@ class AngularSpring(AbstractBristle):
         require(
             length > height, "bristle.length", length, f"length > height = {height:.6g}"
         )
-        limit = float(self.limit_angle)
+        limit = float(_limit_angle(self))
         allowed = f"theta_lim = {limit:.6g} > rest_angle > -pi/2"
         require(-0.5 * np.pi < rest < limit, "bristle.rest_angle", rest, allowed)
 
@@ -93,3 +94,8 @@ class AngularSpring(AbstractBristle):
     def geometry(self, eta: Real) -> Stance:
         """Always as long as it is; as steep as there is room for it."""
         return Stance(self._angle(eta), self.length + jnp.zeros_like(eta))
+
+
+@Interpreted
+def _limit_angle(rod: AngularSpring) -> Real:
+    return rod.limit_angle

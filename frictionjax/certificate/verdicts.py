@@ -56,6 +56,15 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
     _picture = "draw_certificate"
 
     @property
+    def message(self) -> str:
+        """The verdict; where samples are too far apart, how far."""
+        coarse = self.spacing > SETTINGS.coarsest
+        if self.status != CertificateStatus.UNRESOLVED or not coarse:
+            return super().message
+        most = f"eps/{1 / SETTINGS.coarsest:g}"
+        return f"samples are {as_text(self.spacing)} eps apart, more than {most}: undecided"
+
+    @property
     def shares(self) -> dict[str, float]:
         """Numbers that decide, over the most of each that is accepted: above 1 is refused.
 

@@ -46,6 +46,11 @@ from .running import report_asked, start, write_folder
     help="Of the scene: all, or those that the accuracy calls for.",
 )
 @click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    help="Of the path of a scene with noise. [0]",
+)
+@click.option(
     "--rows", is_flag=True, help="Every row of the map of --heights, and how they differ."
 )
 @out_option("study")
@@ -59,6 +64,7 @@ def study(
     method: str,
     budget: float | None,
     effects: str | None,
+    seed: int | None,
     out: str,
     report: bool,
     progress: bool,
@@ -73,6 +79,7 @@ def study(
         read_job,
         require_folder,
         run_study,
+        with_seed,
         within_budget,
     )
 
@@ -85,7 +92,7 @@ def study(
     if surface["rows"] and budget is not None:
         refuse_beside("--rows", "budget")
     job = read_job(scene, **surface)
-    job = job._replace(study=job.study | wanted)
+    job = with_seed(job._replace(study=job.study | wanted), seed)
     prepare_study(job, method)  # while its cost is found
     if budget is not None:
         job, expected = within_budget(job, budget, method, accuracy)

@@ -11,6 +11,7 @@ from .._checks import (
     is_concrete,
     require,
     require_numbers,
+    require_own,
     with_nan,
 )
 from .._compile import Interpreted
@@ -108,14 +109,14 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
     `effects.AxialLoad` too, `sprung_share` is over that of the rod on its spring, in
     `sprung_load` (N) and `sprung_buckling`, NaN while it is bent.
 
-    Raises `ValueError` for a batch of solutions, an eps that does not fit, or an effect
-    whose forces are not those of one bristle.
+    Raises `ValueError` for a batch of solutions, parts or an eps that are not those of the
+    solution, or an effect whose forces are not those of one bristle.
 
     >>> forces = fx.mechanics(scene, fx.solve_limit(scene, ts=[0.0, 0.75, 3.0]))
     >>> print(forces.tangential_force.values.round(4), forces.tangential_force.units)
     [-0.     -0.1204 -0.1204] N
     """
-    scene = scene_for(Engine.MECHANICS, scene)
+    given, scene = scene, scene_for(Engine.MECHANICS, scene)
     in_limit = isinstance(solution, LimitSolution)
     kind = type(solution).__name__
     some = "what solve or solve_limit returned"
@@ -123,6 +124,7 @@ def mechanics(scene: Scene, solution: Any, eps: Any = None) -> Any:
     known = is_concrete(scene, solution) and np.ndim(solution.z) == 1
     require(known, "solution", kind, "one solution with known numbers, as of no batch")
     eps = _eps_of(scene, eps, in_limit)
+    require_own(solution, given, eps)
     support = support_rows(scene, solution.ts, solution.z)
     turning = nap_flip_among(scene.effects)
     if turning is not None:

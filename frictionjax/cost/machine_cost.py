@@ -49,6 +49,7 @@ class MachineCost(NamedTuple):
         return float(np.dot(self[:5], _amounts(work)))
 
 
+_REVISION = 2  # of `measure_machine`: what others have kept is not read
 _UNWRITTEN: dict[str, MachineCost] = {}  # where the cache folder cannot be written
 
 
@@ -142,12 +143,13 @@ def _resident_bytes() -> float:
 
 
 def _key() -> str:
-    """What a measurement holds for: versions, machine by its network name, flags."""
+    """What a measurement holds for: how it was made, versions, machine by its network
+    name, flags."""
     packages = [f"{name} {version(name)}" for name in ("frictionjax", "jax")]
     flags = os.environ.get("XLA_FLAGS", "")
     # A home folder may be shared by machines.
     machine = f"{platform.node()} {platform.machine()}, {os.cpu_count()} cores"
-    return ", ".join([*packages, machine, flags])
+    return ", ".join([f"measurement {_REVISION}", *packages, machine, flags])
 
 
 def _file(folder: Path | None) -> Path:

@@ -2,6 +2,7 @@
 
 import difflib
 import inspect
+import os
 import tomllib
 from collections.abc import Iterable
 from importlib import resources
@@ -84,6 +85,8 @@ def load_scene(path: Any, functions: bool = False) -> Scene:
 
 def load_study(path: Any, functions: bool = False) -> SceneFile:
     """Read scene and study of a TOML file; see `load_scene`."""
+    named = isinstance(path, str | os.PathLike)
+    require(named, "path", type(path).__name__, "the path of a TOML file")
     try:
         text = Path(path).read_text(encoding="utf-8-sig")  # Windows' editors mark a file
     except OSError as problem:

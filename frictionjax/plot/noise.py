@@ -52,9 +52,9 @@ def draw_histogram(data: "xr.Dataset") -> Figure:
 def draw_friction_curve(data: "xr.Dataset") -> Figure:
     """Draw a `friction_curve`: friction in N against speed in m/s, drag taken off.
 
-    `data`: the data set. One line a temperature, dashed to the left; slides that failed are
-    crosses on the axis. Of two temperatures and more a second panel is the map over both,
-    to the right, or to the left where no speed is to the right.
+    `data`: the data set. One line a temperature, dashed to the left where speeds go both
+    ways; slides that failed are crosses on the axis. Of two temperatures and more a second
+    panel is the map over both, to the right, or to the left where no speed is to the right.
 
     >>> data = fx.friction_curve(scene, speeds=[0.01, 0.1, 1.0], eps=0.01)
     >>> print(fx.plot.draw_friction_curve(data).axes[0].get_ylabel())
@@ -71,7 +71,11 @@ def draw_friction_curve(data: "xr.Dataset") -> Figure:
         if "thermal_energy" in row:
             label = f"$T$ = {float(row.thermal_energy):.3g} J"
         _curve(grid[0, 0], row, shade, label)
-    if len(rows) > 1:
+    both = len(np.unique(np.sign(data.speed.values))) > 1
+    if both:
+        for style, way in (("-", "to the right"), ("--", "to the left")):
+            grid[0, 0].plot([], [], style, color="0.3", label=way)
+    if both or len(rows) > 1:
         under: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 3}
         grid[0, 0].legend(**under)
     if several:

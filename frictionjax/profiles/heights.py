@@ -138,7 +138,8 @@ def fit_heights(
         require_left("heights", masked, x.size)
     said = f"{x.size} positions" if x.ndim == 1 else x.shape
     require(x.ndim == 1 and x.size >= 8, "x", said, "8 or more positions, shape (n,)")
-    require(heights.shape == x.shape, "heights", heights.shape, f"the shape {x.shape} of x")
+    fits, shape = heights.shape == x.shape, f"shape {heights.shape}"
+    require(fits, "heights", shape, f"the shape {x.shape} of x")
     require(np.all(np.isfinite(x)), "x", x, "finite positions")
     require(np.all(np.isfinite(heights)), "heights", heights, "finite heights")
     require(np.all(np.diff(x) > 0), "x", x, "increasing positions")

@@ -21,4 +21,5 @@ from .place import require_folder as require_folder
 from .study import expectation as expectation
 from .study import prepare_study as prepare_study
 from .study import run_study as run_study
+from .study import with_seed as with_seed
 from .study import within_budget as within_budget

@@ -162,14 +162,16 @@ def _notes(path: str, measured: Measured, found: Any, row: int | None) -> list[s
     rows, count = measured.heights.shape
     which = "rows moved into phase, their mean" if row is None else f"row {row}"
     size = f"{rows} rows of {count}, {which}" if rows > 1 else f"{count} heights"
+    periods = float(np.ptp(measured.x)) / found.period
+    hardly = periods < _FEW_PERIODS or found.explained < 0.5
+    meaning = "" if hardly else "the surface's real eps, "
     lines = [
-        f"{path}: {size}; period {found.period:.4g} m, the surface's real eps, "
+        f"{path}: {size}; period {found.period:.4g} m, {meaning}"
         f"explains {found.explained:.0%} of the variance"
     ]
     if found.smoothing is not None:
         lines.append(f"Smoothed by a Gaussian filter of cut-off {found.smoothing:.4g} m")
-    periods = float(np.ptp(measured.x)) / found.period
-    if periods < _FEW_PERIODS or found.explained < 0.5:
+    if hardly:
         lines.append(
             f"Note: {periods:.2g} periods in a trace, {found.explained:.0%} explained: "
             "the surface is hardly periodic, its friction says little"

@@ -6,11 +6,11 @@ from pathlib import Path
 import jax.numpy as jnp
 import numpy as np
 
-from .._checks import cells_of, grid_of
+from .._checks import cells_of, grid_of, require
 from .._compile import in_background
 from ..called_for import simulated
 from ..cost import PREDICTED_ACCURACIES, CostPrediction, fit_budget, predict_cost
-from ..effects import Engine, does
+from ..effects import Engine, does, noise_among
 from ..model import require_reach
 from ..sweeps import sweep
 from ..wiggly import is_ours, prepare_cells, require_accuracy
@@ -18,6 +18,17 @@ from .job import Job
 
 _TIMES = 601  # close-ups of pictures want 8 in a slip: 8.8 at the default's largest eps
 _TIMES_A_ROW = 101  # of a map: nobody draws each, and files of all would be large
+
+
+def with_seed(job: Job, seed: int | None) -> Job:
+    """The job with the path of its scene's noise, 0 where no other is asked for.
+
+    Raises `ValueError` for the seed of a scene without noise.
+    """
+    if noise_among(job.scene.effects) is None:
+        require(seed is None, "seed", seed, "none: the scene has no effects.Noise")
+        return job
+    return job._replace(study=job.study | {"key": seed or 0})
 
 
 def expected_cost(job: Job, method: str) -> CostPrediction | None:
@@ -35,7 +46,8 @@ def expected_cost(job: Job, method: str) -> CostPrediction | None:
 
 def _as_simulated(job: Job) -> Job:
     """The job with what is simulated of its scene's effects, and numbers of a study."""
-    numbers = {key: value for key, value in job.study.items() if key != "effects"}
+    told = "effects", "key"
+    numbers = {name: value for name, value in job.study.items() if name not in told}
     found = simulated(job.scene, job.study.get("effects", "all"), **numbers)
     return job._replace(scene=found.scene, study=numbers)
 

@@ -21,7 +21,7 @@ _MEANING = {
     "z_mean": ("m", "mean state over all paths"),
     "z_low": ("m", f"lower end of the {_SHARE} interval of the mean, by Student's t"),
     "z_high": ("m", f"upper end of the {_SHARE} interval of the mean, by Student's t"),
-    "work": ("J", "work done on the tip by the load until then, -int l' z"),
+    "work": ("J", "energy Phi - l z + V added by the load until then, -int l' z"),
     "path": (None, "number of the path"),
     "time": ("s", "time"),
     "status": (None, "how a path ended"),
@@ -46,7 +46,8 @@ def ensemble(
     `jax.random.fold_in(key, i)`, so more paths change none, and
     `fx.solve(scene, eps, gamma, ts, key=jax.random.fold_in(key, i))` has its bits.
 
-    Returns a data set over `path` and `time`: `z`, `work` (`-int l' z`); over `time`
+    Returns a data set over `path` and `time`: `z`, `work` (`-int l' z`, what
+    the load has added to `Phi - l z + V_eps`); over `time`
     `z_mean` and the 95% interval `z_low`, `z_high` of the mean, infinite for one path; over
     `path` `status`. The interval holds what numbers of paths leave open; steps are as long
     as `stochastic/settings.py` says.

@@ -51,8 +51,9 @@ class PathStatus(Outcome):
 class NoisyPaths(CodedResult, eqx.Module):
     """Paths of one cell: `ts` (times,) in s, `z` (paths, times) in m.
 
-    `work` (paths, times): done on the tip by the load until then, `-int l' z` in J; energy
-    `Phi - l z + V_eps` at the start, and work, less the energy then, went into the bath.
+    `work` (paths, times): `-int l' z` until then in J, what the load has added to the
+    energy `Phi - l z + V_eps`; that at the start, and work, less that then, went into the
+    bath.
     Values are those of the step nearest to each time, of `steps` steps in all of the length
     `step` (s): nothing is interpolated, which would take noise out.
     """

@@ -160,12 +160,12 @@ def _surveyed_again(sweep: AttemptContext, so_far: SoFar, rough: np.ndarray) -> 
     """Twice as many slips of the `rough` cells, at last all."""
     some = rows_of(so_far.cells, rough)
     samples = some.needs.samples * 2 * (some.needs.samples < SETTINGS.most_nodes)
-    can = some.ground.is_affordable(sweep.rounds.path) | (samples > 0)
+    wells = sweep.rounds.path.travel[-1] / some.ground.eps
+    can = (wells <= ENCLOSURE_SETTINGS.affordable) | (samples > 0)
     so_far = so_far.with_status(rough[~can], Status.ROUGH_SURVEY)
     again = rough[can]
     if again.size == 0:
         return so_far
-    wells = sweep.rounds.path.travel[-1] / some.ground.eps
     longer = np.maximum(some.needs.tile, wells / SETTINGS.tiles)
     tile = np.where(samples > 0, some.needs.tile, longer)
     some = some._replace(needs=some.needs._replace(samples=samples, tile=tile))
@@ -175,15 +175,15 @@ def _surveyed_again(sweep: AttemptContext, so_far: SoFar, rough: np.ndarray) -> 
 def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
     """Every slip in longer tiles, for cells of which a bracket stays open.
 
-    At gamma = 0.75, eps = 1e-4, accuracy 1e-6: 1.5 s, where one lane takes 30.
+    At gamma = 0.75, eps = 1e-4, accuracy 1e-6: 1.5 s, where one lane takes 30. Not where
+    one lane may go further than usual: each tile would set off as far back.
     """
-    can = so_far.cells.ground.is_affordable(sweep.rounds.path)
-    chosen = np.flatnonzero(so_far.open_ & can)
+    wells = sweep.rounds.path.travel[-1] / so_far.cells.ground.eps
+    chosen = np.flatnonzero(so_far.open_ & (wells <= ENCLOSURE_SETTINGS.affordable))
     if chosen.size == 0:
         return so_far
     some = rows_of(so_far.cells, chosen)
-    wells = sweep.rounds.path.travel[-1] / some.ground.eps
-    tile = np.maximum(4 * some.needs.tile, wells / SETTINGS.tiles)
+    tile = np.maximum(4 * some.needs.tile, wells[chosen] / SETTINGS.tiles)
     none = np.zeros(chosen.size, dtype=int)
     some = some._replace(needs=some.needs._replace(samples=none, tile=tile))
     return so_far.with_attempt(sweep.attempt(some), chosen)

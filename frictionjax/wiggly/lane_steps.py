@@ -34,9 +34,31 @@ def steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.nda
     )
 
 
-def affordable_wells(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
-    """That one lane alone may go through, (cells,): more where tips stay far behind."""
+def tip_share(path: Path, eps: np.ndarray, gamma: np.ndarray) -> np.ndarray:
+    """About what share of the path's way tips go themselves, (cells,).
+
+    Of each slide what they come to before the path turns.
+    """
+    slides = np.flatnonzero(path.direction)
+    way = np.abs(np.diff(path.states))[slides]
+    turns = 1 + np.flatnonzero(np.diff(path.direction[slides]))
+    ends = np.append(path.edges[slides[turns]], path.edges[-1])
+    longs = ends[np.searchsorted(turns, np.arange(slides.size), side="right")]
+    longs = longs - path.edges[slides]
+    follows = np.asarray(viscosity_of(eps, gamma))[:, None] / path.stiffest
+    return -np.expm1(-longs / follows) @ way / max(np.sum(way), 1e-300)
+
+
+def affordable_wells(
+    control: StepPlan, lag: np.ndarray, drag: np.ndarray, share: np.ndarray
+) -> np.ndarray:
+    """That one lane alone may go through, (cells,): more where tips stay far behind.
+
+    `share`: of the path's wells that tips go through, in steps no longer than their reach.
+    """
     most = np.full(lag.shape, ENCLOSURE_SETTINGS.affordable)
-    lone = SETTINGS.lone_steps / steps_a_well(control, lag, np.maximum(drag, 1.0))
+    steps = steps_a_well(control, lag, np.maximum(drag, 1.0))
+    steps = np.maximum(steps, share / np.asarray(control.reach))
+    lone = SETTINGS.lone_steps / steps
     known = (drag > 1) & np.isfinite(lone)  # at gamma = 400 nothing is
     return np.where(known, np.maximum(lone, most), most)

@@ -66,6 +66,7 @@ def known():
         (lambda: fx.solve(known(), 1e-2, max_steps="a"), r"max_steps = 'a': needs a whole"),
         (lambda: fx.solve(known(), 1e-2, adjoint=3), r"adjoint = 'int': needs None or an"),
         (lambda: fx.solve(known(), None), r"eps = None: needs one number eps > 0"),
+        (lambda: fx.sweep(known(), ["0.1"], 1.0), r"eps = \['0\.1'\]: needs eps > 0, a"),
         (lambda: fx.study(None), r"dataset = 'NoneType': needs a data set"),
         (lambda: fx.study({}), r"dataset = 'dict': needs a data set"),
         (

@@ -7,6 +7,7 @@ from pathlib import Path
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 import pytest
 
 import frictionjax as fx
@@ -118,6 +119,25 @@ def test_unknown_effects_are_refused():
         fx.Scene(
             SCENE.profile, SCENE.bristle, SCENE.support, SCENE.load, 3.0, effects=("wind",)
         )
+
+
+def test_parts_of_known_numbers_compile_nothing():
+    """A spline took 15 programs, half a second, a rod 5."""
+    compiled = []
+    y = np.arange(13) / 13  # as many as no other test has
+
+    def note(event, seconds, **told):
+        if event.endswith("backend_compile_duration"):
+            compiled.append(told)
+
+    jnp.asarray(np.zeros(13))
+    jax.monitoring.register_event_duration_secs_listener(note)
+    try:
+        fx.profiles.Spline(0.02 * np.sin(2 * np.pi * y)).slope_errors()
+        fx.bristles.AngularSpring(1.0, 1.4, 1.0, 0.3)
+    finally:
+        jax.monitoring.clear_event_listeners()
+    assert not compiled
 
 
 def test_coefficients_import_no_solver():

@@ -175,3 +175,27 @@ def test_what_does_not_fit_is_refused():
         fx.mechanics(one, wiggly)
     with pytest.raises(ValueError, match=r"eps = -1: needs"):
         fx.mechanics(one, wiggly, eps=-1.0)
+    with pytest.raises(ValueError, match=f"eps = 0.5: needs {EPS}, as the solution is"):
+        fx.mechanics(one, wiggly, eps=0.5)
+
+
+@pytest.mark.parametrize(
+    ("part", "other"),
+    [
+        ("profile", fx.profiles.Sine(0.05)),
+        ("bristle", SLANTED.replace(angle=0.3)),
+        ("bristle", fx.bristles.VerticalSpring(1.0, 2.0, 1.0)),
+        ("support", fx.supports.Spring(3.0)),
+        ("load", fx.loads.Ramp(1.0)),
+    ],
+)
+def test_a_scene_with_another_part_is_refused(part, other):
+    """A solution was read with any bristle, support and eps: forces of the other sign."""
+    one = scene(SLANTED)
+    limit, wiggly = fx.solve_limit(one, T), fx.solve(one, EPS, ts=[0.0, 0.1])
+    needs = rf"scene\.{part} = .*: needs the one that the solution is of"
+    with pytest.raises(ValueError, match=needs):
+        fx.mechanics(one.replace(**{part: other}), wiggly, eps=EPS)
+    with pytest.raises(ValueError, match=needs):
+        fx.mechanics(one.replace(**{part: other}), limit)
+    fx.mechanics(scene(SLANTED), wiggly, eps=EPS * (1 + 1e-15))  # the same, built anew

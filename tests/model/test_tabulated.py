@@ -305,12 +305,12 @@ def test_a_given_w_is_a_table(W):
         for eps in (1e-2, 1e-5):
             for name, size in (("tip_energy", 1e-14 * eps), ("tip_force", 1e-12)):
                 found, expected = (
-                    np.asarray(jax.vmap(getattr(of, name), (0, None))(y, eps))
+                    np.asarray(jax.jit(jax.vmap(getattr(of, name), (0, None)))(y, eps))
                     for of in (table, given)
                 )
                 np.testing.assert_allclose(found, expected, rtol=0, atol=size)
     law = fx.friction(scene)
-    slope = jax.vmap(jax.grad(W))(np.linspace(0, 1, 4001))
+    slope = jax.jit(jax.vmap(jax.grad(W)))(np.linspace(0, 1, 4001))
     assert law.rho_plus == pytest.approx(float(slope.max()), rel=1e-6)
 
 

@@ -180,7 +180,10 @@ def test_maps_and_curves_are_drawn():
     shown = colours.collections[0].get_array()
     assert np.ma.count(shown) == 3  # one has failed
     assert colours.get_ylabel().endswith("(J)")
+    told = [text.get_text() for text in lines.get_legend().get_texts()]
+    assert told[2:] == ["to the right", "to the left"]
     (plain,) = fx.plot.draw_friction_curve(fx.friction_curve(cosine_scene(), 0.1, EPS)).axes
+    assert plain.get_legend() is None
     assert plain.get_xlabel() == "speed (m/s)"
 
 
@@ -219,38 +222,39 @@ NOISE = fx.effects.Noise(1e-3)
 
 
 @pytest.mark.parametrize(
-    ("scene", "change", "message"),
+    ("effects", "change", "message"),
     [
-        (scene_with(), {"speeds": [0.1, 0.0]}, "speeds = .*needs speeds in m/s, not 0"),
-        (scene_with(NOISE), {"speeds": [np.nan]}, "speeds = .*needs speeds in m/s"),
-        (scene_with(), {"speeds": [[0.1]]}, "speeds = .*needs one, or shape"),
-        (scene_with(), {"eps": [0.1, 0.2]}, "eps = .*needs one number, eps > 0 in m"),
+        ((), {"speeds": [0.1, 0.0]}, "speeds = .*needs speeds in m/s, not 0"),
+        ((NOISE,), {"speeds": [np.nan]}, "speeds = .*needs speeds in m/s"),
+        ((), {"speeds": [[0.1]]}, "speeds = .*needs one, or shape"),
+        ((), {"eps": [0.1, 0.2]}, "eps = .*needs one number, eps > 0 in m"),
         (
-            scene_with(),
+            (),
             {"temperatures": [1e-3]},
             r"temperatures = .*needs None, or a scene with effects\.Noise",
         ),
-        (scene_with(NOISE), {"temperatures": [0.0]}, "temperatures = .*temperatures > 0"),
-        (scene_with(NOISE), {"temperatures": [[1.0]]}, "temperatures = .*one, or shape"),
-        (scene_with(), {"gamma": 0.0}, "gamma = 0: needs gamma > 0"),
+        ((NOISE,), {"temperatures": [0.0]}, "temperatures = .*temperatures > 0"),
+        ((NOISE,), {"temperatures": [[1.0]]}, "temperatures = .*one, or shape"),
+        ((), {"gamma": 0.0}, "gamma = 0: needs gamma > 0"),
         (
-            scene_with(support=fx.supports.Convex(lambda z: z**2)),
-            {},
-            r"scene\.support = 'Convex': needs a Spring",
-        ),
-        (
-            scene_with(fx.effects.CompliantArray(np.linspace(0, 1, 10**6))),
+            (fx.effects.CompliantArray(np.linspace(0, 1, 10**6)),),
             {},
             r"offsets: number of bristles = 1e\+06: needs at most",
         ),
         (
-            scene_with(fx.effects.RigidArray([0.0, 0.5])),
+            (fx.effects.RigidArray([0.0, 0.5]),),
             {},
             r"effects\.RigidArray: rho_plus = 0: needs phases that leave friction",
         ),
     ],
 )
-def test_what_cannot_be_done_is_refused_by_name(scene, change, message):
+def test_what_cannot_be_done_is_refused_by_name(effects, change, message):
     given = {"speeds": 0.1, "eps": 0.05, "gamma": 1.0} | change
     with pytest.raises(ValueError, match=message):
-        fx.friction_curve(scene, **given)
+        fx.friction_curve(scene_with(*effects), **given)
+
+
+def test_a_support_that_is_no_spring_is_refused():
+    scene = scene_with(support=fx.supports.Convex(lambda z: z**2))
+    with pytest.raises(ValueError, match=r"scene\.support = 'Convex': needs a Spring"):
+        fx.friction_curve(scene, 0.1, 0.05)

@@ -3,7 +3,8 @@
 import jax
 import numpy as np
 import pytest
-from loads_known import LOADS, L, T, at_times, shapes
+from at_places import at_places
+from loads_known import LOADS, L, T, shapes, with_slopes
 
 from frictionjax.model import known_turning_points, padded_edges
 from frictionjax.tables import (
@@ -22,18 +23,10 @@ def on_edges(load, duration=3.0):
 def test_lines_between_edges_are_the_load_with_its_slopes_from_the_right(name):
     load, found = LOADS[name], on_edges(LOADS[name])
     times = np.concatenate([T, found.edges, np.nextafter(found.edges, 9.0)])
-    size = np.abs(at_times(load, times)).max()
-    np.testing.assert_allclose(
-        at_times(found, times),
-        at_times(load, times),
-        atol=4e-15 * max(size, 1.0),
-    )
-    np.testing.assert_allclose(
-        at_times(found.slope, times),
-        at_times(load.slope, times),
-        rtol=1e-14,
-        atol=1e-14,
-    )
+    (values, slopes), expected = with_slopes(found, times), with_slopes(load, times)
+    size = np.abs(expected[0]).max()
+    np.testing.assert_allclose(values, expected[0], atol=4e-15 * max(size, 1.0))
+    np.testing.assert_allclose(slopes, expected[1], rtol=1e-14, atol=1e-14)
     count = found.edges.size - 1
     assert found.turning_count(3.0) == count
     np.testing.assert_array_equal(
@@ -49,7 +42,7 @@ def test_lines_between_edges_are_of_one_kind_whatever_the_load():
 def test_functions_stay_functions_between_edges_and_their_steepest_times_known():
     load = L.Custom(lambda t: jax.numpy.sin(2 * t)).prepared(3.0)
     found = on_edges(load)
-    np.testing.assert_allclose(at_times(found, T), np.sin(2 * T), atol=1e-15)
+    np.testing.assert_allclose(at_places(found, T), np.sin(2 * T), atol=1e-15)
     assert found.steepest == load.steepest
     assert on_edges(LOADS["sine"]).steepest is None
 
@@ -59,4 +52,4 @@ def test_many_edges_are_searched_not_compared_with_the_same_values():
     turns = known_turning_points(load, 3.0, 1024)
     found = load_on_edges(load_table(load), padded_edges(turns, 3.0))
     assert found.edges.size > 512
-    np.testing.assert_allclose(at_times(found, T), at_times(load, T), atol=1e-12)
+    np.testing.assert_allclose(at_places(found, T), at_places(load, T), atol=1e-12)

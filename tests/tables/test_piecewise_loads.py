@@ -3,7 +3,8 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from loads_known import L, T, at_times, shapes
+from at_places import at_places
+from loads_known import L, T, shapes, with_slopes
 
 from frictionjax.model import known_turning_points
 from frictionjax.tables import (
@@ -33,14 +34,11 @@ def test_functions_are_met_in_pieces_with_slopes_from_the_right(name):
     load = L.Custom(FUNCTIONS[name], [1.0] if name == "kink" else ())
     found = in_pieces(load)
     assert isinstance(found, PiecewiseLoad)
-    size = float(np.abs(at_times(load, T)).max())
-    np.testing.assert_allclose(at_times(found, T), at_times(load, T), atol=4e-15 * size)
     times = np.append(T, 1.0)
-    np.testing.assert_allclose(
-        at_times(found.slope, times),
-        at_times(load.slope, times),
-        atol=1e-10,
-    )
+    (values, slopes), expected = with_slopes(found, times), with_slopes(load, times)
+    size = float(np.abs(expected[0]).max())
+    np.testing.assert_allclose(values, expected[0], atol=4e-15 * size)
+    np.testing.assert_allclose(slopes, expected[1], atol=1e-10)
     assert bent_part(found) is found
 
 
@@ -49,7 +47,7 @@ def test_short_rises_are_met_or_stay_functions(wide):
     load = L.Custom(lambda t: 0.5 * t + 0.05 * jnp.tanh((t - 1.5) / wide))
     found = in_pieces(load)
     times = np.append(T, 1.5 + wide * np.linspace(-5, 5, 101))
-    np.testing.assert_allclose(at_times(found, times), at_times(load, times), atol=1e-12)
+    np.testing.assert_allclose(at_places(found, times), at_places(load, times), atol=1e-12)
     assert isinstance(found, PiecewiseLoad) == (wide > 1e-5)
 
 

@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from at_places import relative_errors
 
 import frictionjax as fx
 from frictionjax.tables import PiecewiseProfile, Waves, profile_tables
@@ -40,17 +41,6 @@ PROFILES = {
 }
 
 
-def errors(profile, table):
-    """Of w, w' and w'', relative to their sizes."""
-    found = []
-    for _ in range(3):
-        expected = np.asarray(jax.vmap(profile)(Y))
-        off = np.abs(np.asarray(jax.vmap(table)(Y)) - expected)
-        found.append(float(off.max() / np.abs(expected).max()))
-        profile, table = jax.grad(profile), jax.grad(table)
-    return found
-
-
 @pytest.mark.parametrize("name", PROFILES)
 def test_tables_are_the_profile_to_rounding(name):
     tables = profile_tables(PROFILES[name])
@@ -60,7 +50,7 @@ def test_tables_are_the_profile_to_rounding(name):
         # long splines that of differences, as in the profile itself.
         rough = name in ("function", "long spline")
         worst = [2e-14, 1e-13, 2e-12] if rough else [2e-14, 3e-14, 1e-13]
-        assert np.all(np.array(errors(PROFILES[name], table)) <= worst)
+        assert np.all(relative_errors(PROFILES[name], table, Y) <= worst)
 
 
 def shapes(table):
@@ -85,7 +75,7 @@ def test_the_height_is_that_of_the_samples():
     for name in ("sine", "spline", "polyline", "function"):
         profile = PROFILES[name]
         places = np.arange(profile.points) / profile.points
-        expected = float(np.abs(jax.vmap(profile)(places)).max())
+        expected = float(np.abs(jax.jit(jax.vmap(profile))(places)).max())
         assert profile_tables(profile).height == pytest.approx(expected, rel=1e-14)
 
 

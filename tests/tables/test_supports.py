@@ -4,6 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from at_places import at_places
 
 import frictionjax as fx
 from frictionjax.tables import SeriesSupport, support_table
@@ -22,18 +23,18 @@ def test_a_series_is_the_support_to_rounding_and_somewhat_beyond(name, least, la
     found = support_table(support, least, largest)
     assert isinstance(found, SeriesSupport)
     more = 0.2 * (largest - least)
-    ends = [float(support.state_of(f)) for f in (least - more, largest + more)]
+    ends = at_places(support.state_of, np.array([least - more, largest + more]))
     assert float(found.low) < ends[0] < ends[1] < float(found.high)
     z = np.linspace(*ends, 101)
-    force = np.asarray(support.force(z))
+    force = at_places(support.force, z)
     size = np.abs(force).max()
-    np.testing.assert_allclose(found.force(z), force, atol=1e-13 * size)
-    stiffness = np.asarray(support.stiffness_at(z))
-    np.testing.assert_allclose(found.stiffness_at(z), stiffness, rtol=1e-9)
-    energy = np.asarray(jax.jit(jax.vmap(support.energy))(z))
+    np.testing.assert_allclose(at_places(found.force, z), force, atol=1e-13 * size)
+    stiffness = at_places(support.stiffness_at, z)
+    np.testing.assert_allclose(at_places(found.stiffness_at, z), stiffness, rtol=1e-9)
+    energy = at_places(support.energy, z)
     atol = 1e-14 * np.abs(energy).max() + 1e-13 * size * (ends[1] - ends[0])
-    np.testing.assert_allclose(jax.jit(jax.vmap(found.energy))(z), energy, atol=atol)
-    back = np.asarray(found.state_of(force))
+    np.testing.assert_allclose(at_places(found.energy, z), energy, atol=atol)
+    back = at_places(found.state_of, force)
     np.testing.assert_allclose(back, z, atol=1e-12 * np.abs(z).max())
     assert float(found.state_of(force[3])) == pytest.approx(z[3], rel=1e-11)
 

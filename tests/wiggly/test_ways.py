@@ -9,6 +9,7 @@ from paths import path_of
 import frictionjax as fx
 from frictionjax.wiggly.enclosure import SETTINGS, CellBounds, Requirements
 from frictionjax.wiggly.lane_steps import affordable_wells
+from frictionjax.wiggly.settings import SETTINGS as PLANNING
 from frictionjax.wiggly.ways import Way, by_brackets, ways_of
 
 SCENE = fx.Scene(
@@ -76,9 +77,11 @@ def test_one_lane_may_go_further_where_drags_are_larger_than_friction():
     drag = np.array([0.0, 0.5, 1.0, 100.0, np.inf, np.nan])
     control = SimpleNamespace(tolerance=tolerance, reach=0.125)
     with np.errstate(all="ignore"):
-        found = affordable_wells(control, lag, drag) / SETTINGS.affordable
+        found = affordable_wells(control, lag, drag, 0.0 * lag) / SETTINGS.affordable
+        all_wells = affordable_wells(control, lag, drag, 0.0 * lag + 1.0)
     assert found[[0, 1, 2, 4, 5]].tolist() == [1.0] * 5
     assert 5 < found[3] < 100
+    assert all_wells[3] == PLANNING.lone_steps * control.reach  # no step over a well
 
 
 def test_one_lane_goes_where_slides_end_before_tips_follow():

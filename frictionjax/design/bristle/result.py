@@ -29,6 +29,7 @@ from ..common import (
 )
 from .inverse import PulledParts
 from .sensitivities import Sensitivities, sensitivities_of
+from .settings import SETTINGS
 from .status import GOOD, FitStatus
 
 
@@ -218,6 +219,9 @@ def _out_of_reach(fit: AngleFit, status: FitStatus) -> str:
     known = intervals_text(fit.reachable)
     if not known:
         return f"{why} none that presses is admissible"
+    ends = np.asarray(fit.reachable)
+    if np.nanmax(ends) - np.nanmin(ends) <= SETTINGS.met * np.nanmax(np.abs(ends)):
+        return f"{why} {which}it is {as_text(fit.achieved)} whatever {fit.free} is"
     return (
         f"{why} {which}{fit.quantity} is in {known}; nearest: {as_text(fit.achieved)} at "
         f"{fit.free} = {as_text(fit.value)}"

@@ -10,6 +10,7 @@ from .heights import write_heights as write_heights
 from .law import AbstractLaw as AbstractLaw
 from .law import FixedLaw as FixedLaw
 from .law import FreeLaw as FreeLaw
+from .passed_on import require_passed_on as require_passed_on
 from .quantities import MEANING as MEANING
 from .quantities import QUANTITIES as QUANTITIES
 from .quantities import OnSlopes as OnSlopes
@@ -20,6 +21,7 @@ from .quantities import side_of as side_of
 from .quantities import slopes_of as slopes_of
 from .scene_effects import EFFECT_FORM as EFFECT_FORM
 from .scene_effects import SceneEffects as SceneEffects
+from .scene_effects import bristles_of as bristles_of
 from .scene_effects import coefficients_in_scene as coefficients_in_scene
 from .scene_effects import effects_of_scene as effects_of_scene
 from .scene_effects import surface_for as surface_for

@@ -1,5 +1,6 @@
 """The number of a bristle that a design is free to choose, by name, and its range."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import equinox as eqx
@@ -134,13 +135,16 @@ def with_arrays(bristle: Any) -> Any:
     return jax.tree_util.tree_map(array, bristle)
 
 
-def free_parameter(bristle: Any, free: str) -> FreeParameter:
+def free_parameter(
+    bristle: Any, free: str, argument: str = "free", others: Sequence[str] = ()
+) -> FreeParameter:
     """The number of a bristle called `free`.
 
     A field (`"height"`), a leaf further down (`"energy_fn.alpha"`, or its last name where
     no other leaf has it), or an entry of an array leaf (`"numbers[0]"`).
 
-    Raises `ValueError` for a name that none or several have, with those there are.
+    Raises `ValueError` for a name that none or several have, with those there are and
+    `others` that would do, naming the caller's `argument`.
     """
     if isinstance(bristle, AngularSpring) and free == "angle":
         return FreeParameter(free, "limit", None, None)
@@ -149,8 +153,9 @@ def free_parameter(bristle: Any, free: str) -> FreeParameter:
     ends = [name for name in named if name.endswith(f".{free}")]
     found = exact or ends
     extra = ["angle"] if isinstance(bristle, AngularSpring) else []
-    allowed = f"one of {', '.join([*named, *extra]) or 'no name: nothing to choose'}"
-    require(len(found) == 1, "free", free, allowed)
+    names = ", ".join([*named, *extra, *others])
+    allowed = f"one of {names or 'no name: nothing to choose'}"
+    require(len(found) == 1, argument, free, allowed)
     return FreeParameter(found[0], _kind_of(bristle, free), *named[found[0]])
 
 

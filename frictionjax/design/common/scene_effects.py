@@ -123,8 +123,7 @@ def coefficients_in_scene(
     """
     single = potential(profile, bristle)
     found = coefficients_jit(with_effects(single, asked.effects))
-    scene = [effect for effect in asked.effects if isinstance(effect, CompliantArray)]
-    count = np.prod([effect.offsets.size for effect in scene]) if scene else None
+    count = bristles_of(asked.effects)
     if asked.apart is None and asked.times is not None:
         own = coefficients_jit(single)
         forces = {name: asked.times * getattr(own, name) for name in _FORCES}
@@ -132,9 +131,15 @@ def coefficients_in_scene(
     else:
         own = found
     rho = {"rho_plus": found.rho_plus, "rho_minus": found.rho_minus}
-    if count is not None:
+    if count > 1:
         rho = {name: count * value for name, value in rho.items()}
     return dataclasses.replace(own, **rho)
+
+
+def bristles_of(effects: Sequence[AbstractEffect]) -> int:
+    """Bristles of a compliant array, whose forces add up; 1 where there is none."""
+    arrays = [effect for effect in effects if isinstance(effect, CompliantArray)]
+    return int(np.prod([array.offsets.size for array in arrays]))
 
 
 def _weights(array: RigidArray) -> Array:

@@ -285,7 +285,8 @@ def _slide_columns(
 
 def _spreads(bristle, profile, spreads: Any) -> list[_Spread]:
     given = isinstance(spreads, Mapping) and len(spreads) > 0
-    require(given, "spreads", type(spreads).__name__, "standard deviations by name")
+    what = "no name" if isinstance(spreads, Mapping) else type(spreads).__name__
+    require(given, "spreads", what, "standard deviations by name, one or more")
     found = [
         one for name, std in spreads.items() for one in _one(bristle, profile, name, std)
     ]
@@ -308,7 +309,7 @@ def _one(bristle, profile, name: str, std: Any) -> list[_Spread]:
     entries = entries_of(part, inner)
     if not entries:
         require(array.ndim == 0, label, std, "one number")
-        number = free_parameter(part, inner)
+        number = free_parameter(part, inner, "spreads" + " of the profile" * there)
         return [_Spread(name, there, number, float(array))]
     fits = array.ndim == 0 or array.shape == (len(entries),)
     require(fits, label, as_text(array), f"one number, or {len(entries)} of them")

@@ -210,7 +210,7 @@ def _axis(bristle, label: str, given: Any) -> tuple[str, np.ndarray, FreeParamet
     good = isinstance(pair, Sequence) and len(pair) == 2 and isinstance(pair[0], str)
     require(good, label, repr(given), "a name, or a name and its values")
     name, values = pair
-    free = None if name in SURFACE else free_parameter(bristle, name)
+    free = None if name in SURFACE else free_parameter(bristle, name, label, SURFACE)
     usual = _DEFAULTS.get(name if free is None else free.kind)
     if values is None:
         require(usual is not None, label, name, f"values of {name}: ({name!r}, [...])")

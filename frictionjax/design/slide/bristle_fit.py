@@ -27,7 +27,14 @@ from ...model import BristlePotential, smallest_stretch
 from ...profiles import AbstractProfile
 from ...supports import Spring
 from ..bristle import AngleFit, FitStatus, fit_angle, intervals_text
-from ..common import QUANTITIES, DesignResult, FreeParameter, free_parameter, quantity_of
+from ..common import (
+    QUANTITIES,
+    DesignResult,
+    FreeParameter,
+    free_parameter,
+    quantity_of,
+    require_passed_on,
+)
 from .scan import Scan, crossings, scan_slides, sliding, touching
 from .settings import SETTINGS
 from .slide_friction import (
@@ -251,11 +258,15 @@ def fit_slide(
 
     `progress`: a line on standard error where it takes more than two seconds.
 
-    Raises `ValueError` as `fit_angle` and `steady_slide` do, and for several targets.
+    Raises `ValueError` as `fit_angle` and `steady_slide` do, for several targets, and for
+    effects: slides are those of one bristle; `TypeError` for what `fit_angle` has not.
 
     >>> fx.fit_slide(scene.profile, scene.bristle, eps=0.01, ratio=1.3)
     SlideFit(ratio = 1.3 of mean forces at eps = 0.01: found, angle = 0.930165)
     """
+    require_passed_on("fit_slide", fit_angle, wanted)
+    alone = "none: of an array or the leading order, scan fx.steady_slide(effects=...)"
+    require(not wanted.get("effects"), "effects", wanted.get("effects"), alone)
     support = spring_of(support)
     require_force(force)
     require_flags(progress=progress)

@@ -11,10 +11,19 @@ from ..._checks import as_text, require_flags, require_real, with_nan
 from ..._compile import waiting
 from ..._text import Named, ShownNumbers, require_no_axes
 from ...bristles import AbstractBristle
+from ...effects import Engine
 from ...io import ARRAY, AS_IS, TOLD, Document, by_name, nested, several
 from ...profiles import Fourier
 from ...supports import Spring
-from ..common import DesignResult, Target, named_forces, require_targets
+from ..common import (
+    DesignResult,
+    Target,
+    bristles_of,
+    effects_of_scene,
+    named_forces,
+    require_passed_on,
+    require_targets,
+)
 from ..surface import MET, ProfileFit, ProfileStatus, fit_profile
 from .settings import SETTINGS
 from .slide_friction import (
@@ -34,7 +43,8 @@ class SlideProfileFit(ShownNumbers, DesignResult):
     """A surface, least bent for its coefficients, with wanted steady slides at `eps`.
 
     `targets`, `achieved` (targets, 2): forces to the right and to the left in N, of the
-    kind `force` ("mean" or "peak"). `slides`: of the design, one a target. `fit`: the limit
+    kind `force` ("mean" or "peak"). `slides`: of the design, one a target, of a compliant
+    array as in `steady_slide`, in means over its bristles. `fit`: the limit
     design behind it, with its history and identifiability, whose coefficients are those
     that the slides need; `limit`: the one for the targets themselves, which slides miss.
     `history` (designs,): largest relative difference between the forces that a design was
@@ -174,7 +184,8 @@ def fit_slide_profile(
 
     `targets`: a `Target` or several, one surface for all; their `rho_plus` and `rho_minus`
     (N) are those of slides, `force` "mean", over time, or "peak", the largest. `gamma`,
-    `rate` (N/s), `support`: as in `steady_slide`. `options`: of `fit_profile`.
+    `rate` (N/s), `support`: as in `steady_slide`. `options`: of `fit_profile`, and with
+    its `effects` slides have them too; those of a compliant array are of all its bristles.
 
     Slides show a little more or less than the coefficients of a surface. The limit design
     is made for what is then left of the targets, until both agree (Broyden's method in
@@ -194,7 +205,11 @@ def fit_slide_profile(
     >>> fx.fit_slide_profile(wanted, eps=0.01)
     SlideProfileFit(MET: mean forces [ 0.12 -0.05] N at eps = 0.01: found in 5 designs)
     """
+    require_passed_on("fit_slide_profile", fit_profile, options)
     many, _ = require_targets(targets, options.get("pulling", False))
+    effects = options.get("effects", ())
+    effects_of_scene(effects, Engine.SLIDE, [target.bristle for target in many])
+    bristles = bristles_of(effects)
     require_force(force)
     require_flags(progress=progress)
     for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
@@ -207,9 +222,11 @@ def fit_slide_profile(
         fit = fit_profile(asked, **options)
         parts: Any = fit.bristles
         slides = tuple(
-            steady_slide(fit.profile, part, eps, gamma, rate, support) for part in parts
+            steady_slide(fit.profile, part, eps, gamma, rate, support, effects)
+            for part in parts
         )
         found = np.array([forces_of(slide, force) for slide in slides], dtype=float)
+        found *= bristles
         has = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in fit.coefficients])
         shown = np.log(np.abs(found))
         off = (shown - np.log(np.abs(has))).ravel() - at

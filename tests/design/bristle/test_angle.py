@@ -147,6 +147,15 @@ def _some(name):
     return {"rho_minus": -0.05}.get(name, 0.05)
 
 
+def test_what_a_number_does_not_change_is_told():
+    slanted = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
+    law = fx.friction(SINE, slanted)
+    own = float(-law.rho_plus / law.rho_minus)
+    found = fx.fit_angle(SINE, slanted, ratio=1.5, free="stiffness")
+    assert found.status == FitStatus.UNREACHABLE
+    assert found.message.endswith(f"it is {own:.6g} whatever stiffness is")
+
+
 def test_at_the_ends_of_the_reachable_interval():
     top = float(fx.fit_angle(SINE, ANGULAR, ratio=0.9).reachable[0, 1])
     assert fx.fit_angle(SINE, ANGULAR, ratio=top * (1 - 1e-12)).success

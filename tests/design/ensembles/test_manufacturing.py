@@ -71,8 +71,9 @@ def test_inadmissible_and_flipped_samples_are_counted():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"spreads": {}}, "spreads = 'dict': needs standard deviations by name"),
-        ({"spreads": {"colour": 0.1}}, "free = 'colour': needs one of"),
+        ({"spreads": {}}, "spreads = 'no name': needs standard deviations by name"),
+        ({"spreads": {"colour": 0.1}}, "spreads = 'colour': needs one of stiffness"),
+        ({"spreads": {"profile.hue": 0.1}}, "spreads of the profile = 'hue': needs one of"),
         ({"spreads": {"angle": -0.1}}, r"spreads\['angle'\] = -0.1: needs finite"),
         ({"spreads": {"angle": float("nan")}}, r"spreads\['angle'\] = nan: needs finite"),
         ({"spreads": {"angle": [0.1, 0.2]}}, r"spreads\['angle'\] = .*needs one number"),

@@ -104,7 +104,7 @@ def test_pictures_show_the_numbers_and_what_is_not_admissible():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"x": "colour"}, "free = 'colour': needs one of"),
+        ({"x": "colour"}, "x = 'colour': needs one of .*angle, asymmetry, steepness"),
         ({"x": "height"}, "x = 'height': needs values of height"),
         ({"x": 3.0}, "x = '3.0': needs a name"),
         ({"y": "angle"}, "y = 'angle': needs another name than x"),

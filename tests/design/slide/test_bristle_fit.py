@@ -67,6 +67,11 @@ def test_wrong_arguments_are_named():
         fx.fit_slide(WAVES, SLANTED, EPS)
     with pytest.raises(ValueError, match=r"ratio = \[1.  1.2\]: needs one number"):
         fx.fit_slide(WAVES, SLANTED, EPS, ratio=[1.0, 1.2])
+    two = (fx.effects.RigidArray([0.0, 0.0]),)
+    with pytest.raises(ValueError, match=r"effects = .*RigidArray.*: needs none: of an"):
+        fx.fit_slide(WAVES, SLANTED, EPS, rho_plus=0.1, effects=two)
+    with pytest.raises(TypeError, match=r"fit_slide\(\) got an unexpected .* 'ration'"):
+        fx.fit_slide(WAVES, SLANTED, EPS, ration=1.2)
 
 
 ROUND = fx.profiles.Sine(0.1)

@@ -32,6 +32,34 @@ def test_the_slide_has_the_forces_that_the_limit_misses(force):
     assert float(found.limit.coefficients[0].rho_plus) == pytest.approx(0.03, rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("effect", "bristles"),
+    [
+        (fx.effects.RigidArray([0.0, 0.0]), 1),
+        (fx.effects.CompliantArray([0.0, 0.3]), 2),
+        pytest.param(fx.effects.LeadingOrder(), 1, marks=pytest.mark.slow),
+    ],
+)
+def test_the_slide_has_the_effects_of_the_scene(effect, bristles):
+    """Slides of one bristle were held against the forces of two: met, and half of them."""
+    effects = (effect,)
+    found = fx.fit_slide_profile(TARGET, EPS, effects=effects)
+    assert found.success
+    slide = fx.steady_slide(found.profile, SLANTED, EPS, effects=effects)
+    shown = bristles * slide.mean_plus, bristles * slide.mean_minus
+    assert np.allclose(shown, [0.03, -0.025], rtol=2e-6)
+    assert np.allclose(found.achieved, shown, rtol=1e-12)
+
+
+def test_what_slides_and_designs_do_not_know_is_named():
+    rod = fx.bristles.AngularSpring(1.0, 1.4, 1.0, 0.3)
+    turns = (fx.effects.NapFlip(0.01),)
+    with pytest.raises(ValueError, match="steady_slide does not do NapFlip"):
+        fx.fit_slide_profile(fx.Target(rod, 0.03, -0.025), EPS, effects=turns)
+    with pytest.raises(TypeError, match=r"fit_slide_profile\(\) got .* 'harmonic'"):
+        fx.fit_slide_profile(TARGET, EPS, harmonic=3)
+
+
 @pytest.mark.slow
 def test_what_no_limit_design_leads_to_says_so():
     found = fx.fit_slide_profile(TARGET._replace(rho_plus=0.3, rho_minus=-0.001), EPS)

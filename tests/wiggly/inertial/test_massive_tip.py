@@ -19,9 +19,9 @@ AT = TipMotion(*(jnp.asarray(x) for x in (0.17, 1.9, 0.0, 0.0)))
 
 def test_slopes_are_the_derivatives_of_the_rates():
     tip, t = tip_of(), jnp.asarray(0.3)
-    by_motion = jax.jacfwd(lambda m: tip.rates(t, m))(AT)
-    by_time = jax.jacfwd(lambda s: tip.rates(s, AT))(t)
-    found = tip.coupling(t, AT)
+    by_motion = jax.jit(jax.jacfwd(lambda m: tip.rates(t, m)))(AT)
+    by_time = jax.jit(jax.jacfwd(lambda s: tip.rates(s, AT)))(t)
+    found = jax.jit(lambda: tip.coupling(t, AT))()
     for name, value in found._asdict().items():
         row, _, column = name.partition("_by_")
         whole = getattr(by_time if column == "time" else by_motion, row)
