@@ -54,11 +54,11 @@ def affordable_wells(
 ) -> np.ndarray:
     """That one lane alone may go through, (cells,): more where tips stay far behind.
 
-    `share`: of the path's wells that tips go through, in steps no longer than their reach.
+    `share`: of the path's wells that tips go through, in as many steps as in any others.
     """
     most = np.full(lag.shape, ENCLOSURE_SETTINGS.affordable)
-    steps = steps_a_well(control, lag, np.maximum(drag, 1.0))
-    steps = np.maximum(steps, share / np.asarray(control.reach))
+    far, through = (steps_a_well(control, lag, d) for d in (np.maximum(drag, 1.0), 1.0))
+    steps = np.maximum(far, share * through)
     lone = SETTINGS.lone_steps / steps
     known = (drag > 1) & np.isfinite(lone)  # at gamma = 400 nothing is
     return np.where(known, np.maximum(lone, most), most)

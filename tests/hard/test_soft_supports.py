@@ -86,3 +86,24 @@ def test_cells_of_which_starts_are_not_forgotten_end_within_seconds(stiffness, e
     data = fx.sweep(scene_on(stiffness), [eps], 1.0)
     assert data.steps.item() < steps
     assert data.status.item() == (fx.Status.OK if eps == 1e-2 else fx.Status.OPEN_BRACKET)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "affordable"),
+    [(500.0, True), (5e3, False)],  # 2.0e5 and 2.0e6 wells
+)
+def test_tips_that_follow_go_through_every_well(amplitude, affordable):
+    """One lane was let through 2e6 wells at 500 times friction: it had no end."""
+    load = fx.loads.Sine(amplitude, 3.0)
+    scene = fx.Scene(fx.profiles.Sine(0.1), BRISTLE, fx.supports.Spring(1.0), load, 3.0)
+    ground = plan_of(scene, 0.01, 1.0).ground
+    assert ground.is_affordable(path_of(scene)).item() == affordable
+
+
+@pytest.mark.filterwarnings("ignore:1 of .* cells failed")
+def test_fast_tips_of_which_brackets_stay_open_end():
+    load = fx.loads.Sine(5e3, 3.0)
+    scene = fx.Scene(fx.profiles.Sine(0.1), BRISTLE, fx.supports.Spring(1.0), load, 3.0)
+    data = fx.sweep(scene, [0.01], 1.0)
+    assert data.status.item() == fx.Status.OPEN_BRACKET
+    assert data.steps.item() < 1e6

@@ -9,7 +9,6 @@ from paths import path_of
 import frictionjax as fx
 from frictionjax.wiggly.enclosure import SETTINGS, CellBounds, Requirements
 from frictionjax.wiggly.lane_steps import affordable_wells
-from frictionjax.wiggly.settings import SETTINGS as PLANNING
 from frictionjax.wiggly.ways import Way, by_brackets, ways_of
 
 SCENE = fx.Scene(
@@ -79,9 +78,10 @@ def test_one_lane_may_go_further_where_drags_are_larger_than_friction():
     with np.errstate(all="ignore"):
         found = affordable_wells(control, lag, drag, 0.0 * lag) / SETTINGS.affordable
         all_wells = affordable_wells(control, lag, drag, 0.0 * lag + 1.0)
+        all_wells /= SETTINGS.affordable
     assert found[[0, 1, 2, 4, 5]].tolist() == [1.0] * 5
     assert 5 < found[3] < 100
-    assert all_wells[3] == PLANNING.lone_steps * control.reach  # no step over a well
+    assert 1 <= all_wells[3] < 2  # about as through any others
 
 
 def test_one_lane_goes_where_slides_end_before_tips_follow():

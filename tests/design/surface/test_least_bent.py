@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.design.surface.barrier import extreme_slopes
 from frictionjax.design.surface.barrier.bending import free_energy, kernel_ratio
 from frictionjax.design.surface.barrier.constraints import (
     FitShape,
     heights_of_waves,
 )
-from frictionjax.design.surface.barrier.extreme_slopes import reach
 from frictionjax.design.surface.fit import surface_problem
 from frictionjax.design.surface.least_bent import (
     _waves,
@@ -20,6 +20,7 @@ from frictionjax.design.surface.least_bent import (
 )
 
 HOMOTHETIC = fx.bristles.Homothetic(1.0)
+reach = jax.jit(extreme_slopes.reach)
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.6)
 
 
