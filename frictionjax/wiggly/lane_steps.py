@@ -8,6 +8,8 @@ from .equation import StepPlan
 from .limit_path import Path
 from .settings import SETTINGS
 
+_QUARTERS = np.linspace(0.0, 1.0, 5)  # of a piece, on which tips may turn
+
 
 def drag_of(path: Path, eps: np.ndarray, gamma: np.ndarray) -> np.ndarray:
     """Of the fastest slide, over friction; less where tips follow only after it."""
@@ -37,28 +39,35 @@ def steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.nda
 def tip_share(path: Path, eps: np.ndarray, gamma: np.ndarray) -> np.ndarray:
     """About what share of the path's way tips go themselves, (cells,).
 
-    Of each slide what they come to before the path turns.
+    Where they follow as `eps^gamma y' = Phi'' (path - y)`, on each piece at its mean speed.
     """
-    slides = np.flatnonzero(path.direction)
-    way = np.abs(np.diff(path.states))[slides]
-    turns = 1 + np.flatnonzero(np.diff(path.direction[slides]))
-    ends = np.append(path.edges[slides[turns]], path.edges[-1])
-    longs = ends[np.searchsorted(turns, np.arange(slides.size), side="right")]
-    longs = longs - path.edges[slides]
     follows = np.asarray(viscosity_of(eps, gamma))[:, None] / path.stiffest
-    return -np.expm1(-longs / follows) @ way / max(np.sum(way), 1e-300)
+    behind, way = np.zeros((eps.size, 1)), np.zeros(eps.size)
+    for long, step in zip(np.diff(path.edges), np.diff(path.states), strict=True):
+        late = step * follows / max(long, 1e-300)  # a steady slide
+        left = np.exp(-long * _QUARTERS / follows)
+        gaps = late + (behind - late) * left
+        way += np.sum(np.abs(np.diff(step * _QUARTERS - gaps, axis=1)), axis=1)
+        behind = gaps[:, -1:]
+    return way / max(path.travel[-1], 1e-300)
 
 
 def affordable_wells(
-    control: StepPlan, lag: np.ndarray, drag: np.ndarray, share: np.ndarray
+    path: Path, control: StepPlan, lag: np.ndarray, eps: np.ndarray, gamma: np.ndarray
 ) -> np.ndarray:
     """That one lane alone may go through, (cells,): more where tips stay far behind.
 
-    `share`: of the path's wells that tips go through, in as many steps as in any others.
+    Wells that tips go through take as many steps there as any others.
     """
-    most = np.full(lag.shape, ENCLOSURE_SETTINGS.affordable)
-    far, through = (steps_a_well(control, lag, d) for d in (np.maximum(drag, 1.0), 1.0))
-    steps = np.maximum(far, share * through)
-    lone = SETTINGS.lone_steps / steps
+    most, drag = (
+        np.full(lag.shape, ENCLOSURE_SETTINGS.affordable),
+        drag_of(path, eps, gamma),
+    )
+    if not np.any(drag > 1):
+        return most
+    one = np.ones(lag.shape)
+    far = steps_a_well(control, lag, np.maximum(drag, one))
+    through = steps_a_well(control, lag, one)
+    lone = SETTINGS.lone_steps / np.maximum(far, tip_share(path, eps, gamma) * through)
     known = (drag > 1) & np.isfinite(lone)  # at gamma = 400 nothing is
     return np.where(known, np.maximum(lone, most), most)

@@ -21,7 +21,7 @@ from .enclosure import (
 )
 from .equation import PullRange, SteppedParts, plan_steps
 from .equation import StepPlan as StepPlan
-from .lane_steps import affordable_wells, drag_of, tip_share
+from .lane_steps import affordable_wells
 from .lanes import LaneScene
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import Path, slow_ends
@@ -88,9 +88,7 @@ def ground_of(
         start_well=start[0],
         start_tip=start[1],
         relaxed=_relaxation(path, eps, gamma),
-        affordable=affordable_wells(
-            control, lag, drag_of(path, eps, gamma), tip_share(path, eps, gamma)
-        ),
+        affordable=affordable_wells(path, control, lag, eps, gamma),
         phase=np.zeros(eps.size),
         fast_slides=none_known(eps.size),
     )

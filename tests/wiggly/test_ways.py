@@ -7,8 +7,8 @@ import pytest
 from paths import path_of
 
 import frictionjax as fx
+from frictionjax.wiggly import lane_steps
 from frictionjax.wiggly.enclosure import SETTINGS, CellBounds, Requirements
-from frictionjax.wiggly.lane_steps import affordable_wells
 from frictionjax.wiggly.ways import Way, by_brackets, ways_of
 
 SCENE = fx.Scene(
@@ -70,18 +70,33 @@ def test_slip_maps_and_one_lane_serve_where_much_is(method, ways):
     assert chosen(2 * SETTINGS.long_memory, method) == ways
 
 
-def test_one_lane_may_go_further_where_drags_are_larger_than_friction():
-    """Never less far, and as usual where nothing is foretold."""
-    lag, tolerance = np.array([0.1, 10.0, 1e6, 1e6, 1e6, 0.0]), 1e-6
-    drag = np.array([0.0, 0.5, 1.0, 100.0, np.inf, np.nan])
-    control = SimpleNamespace(tolerance=tolerance, reach=0.125)
+@pytest.mark.parametrize(("share", "most"), [(0.0, 100.0), (1.0, 2.0)])
+def test_one_lane_may_go_further_where_drags_are_larger_than_friction(
+    monkeypatch, share, most
+):
+    """Never less far; as usual where nothing is foretold, or tips do not stay behind."""
+    lag = np.array([0.1, 10.0, 1e6, 1e6, 1e6, 0.0])
+    drag = [0.0, 0.5, 1.0, 100.0, np.inf, np.nan]
+    monkeypatch.setattr(lane_steps, "drag_of", lambda *cells: np.array(drag))
+    monkeypatch.setattr(lane_steps, "tip_share", lambda *cells: share)
+    control = SimpleNamespace(tolerance=1e-6, reach=0.125)
     with np.errstate(all="ignore"):
-        found = affordable_wells(control, lag, drag, 0.0 * lag) / SETTINGS.affordable
-        all_wells = affordable_wells(control, lag, drag, 0.0 * lag + 1.0)
-        all_wells /= SETTINGS.affordable
-    assert found[[0, 1, 2, 4, 5]].tolist() == [1.0] * 5
-    assert 5 < found[3] < 100
-    assert 1 <= all_wells[3] < 2  # about as through any others
+        found = lane_steps.affordable_wells(None, control, lag, lag, lag)
+    assert found[[0, 1, 2, 4, 5]].tolist() == [SETTINGS.affordable] * 5
+    assert most / 20 <= found[3] / SETTINGS.affordable < most
+
+
+@pytest.mark.parametrize("follows", [0.1, 0.5, 3.0, 100.0])
+def test_tips_go_as_far_as_they_come_before_the_path_turns(follows):
+    """A triangle of twelve ways in 3 s, by small steps."""
+    edges, states = np.linspace(0, 3, 13), np.arange(13.0) % 2
+    path = SimpleNamespace(edges=edges, states=states, travel=np.arange(13.0), stiffest=1.0)
+    found = lane_steps.tip_share(path, np.array([follows]), np.array([1.0]))
+    times = np.linspace(0, 3, 30_001)
+    tip, way, share = 0.0, 0.0, 1e-4 / follows
+    for place in np.interp(times, edges, states):
+        way, tip = way + share * abs(place - tip), tip + share * (place - tip)
+    assert found == pytest.approx(way / 12, rel=0.05)
 
 
 def test_one_lane_goes_where_slides_end_before_tips_follow():

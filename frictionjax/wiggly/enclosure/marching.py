@@ -145,23 +145,22 @@ class BracketContext(NamedTuple):
         return Effort(steps, rejected, self._waited(plan, ends))
 
     @property
-    def _share(self) -> float:
-        """Steps for a well of the path that no cell is said to wait for."""
-        return 0.0 if self.looking else SETTINGS.path_steps
+    def _remembers(self) -> np.ndarray:
+        """Cells that remember so much that brackets may go through all of it, in vain."""
+        return self.ground.longest_memory > SETTINGS.longest_memory
+
+    @property
+    def _share(self) -> np.ndarray:
+        """Steps for a well of the path that cells are not said to wait for, (cells,)."""
+        return np.where(self.looking | self._remembers, 0.0, SETTINGS.path_steps)
 
     def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
         """Which jobs their cells can still wait for, and the plan with what is left."""
-        jobs, segments = plan.jobs, plan.segments
-        left = np.where(
-            self._alone(plan), np.inf, SETTINGS.patience - self.effort.waited[jobs.cell]
-        )
-        owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
-        wells = (
-            np.abs(segments.guide1 - segments.guide0) / self.ground.eps[jobs.cell[owner]]
-        )
-        allowed = left[owner] + self._share * wells
-        segments = segments._replace(budget=np.minimum(segments.budget, allowed))
-        return left > 0, plan._replace(segments=segments)
+        cell = plan.jobs.cell
+        left = SETTINGS.patience - self.effort.waited[cell]
+        left[self._alone(plan)] = np.inf
+        patience = left + self._share[cell] * self._wells(plan)
+        return left > 0, plan._replace(jobs=plan.jobs._replace(patience=patience))
 
     def _waited(self, plan: BracketPlan, ends: SegmentEnds) -> np.ndarray:
         """What the longest lane has taken beyond its share, for each cell.
@@ -169,7 +168,7 @@ class BracketContext(NamedTuple):
         Of one that gave up everything counts: it would take its share again in each march.
         """
         cell, steps = plan.jobs.cell, _of_jobs(plan, np.nan_to_num(ends.steps))
-        beyond = np.maximum(steps - self._share * self._wells(plan), 0.0)
+        beyond = np.maximum(steps - self._share[cell] * self._wells(plan), 0.0)
         gave_up = _of_jobs(plan, np.nan_to_num(ends.code)) > 0
         beyond = np.where(gave_up, steps, beyond)
         longest = np.zeros(self.ground.eps.size)

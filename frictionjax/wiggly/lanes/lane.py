@@ -70,8 +70,8 @@ class LaneScene(eqx.Module):
 class LaneTask(NamedTuple):
     """What stays the same on a leg; `stop` in s since `origin`, `budget` in steps.
 
-    `past_leg`: where the legs of its job end. `level`, `rate`: of the straight part of the
-    load, N where the leg starts and N/s.
+    `past_leg`: where the legs of its job end. `left`: steps for them. `level`, `rate`: of
+    the straight part of the load, N where the leg starts and N/s.
     """
 
     leg: Int[Array, ""]
@@ -82,6 +82,7 @@ class LaneTask(NamedTuple):
     well: Real
     stop: Real
     budget: Real
+    left: Real
     level: Real
     rate: Real
 

@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from ..._compile import Program
@@ -27,7 +28,8 @@ from .settings import SETTINGS
 class Lanes(NamedTuple):
     """Where lanes start, shape (jobs,), and the range of legs that each runs through.
 
-    At the time `origin` (s) the tip is at `tip` in the well number `well`.
+    At the time `origin` (s) the tip is at `tip` in the well number `well`. After so many
+    steps on all of them as its `patience` a lane gives up.
     """
 
     cell: Any
@@ -36,6 +38,7 @@ class Lanes(NamedTuple):
     tip: Any
     first_leg: Any
     past_leg: Any
+    patience: Any = np.inf
 
 
 class Segments(NamedTuple):
@@ -94,7 +97,7 @@ class Tables(NamedTuple):
     """Jobs, legs and cells as rows of numbers: one gather fetches a row."""
 
     cells: Any  # Float[Array, "cells 7"]
-    jobs: Any  # Float[Array, "jobs 6"]
+    jobs: Any  # Float[Array, "jobs 7"]
     legs: Any  # Float[Array, "legs 8"]
     waiting: Any  # Int[Array, ""], jobs in the queue
 
@@ -116,7 +119,7 @@ def _waiting(width: int, legs: int) -> tuple[LaneTask, LaneState]:
     zero, one = jnp.zeros(width), jnp.ones(width)
     none = jnp.full(width, legs, dtype=int)
     cells, guide = LaneCells(*[one] * len(LaneCells._fields)), Guide(*[one] * 7)
-    task = LaneTask(none, none, cells, zero, guide, zero, zero, zero, level=zero, rate=zero)
+    task = LaneTask(none, none, cells, zero, guide, *[zero] * 6)
     motion = LaneState(
         tip=zero,
         time=zero,
@@ -170,6 +173,7 @@ def _next_leg(
     own = own._replace(start=own.start - origin, end=own.end - origin)
     # Positions are counted from the nearest well, so that `tip` keeps its digits.
     tip = jnp.where(fresh, job.tip, motion.tip)
+    left = jnp.where(fresh, job.patience, task.left - motion.steps)
     shift = jnp.where(jnp.isfinite(tip), jnp.round(tip), 0.0)
     following = LaneTask(
         leg=leg,
@@ -179,7 +183,8 @@ def _next_leg(
         guide=guide_of(own, length),
         well=jnp.where(fresh, job.well, task.well) + shift,
         stop=jnp.where(leg <= legs, own.end, -1.0),
-        budget=own.budget,
+        budget=jnp.minimum(own.budget, left),
+        left=left,
         level=own.level,
         rate=own.rate,
     )

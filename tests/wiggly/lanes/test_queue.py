@@ -73,6 +73,24 @@ def test_a_lane_that_fails_says_so_at_each_stop_and_others_go_on(marched):
     np.testing.assert_array_equal(part.tip[others], found.tip[others])
 
 
+def test_the_patience_of_a_job_is_for_all_of_its_legs(marched):
+    """Budgets are for each leg: lanes of ten thousand legs went on for minutes."""
+    args, found = marched
+    scene, cells, jobs, legs, *rest = args
+    count = jobs.past_leg - jobs.first_leg
+    one = int(np.argmax(count))
+    mine = np.arange(jobs.first_leg[one], jobs.past_leg[one])
+    assert mine.size > 4
+    middle = mine.size // 2
+    patience = np.full(count.size, np.inf)
+    patience[one] = found.steps[mine[:middle]].sum() + 0.5
+    part = march(scene, cells, jobs._replace(patience=patience), legs, *rest)
+    assert (part.code[mine[:middle]] == 0).all()
+    assert (part.code[mine[middle:]] == int(fx.Status.MAX_STEPS)).all()
+    others = np.delete(np.arange(part.tip.size), mine[middle:])
+    np.testing.assert_array_equal(part.tip[others], found.tip[others])
+
+
 def test_more_jobs_than_lanes_are_all_gone_through(marched):
     args, found = marched
     many = np.tile(
