@@ -1,6 +1,7 @@
 """The command line: what it prints, what it writes, how it fails."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -171,6 +172,12 @@ def test_a_study_of_a_scene_with_noise_has_a_seed(tmp_path):
         assert told.exit_code == 0, told.stderr
         tables.append((tmp_path / name / "tables.txt").read_text())
     assert tables[0] == tables[1] != tables[2]
+    # As its page says to.
+    again = tmp_path / "other" / "scene.toml", "--seed", 7, "--out", tmp_path / "again"
+    assert run("study", *again, "--report").exit_code == 0
+    assert (tmp_path / "again" / "tables.txt").read_text() == tables[2]
+    page = re.sub("<[^>]*>", "", (tmp_path / "again" / "report.html").read_text())
+    assert "frictionjax study scene.toml --seed 7 --out again --report" in page
     told = run("study", *few, "--seed", 3, "--out", tmp_path / "plain")
     assert (
         error_line(told) == "Error: seed = 3: needs none: the scene has no effects.Noise\n"

@@ -9,14 +9,14 @@ from functools import wraps
 from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
-from jax.tree_util import tree_leaves
 
-from .arguments import is_concrete, require
-from .parts import ByIdentity
+from .arguments import is_concrete, known_numbers, require
+from .parts import ByIdentity, Part, asked_names
 
 _Solver = TypeVar("_Solver", bound=Callable)
 _ORIGINS = ByIdentity()
-_SAME_EPS = 1e-12  # relative: another way to round it is no other eps
+_ROUNDING = 1e-12  # of the largest number: another way to round them is no other part
+_NOTES = "slope_error", "slope_taken"  # of how well a surface is known
 
 
 class _Cell(NamedTuple):
@@ -65,25 +65,39 @@ def eps_of(solution: Any) -> Any:
 def require_own(solution: Any, scene: Any, eps: Any) -> None:
     """Raise where a trajectory is known to be of other parts, or of another eps in m.
 
-    Functions in parts are not compared, nor effects.
+    Numbers that parts were built from are compared, to rounding: a spline that was saved
+    has others. Functions are not, nor effects.
     """
     cell = origin_of(solution)
     if cell is None:
         return
     for name in ("profile", "bristle", "potential", "support", "load"):
         given, own = getattr(scene, name), getattr(cell.scene, name)
-        same = type(given) is type(own) and _numbers(given) == _numbers(own)
-        require(same, f"scene.{name}", given, "the one that the solution is of")
+        alike = _same(given, own)
+        require(alike, f"scene.{name}", given, "the one that the solution is of")
     if eps is not None and cell.eps is not None and is_concrete(cell.eps):
-        own = float(cell.eps)
-        alike = abs(float(eps) - own) <= _SAME_EPS * own
-        require(alike, "eps", eps, f"{own:.6g}, as the solution is of that one")
+        given, own = float(eps), float(cell.eps)
+        told = f"{own!r}, as the solution is of that one"
+        require(_close(given, own), "eps", given, told)
 
 
-def _numbers(part: Any) -> list:
-    """What two parts alike have in common: shapes, and digits."""
-    arrays = [np.asarray(leaf) for leaf in tree_leaves(part) if not callable(leaf)]
-    return [(array.shape, array.tobytes()) for array in arrays]
+def _same(given: Any, own: Any) -> bool:
+    """Whether two parts are of one class and were built from the same numbers."""
+    if type(given) is not type(own):
+        return False
+    if not isinstance(given, Part):
+        numbers = known_numbers(given), known_numbers(own)
+        return any(n.dtype == object for n in numbers) or _close(*numbers)
+    names = (name for name in asked_names(type(given), {}) if name not in _NOTES)
+    return all(_same(getattr(given, n, None), getattr(own, n, None)) for n in names)
+
+
+def _close(given: Any, own: Any) -> bool:
+    """Whether numbers are the same, of one shape, however they were rounded."""
+    if np.shape(given) != np.shape(own):
+        return False
+    size = np.max(np.abs(own), initial=0.0)
+    return bool(np.all(np.abs(np.subtract(given, own)) <= _ROUNDING * size))
 
 
 def _cell_of(solution: Any) -> _Cell:

@@ -53,7 +53,7 @@ class AngularSpring(AbstractBristle):
         require(
             length > height, "bristle.length", length, f"length > height = {height:.6g}"
         )
-        limit = float(_limit_angle(self))
+        limit = float(_angle_of(self, np.float64(0.0)))
         allowed = f"theta_lim = {limit:.6g} > rest_angle > -pi/2"
         require(-0.5 * np.pi < rest < limit, "bristle.rest_angle", rest, allowed)
 
@@ -97,5 +97,5 @@ class AngularSpring(AbstractBristle):
 
 
 @Interpreted
-def _limit_angle(rod: AngularSpring) -> Real:
-    return rod.limit_angle
+def _angle_of(rod: AngularSpring, eta: Real) -> Real:
+    return rod._angle(eta)

@@ -52,9 +52,9 @@ def draw_histogram(data: "xr.Dataset") -> Figure:
 def draw_friction_curve(data: "xr.Dataset") -> Figure:
     """Draw a `friction_curve`: friction in N against speed in m/s, drag taken off.
 
-    `data`: the data set. One line a temperature, dashed to the left where speeds go both
-    ways; slides that failed are crosses on the axis. Of two temperatures and more a second
-    panel is the map over both, to the right, or to the left where no speed is to the right.
+    `data`: the data set. One line a temperature, dashed to the left; slides that failed are
+    crosses on the axis. Of two temperatures and more a second panel is the map over both,
+    to the right, or to the left where no speed is to the right.
 
     >>> data = fx.friction_curve(scene, speeds=[0.01, 0.1, 1.0], eps=0.01)
     >>> print(fx.plot.draw_friction_curve(data).axes[0].get_ylabel())

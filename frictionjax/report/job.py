@@ -47,7 +47,7 @@ class Job(NamedTuple):
     """A scene, its file, and what is known of the measured surface, where there is one.
 
     `scenes`: one for each row of a map, by its number, where all are asked for. `report`:
-    where a page is to be written too.
+    where a page is to be written too. `seed`: of the path of a scene with noise.
     """
 
     scene: Scene
@@ -57,6 +57,7 @@ class Job(NamedTuple):
     row: int | None = None
     scenes: dict[int, Scene] | None = None
     report: ReportRequest | None = None
+    seed: int | None = None
 
     @property
     def error(self) -> dict[str, float]:

@@ -28,7 +28,7 @@ def with_seed(job: Job, seed: int | None) -> Job:
     if noise_among(job.scene.effects) is None:
         require(seed is None, "seed", seed, "none: the scene has no effects.Noise")
         return job
-    return job._replace(study=job.study | {"key": seed or 0})
+    return job._replace(seed=seed or 0)
 
 
 def expected_cost(job: Job, method: str) -> CostPrediction | None:
@@ -46,8 +46,7 @@ def expected_cost(job: Job, method: str) -> CostPrediction | None:
 
 def _as_simulated(job: Job) -> Job:
     """The job with what is simulated of its scene's effects, and numbers of a study."""
-    told = "effects", "key"
-    numbers = {name: value for name, value in job.study.items() if name not in told}
+    numbers = {key: value for key, value in job.study.items() if key != "effects"}
     found = simulated(job.scene, job.study.get("effects", "all"), **numbers)
     return job._replace(scene=found.scene, study=numbers)
 
@@ -134,7 +133,8 @@ def run_study(job: Job, folder: Path, method: str, progress: bool) -> str:
     in_background(_import_results, "imports", daemon=True)
     scenes, ts = job.scenes or job.scene, study_times(job)
     started = time.perf_counter()
-    data = sweep(scenes, ts=ts, method=method, progress=progress, **job.study)
+    options = job.study | {"method": method, "key": job.seed}
+    data = sweep(scenes, ts=ts, progress=progress, **options)
     seconds = time.perf_counter() - started
     from .study_results import write_results
 

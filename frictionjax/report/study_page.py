@@ -124,6 +124,8 @@ def _again(facts: StudyFacts) -> list[str]:
         return []
     method = str(facts.data.attrs.get("method", "auto"))
     option = "" if method == "auto" else f" --method {method}"
+    if facts.job.seed is not None:
+        option += f" --seed {facts.job.seed}"
     return [f"frictionjax study scene.toml{option} --out again --report"]
 
 

@@ -46,10 +46,10 @@ def integrate_cells(
 
     "resolved" measures every slip, in tiles; "windowed" a few periods of every slide that
     is long enough; "auto" what passes through fewer wells. Surveys that are too rough are
-    made again with more periods; where brackets stay open, tiles measure every slip; and
-    where theirs do too, one lane goes through all. Accuracies looser than 1e-3 are solved
-    as that. Where neither energies are `balanced` nor `suprema` wanted, "windowed" and
-    "auto" leave out all slips between the times.
+    made again with more periods; where brackets stay open, tiles measure every slip, of up
+    to 2e5 wells; and where theirs do too, one lane goes through all. Accuracies looser
+    than 1e-3 are solved as that. Where neither energies are `balanced` nor `suprema`
+    wanted, "windowed" and "auto" leave out all slips between the times.
     `report` is told the share of each batch of jobs that is done. `tableau`: another scheme
     than the lanes' own, to compare with. `phase` (cells,): where on the surface each
     cell's bristle stands, in periods; None: all at 0. None where the load turns more often
@@ -157,15 +157,17 @@ def _cells_of(plan: Planned, eps: np.ndarray, gamma: np.ndarray) -> Cellwise:
 
 
 def _surveyed_again(sweep: AttemptContext, so_far: SoFar, rough: np.ndarray) -> SoFar:
-    """Twice as many slips of the `rough` cells, at last all."""
-    some = rows_of(so_far.cells, rough)
+    """Twice as many slips of the `rough` cells, at last all: of many one lane alone."""
+    some, path = rows_of(so_far.cells, rough), sweep.rounds.path
     samples = some.needs.samples * 2 * (some.needs.samples < SETTINGS.most_nodes)
-    wells = sweep.rounds.path.travel[-1] / some.ground.eps
-    can = (wells <= ENCLOSURE_SETTINGS.affordable) | (samples > 0)
-    so_far = so_far.with_status(rough[~can], Status.ROUGH_SURVEY)
+    can, alone = some.ground.are_few(path) | (samples > 0), some.ground.is_affordable(path)
+    so_far = so_far.with_status(rough[~(can | alone)], Status.ROUGH_SURVEY)
+    left = with_rows(so_far.open_, rough[alone & ~can], True)
+    so_far = so_far._replace(open_=left)
     again = rough[can]
     if again.size == 0:
         return so_far
+    wells = path.travel[-1] / some.ground.eps
     longer = np.maximum(some.needs.tile, wells / SETTINGS.tiles)
     tile = np.where(samples > 0, some.needs.tile, longer)
     some = some._replace(needs=some.needs._replace(samples=samples, tile=tile))
@@ -178,12 +180,13 @@ def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
     At gamma = 0.75, eps = 1e-4, accuracy 1e-6: 1.5 s, where one lane takes 30. Not where
     one lane may go further than usual: each tile would set off as far back.
     """
-    wells = sweep.rounds.path.travel[-1] / so_far.cells.ground.eps
-    chosen = np.flatnonzero(so_far.open_ & (wells <= ENCLOSURE_SETTINGS.affordable))
+    path = sweep.rounds.path
+    chosen = np.flatnonzero(so_far.open_ & so_far.cells.ground.are_few(path))
     if chosen.size == 0:
         return so_far
     some = rows_of(so_far.cells, chosen)
-    tile = np.maximum(4 * some.needs.tile, wells[chosen] / SETTINGS.tiles)
+    wells = path.travel[-1] / some.ground.eps
+    tile = np.maximum(4 * some.needs.tile, wells / SETTINGS.tiles)
     none = np.zeros(chosen.size, dtype=int)
     some = some._replace(needs=some.needs._replace(samples=none, tile=tile))
     return so_far.with_attempt(sweep.attempt(some), chosen)

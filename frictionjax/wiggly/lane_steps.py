@@ -36,20 +36,30 @@ def steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.nda
     )
 
 
-def tip_share(path: Path, eps: np.ndarray, gamma: np.ndarray) -> np.ndarray:
-    """About what share of the path's way tips go themselves, (cells,).
+def tip_share(path: Path, follows: float) -> float:
+    """About what share of the path's way tips go themselves that take so long, in s, to.
 
-    Where they follow as `eps^gamma y' = Phi'' (path - y)`, on each piece at its mean speed.
+    They do as `follows y' = path - y`, on each piece at its mean speed.
     """
-    follows = np.asarray(viscosity_of(eps, gamma))[:, None] / path.stiffest
-    behind, way = np.zeros((eps.size, 1)), np.zeros(eps.size)
-    for long, step in zip(np.diff(path.edges), np.diff(path.states), strict=True):
-        late = step * follows / max(long, 1e-300)  # a steady slide
-        left = np.exp(-long * _QUARTERS / follows)
-        gaps = late + (behind - late) * left
-        way += np.sum(np.abs(np.diff(step * _QUARTERS - gaps, axis=1)), axis=1)
-        behind = gaps[:, -1:]
-    return way / max(path.travel[-1], 1e-300)
+    many = np.maximum(np.diff(path.edges) / follows, 1e-300)  # e-folds of a piece
+    steps = np.diff(path.states)
+    lost = -np.expm1(-many)
+    behind = _driven(1 - lost, steps * lost / many)
+    before = np.concatenate([[0.0], behind[:-1]])[:, None]
+    part = many[:, None] * _QUARTERS
+    gaps = before * np.exp(-part) - steps[:, None] * np.expm1(-part) / many[:, None]
+    moves = np.diff(steps[:, None] * _QUARTERS - gaps, axis=1)
+    return float(np.sum(np.abs(moves)) / max(path.travel[-1], 1e-300))
+
+
+def _driven(kept: np.ndarray, pushed: np.ndarray) -> np.ndarray:
+    """All `x[i] = kept[i] x[i-1] + pushed[i]` from 0, by doubling, (n,)."""
+    reach = 1
+    while reach < kept.size:
+        pushed = pushed + kept * np.concatenate([np.zeros(reach), pushed[:-reach]])
+        kept = kept * np.concatenate([np.zeros(reach), kept[:-reach]])
+        reach *= 2
+    return pushed
 
 
 def affordable_wells(
@@ -65,9 +75,12 @@ def affordable_wells(
     )
     if not np.any(drag > 1):
         return most
-    one = np.ones(lag.shape)
+    one, share = np.ones(lag.shape), np.zeros(lag.shape)
+    for cell in np.flatnonzero(drag > 1):
+        follows = viscosity_of(eps[cell], gamma[cell]) / path.stiffest
+        share[cell] = tip_share(path, float(follows))
     far = steps_a_well(control, lag, np.maximum(drag, one))
     through = steps_a_well(control, lag, one)
-    lone = SETTINGS.lone_steps / np.maximum(far, tip_share(path, eps, gamma) * through)
+    lone = SETTINGS.lone_steps / np.maximum(far, share * through)
     known = (drag > 1) & np.isfinite(lone)  # at gamma = 400 nothing is
     return np.where(known, np.maximum(lone, most), most)

@@ -81,7 +81,8 @@ def test_one_lane_may_go_further_where_drags_are_larger_than_friction(
     monkeypatch.setattr(lane_steps, "tip_share", lambda *cells: share)
     control = SimpleNamespace(tolerance=1e-6, reach=0.125)
     with np.errstate(all="ignore"):
-        found = lane_steps.affordable_wells(None, control, lag, lag, lag)
+        path, one = SimpleNamespace(stiffest=1.0), np.ones(lag.size)
+        found = lane_steps.affordable_wells(path, control, lag, one, one)
     assert found[[0, 1, 2, 4, 5]].tolist() == [SETTINGS.affordable] * 5
     assert most / 20 <= found[3] / SETTINGS.affordable < most
 
@@ -91,12 +92,21 @@ def test_tips_go_as_far_as_they_come_before_the_path_turns(follows):
     """A triangle of twelve ways in 3 s, by small steps."""
     edges, states = np.linspace(0, 3, 13), np.arange(13.0) % 2
     path = SimpleNamespace(edges=edges, states=states, travel=np.arange(13.0), stiffest=1.0)
-    found = lane_steps.tip_share(path, np.array([follows]), np.array([1.0]))
+    found = lane_steps.tip_share(path, follows)
     times = np.linspace(0, 3, 30_001)
     tip, way, share = 0.0, 0.0, 1e-4 / follows
     for place in np.interp(times, edges, states):
         way, tip = way + share * abs(place - tip), tip + share * (place - tip)
     assert found == pytest.approx(way / 12, rel=0.05)
+
+
+def test_tips_do_not_follow_a_jump():
+    """However short it is, for what a tip takes to; then they go on their way."""
+    edges, states = np.array([0.0, 1.0, 1.0 + 1e-12, 2.0]), np.array([0.0, 0.0, 1.0, 1.0])
+    path = SimpleNamespace(edges=edges, states=states, travel=np.array([0.0, 0, 1, 1]))
+    path.stiffest = 1.0
+    assert lane_steps.tip_share(path, 1e5) == pytest.approx(1e-5, rel=1e-4)
+    assert lane_steps.tip_share(path, 0.1) == pytest.approx(1.0, rel=1e-4)
 
 
 def test_one_lane_goes_where_slides_end_before_tips_follow():

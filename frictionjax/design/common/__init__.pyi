@@ -21,8 +21,8 @@ from .quantities import side_of as side_of
 from .quantities import slopes_of as slopes_of
 from .scene_effects import EFFECT_FORM as EFFECT_FORM
 from .scene_effects import SceneEffects as SceneEffects
-from .scene_effects import bristles_of as bristles_of
 from .scene_effects import coefficients_in_scene as coefficients_in_scene
+from .scene_effects import compliant_count as compliant_count
 from .scene_effects import effects_of_scene as effects_of_scene
 from .scene_effects import surface_for as surface_for
 from .targets import Geometry as Geometry

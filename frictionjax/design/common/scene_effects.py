@@ -123,7 +123,7 @@ def coefficients_in_scene(
     """
     single = potential(profile, bristle)
     found = coefficients_jit(with_effects(single, asked.effects))
-    count = bristles_of(asked.effects)
+    count = compliant_count(asked.effects)
     if asked.apart is None and asked.times is not None:
         own = coefficients_jit(single)
         forces = {name: asked.times * getattr(own, name) for name in _FORCES}
@@ -136,7 +136,7 @@ def coefficients_in_scene(
     return dataclasses.replace(own, **rho)
 
 
-def bristles_of(effects: Sequence[AbstractEffect]) -> int:
+def compliant_count(effects: Sequence[AbstractEffect]) -> int:
     """Bristles of a compliant array, whose forces add up; 1 where there is none."""
     arrays = [effect for effect in effects if isinstance(effect, CompliantArray)]
     return int(np.prod([array.offsets.size for array in arrays]))

@@ -18,7 +18,7 @@ from ...supports import Spring
 from ..common import (
     DesignResult,
     Target,
-    bristles_of,
+    compliant_count,
     effects_of_scene,
     named_forces,
     require_passed_on,
@@ -209,7 +209,7 @@ def fit_slide_profile(
     many, _ = require_targets(targets, options.get("pulling", False))
     effects = options.get("effects", ())
     effects_of_scene(effects, Engine.SLIDE, [target.bristle for target in many])
-    bristles = bristles_of(effects)
+    count = compliant_count(effects)
     require_force(force)
     require_flags(progress=progress)
     for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
@@ -226,7 +226,7 @@ def fit_slide_profile(
             for part in parts
         )
         found = np.array([forces_of(slide, force) for slide in slides], dtype=float)
-        found *= bristles
+        found *= count
         has = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in fit.coefficients])
         shown = np.log(np.abs(found))
         off = (shown - np.log(np.abs(has))).ravel() - at

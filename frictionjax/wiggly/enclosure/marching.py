@@ -145,14 +145,13 @@ class BracketContext(NamedTuple):
         return Effort(steps, rejected, self._waited(plan, ends))
 
     @property
-    def _remembers(self) -> np.ndarray:
-        """Cells that remember so much that brackets may go through all of it, in vain."""
-        return self.ground.longest_memory > SETTINGS.longest_memory
-
-    @property
     def _share(self) -> np.ndarray:
-        """Steps for a well of the path that cells are not said to wait for, (cells,)."""
-        return np.where(self.looking | self._remembers, 0.0, SETTINGS.path_steps)
+        """Steps for a well of the path that cells are not said to wait for, (cells,).
+
+        None of those that remember so much that brackets go through all of it, in vain.
+        """
+        some = 2 - self.ground.longest_memory / SETTINGS.longest_memory
+        return SETTINGS.path_steps * (not self.looking) * np.clip(some, 0.0, 1.0)
 
     def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
         """Which jobs their cells can still wait for, and the plan with what is left."""

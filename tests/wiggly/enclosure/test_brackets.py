@@ -215,13 +215,15 @@ def test_one_program_for_all_values():
     eps, gamma = np.geomspace(1e-2, 1e-5, 6), np.full(6, 1.0)
     cells(scene, eps, gamma, "windowed")
     names = []
-    jax.monitoring.register_event_duration_secs_listener(
-        lambda name, seconds, **kwargs: names.append(name)
-    )
+
+    def note(name, seconds, **told):
+        names.append(name)
+
+    jax.monitoring.register_event_duration_secs_listener(note)
     try:
         cells(scene, 0.7 * eps, np.full(6, 1.3), "windowed")
     finally:
-        jax.monitoring.clear_event_listeners()
+        jax.monitoring.unregister_event_duration_listener(note)
     assert not [name for name in names if "backend_compile" in name]
 
 
