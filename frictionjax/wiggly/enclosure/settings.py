@@ -29,9 +29,10 @@ class Settings(NamedTuple):
     patience: float = 2e6
     path_steps: float = 200.0  # for a well of the path
     # Cells that remember more wells wait for more of their steps, for all where they
-    # remember twice as many. (2e5 and 1e7, of 6e5 and 5e6 wells, at 40 times friction: brackets went through
-    # them again and again, for minutes. No lane through more than 5e4 wells: turns of
-    # triangles at gamma = 0.15 to 0.35 lag by 1e6, which take 1e5 steps, and ended open.)
+    # remember twice as many. (2e5 and 1e7, of 6e5 and 5e6 wells, at 40 times friction:
+    # brackets went through them again and again, for minutes. No lane through more than 5e4
+    # wells: turns of triangles at gamma = 0.15 to 0.35 lag by 1e6, which take 1e5 steps,
+    # and ended open.)
     longest_memory: float = 1e4
 
     # Budgets of a lane (`brackets.py`). Steps are 10 to 200 a well.
