@@ -81,6 +81,6 @@ def affordable_wells(
         share[cell] = tip_share(path, float(follows))
     far = steps_a_well(control, lag, np.maximum(drag, one))
     through = steps_a_well(control, lag, one)
-    lone = SETTINGS.lone_steps / np.maximum(far, share * through)
+    lone = SETTINGS.lone_steps / np.maximum(SETTINGS.guessed * far, share * through)
     known = (drag > 1) & np.isfinite(lone)  # at gamma = 400 nothing is
     return np.where(known, np.maximum(lone, most), most)

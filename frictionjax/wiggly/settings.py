@@ -73,11 +73,13 @@ class Settings(NamedTuple):
     smoothest: float = 2.0
     # Of one lane that goes on where drags are larger than friction: tips stay behind, and
     # steps for a well of the path are few. (0.2 of 3e7 wells at 2600 times friction: 12 s,
-    # where maps and brackets had no end in 30. Up to 4 times as many as foretold.) Tips
-    # that follow go through every well, 36 steps each. (A sine of 5e3 N at eps = 0.01, 2e6
-    # wells at 500 times friction: no end in three minutes where only what is foretold was
-    # asked, open after 0.7 s.)
-    lone_steps: float = 4e6
+    # where maps and brackets had no end in 30.) So many times as many as foretold there;
+    # tips that follow go through every well, with steps as foretold. (A sine of 5e3 N at
+    # eps = 0.01, 2e6 wells at 500 times friction: no end in three minutes where only the
+    # few were foretold, open after 0.7 s. 4e6 of these too: one of 40 cells at gamma 0.2 to
+    # 0.7 ended open that takes 8.9e6, for 7.8e6 foretold, and 27 s.)
+    lone_steps: float = 1e7
+    guessed: float = 2.5
     # Slip maps: steps of a slide, from the orders of magnitude of its wells and of the
     # accuracy. 96 cells of four scenes (vertical, angular, sawtooth, quartic, gamma 0.4 to
     # 0.9, eps 1e-2 to 1e-8, accuracy 1e-3 and 1e-5) lie within a factor of 1.7 of it (rms),
