@@ -164,24 +164,20 @@ def test_what_a_command_does_not_do_is_named_with_its_file(tmp_path):
 
 
 def test_a_study_of_a_scene_with_noise_has_a_seed(tmp_path):
-    file, few = tmp_path / "mine.toml", ["--eps", "0.1,0.05"]
+    """Its page says how to do it again: with the same path."""
+    usual, file, few = tmp_path / "usual", tmp_path / "mine.toml", ["--eps", "0.1,0.05"]
+    other, again = tmp_path / "other", tmp_path / "again"
     run("scenes", "noise", "--out", file)
-    tables = []
-    for name, seed in (("usual", ()), ("none", ("--seed", 0)), ("other", ("--seed", 7))):
-        told = run("study", file, *few, *seed, "--out", tmp_path / name)
-        assert told.exit_code == 0, told.stderr
-        tables.append((tmp_path / name / "tables.txt").read_text())
-    assert tables[0] == tables[1] != tables[2]
-    # As its page says to.
-    again = tmp_path / "other" / "scene.toml", "--seed", 7, "--out", tmp_path / "again"
-    assert run("study", *again, "--report").exit_code == 0
-    assert (tmp_path / "again" / "tables.txt").read_text() == tables[2]
-    page = re.sub("<[^>]*>", "", (tmp_path / "again" / "report.html").read_text())
+    assert run("study", file, *few, "--out", usual).exit_code == 0
+    run("study", file, *few, "--seed", 7, "--report", "--out", other)
+    run("study", other / "scene.toml", "--seed", 7, "--out", again)
+    told = [(one / "tables.txt").read_text() for one in (usual, other, again)]
+    assert told[0] != told[1] == told[2]
+    page = re.sub("<[^>]*>", "", (other / "report.html").read_text())
     assert "frictionjax study scene.toml --seed 7 --out again --report" in page
-    told = run("study", *few, "--seed", 3, "--out", tmp_path / "plain")
-    assert (
-        error_line(told) == "Error: seed = 3: needs none: the scene has no effects.Noise\n"
-    )
+    refused = run("study", *few, "--seed", 3, "--out", tmp_path / "plain")
+    needs = "Error: seed = 3: needs none: the scene has no effects.Noise\n"
+    assert error_line(refused) == needs
 
 
 def test_nap_of_a_rod_that_turns_over(tmp_path):

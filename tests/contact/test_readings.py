@@ -207,11 +207,11 @@ def test_the_same_parts_built_another_way_are_accepted(tmp_path):
     bent = fx.loads.Custom(lambda t: 0.5 * jnp.sin(2 * t))
     surface = fx.profiles.Spline(heights)
     one = fx.Scene(surface, SLANTED, fx.supports.Spring(1.0), bent, 1.0)
-    wiggly = fx.solve(one, EPS, ts=[0.0, 0.1])
+    limit = fx.solve_limit(one, [0.0, 0.1])
     again = surface.replace(heights=(heights + 0.3) - 0.3, slope_error=[0.01, 0.02])
     assert not np.array_equal(again.coefficients, surface.coefficients)
     other = one.replace(profile=again, duration=2.0)
-    assert fx.mechanics(other, wiggly, EPS).sizes == {"time": 2}
+    assert fx.mechanics(other, limit).sizes == {"time": 2}
     near = surface.replace(heights=heights * (1 + 1e-9))
     with pytest.raises(ValueError, match=r"scene\.profile = "):
-        fx.mechanics(one.replace(profile=near), wiggly, EPS)
+        fx.mechanics(one.replace(profile=near), limit)

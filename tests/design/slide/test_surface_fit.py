@@ -43,7 +43,7 @@ def test_the_slide_has_the_forces_that_the_limit_misses(force):
 def test_the_slide_has_the_effects_of_the_scene(effect, bristles):
     """Slides of one bristle were held against the forces of two: met, and half of them."""
     effects = (effect,)
-    found = fx.fit_slide_profile(TARGET, EPS, effects=effects)
+    found = fx.fit_slide_profile(TARGET, EPS, effects=effects, harmonics=4)
     assert found.success
     slide = fx.steady_slide(found.profile, SLANTED, EPS, effects=effects)
     shown = bristles * slide.mean_plus, bristles * slide.mean_minus
