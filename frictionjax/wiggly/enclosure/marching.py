@@ -145,21 +145,31 @@ class BracketContext(NamedTuple):
         return Effort(steps, rejected, self._waited(plan, ends))
 
     @property
-    def _share(self) -> np.ndarray:
-        """Steps for a well of the path that cells are not said to wait for, (cells,).
+    def _forgets(self) -> np.ndarray:
+        """0 of cells that remember so much that brackets go through all of it, in vain, and
+        1 of usual ones, (cells,)."""
+        memory = self.ground.longest_memory / SETTINGS.longest_memory
+        return np.clip(2 - memory, 0.0, 1.0)
 
-        None of those that remember so much that brackets go through all of it, in vain.
-        """
-        some = 2 - self.ground.longest_memory / SETTINGS.longest_memory
-        return SETTINGS.path_steps * (not self.looking) * np.clip(some, 0.0, 1.0)
+    @property
+    def _share(self) -> np.ndarray:
+        """Steps for a well of the path that cells are not said to wait for, (cells,)."""
+        return SETTINGS.path_steps * (not self.looking) * self._forgets
 
     def _within_patience(self, plan: BracketPlan) -> tuple[np.ndarray, BracketPlan]:
         """Which jobs their cells can still wait for, and the plan with what is left."""
-        cell = plan.jobs.cell
-        left = SETTINGS.patience - self.effort.waited[cell]
+        jobs, segments = plan.jobs, plan.segments
+        left = SETTINGS.patience - self.effort.waited[jobs.cell]
         left[self._alone(plan)] = np.inf
-        patience = left + self._share[cell] * self._wells(plan)
-        return left > 0, plan._replace(jobs=plan.jobs._replace(patience=patience))
+        owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
+        cell = jobs.cell[owner]
+        wells = np.abs(segments.guide1 - segments.guide0) / self.ground.eps[cell]
+        allowed = left[owner] + self._share[cell] * wells
+        segments = segments._replace(budget=np.minimum(segments.budget, allowed))
+        # In all on the way no more than that, where little is forgotten.
+        many = SETTINGS.lane_steps * self._forgets[jobs.cell] * self._wells(plan)
+        jobs = jobs._replace(patience=np.where(self.looking, np.inf, left + many))
+        return left > 0, plan._replace(jobs=jobs, segments=segments)
 
     def _waited(self, plan: BracketPlan, ends: SegmentEnds) -> np.ndarray:
         """What the longest lane has taken beyond its share, for each cell.

@@ -33,7 +33,7 @@ class Settings(NamedTuple):
     # brackets went through them again and again, for minutes. No lane through more than 5e4
     # wells: turns of triangles at gamma = 0.15 to 0.35 lag by 1e6, which take 1e5 steps,
     # and ended open.)
-    longest_memory: float = 1e4
+    longest_memory: float = 5e3
 
     # Budgets of a lane (`brackets.py`). Steps are 10 to 200 a well.
     lane_steps: int = 2000  # for a well

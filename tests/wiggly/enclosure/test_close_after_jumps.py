@@ -70,9 +70,12 @@ def test_cells_wait_for_lanes_that_go_astray_so_long_only():
     )
     able, some = rounds._within_patience(plan)
     assert able.all()
+    beyond = some.segments.budget - SETTINGS.patience
+    assert beyond == pytest.approx(
+        [1e9 - SETTINGS.patience, 0, 0, 200 * 10, 0, 0], abs=1e-6
+    )
     beyond = some.jobs.patience - SETTINGS.patience
-    assert beyond == pytest.approx([np.inf, 0, 0, 200 * 10, 0, 0], abs=1e-6)
-    assert (some.segments.budget == 1e9).all()
+    assert beyond == pytest.approx([np.inf, 0, 0, 2000 * 10, 0, 0], abs=1e-6)
     steps = SETTINGS.patience * np.array([5.0, 0.6, 0.2, 0.3, 0.4, np.nan])
     found = SegmentEnds(*np.tile(steps, (len(SegmentEnds._fields), 1)))._replace(code=none)
     waited = rounds._waited(plan, found)
@@ -88,5 +91,5 @@ def test_cells_wait_for_lanes_that_go_astray_so_long_only():
     looks = rounds._replace(looking=True)
     able, some = looks._within_patience(plan)
     assert able.all()
-    assert some.jobs.patience[1:] == pytest.approx(SETTINGS.patience)
+    assert some.segments.budget[1:] == pytest.approx(SETTINGS.patience)
     assert looks._waited(plan, found)[0] == 0.3 * SETTINGS.patience
