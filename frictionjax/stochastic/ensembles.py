@@ -46,11 +46,10 @@ def ensemble(
     `jax.random.fold_in(key, i)`, so more paths change none, and
     `fx.solve(scene, eps, gamma, ts, key=jax.random.fold_in(key, i))` has its bits.
 
-    Returns a data set over `path` and `time`: `z`, `work` (`-int l' z`, what
-    the load has added to `Phi - l z + V_eps`); over `time`
-    `z_mean` and the 95% interval `z_low`, `z_high` of the mean, infinite for one path; over
-    `path` `status`. The interval holds what numbers of paths leave open; steps are as long
-    as `stochastic/settings.py` says.
+    Returns a data set over `path` and `time`: `z`, `work` (`-int l' z`, what the load has
+    added to `Phi - l z + V_eps`); over `time` `z_mean` and the 95% interval `z_low`,
+    `z_high` of the mean, infinite for one path; over `path` `status`. The interval holds
+    what numbers of paths leave open; steps are as long as `stochastic/settings.py` says.
 
     `progress`: a line on standard error where it takes more than two seconds.
 

@@ -221,7 +221,7 @@ def _out_of_reach(fit: AngleFit, status: FitStatus) -> str:
         return f"{why} none that presses is admissible"
     ends = np.asarray(fit.reachable)
     if np.nanmax(ends) - np.nanmin(ends) <= SETTINGS.met * np.nanmax(np.abs(ends)):
-        return f"{why} {which}it is {as_text(fit.achieved)} at all that it may be"
+        return f"{why} {which}it is {as_text(fit.achieved)} at every {fit.free} allowed"
     return (
         f"{why} {which}{fit.quantity} is in {known}; nearest: {as_text(fit.achieved)} at "
         f"{fit.free} = {as_text(fit.value)}"

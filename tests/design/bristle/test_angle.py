@@ -153,7 +153,7 @@ def test_what_a_number_does_not_change_is_told():
     own = float(-law.rho_plus / law.rho_minus)
     found = fx.fit_angle(SINE, slanted, ratio=1.5, free="stiffness")
     assert found.status == FitStatus.UNREACHABLE
-    assert found.message.endswith(f"it is {own:.6g} at all that it may be")
+    assert found.message.endswith(f"it is {own:.6g} at every stiffness allowed")
 
 
 def test_at_the_ends_of_the_reachable_interval():
