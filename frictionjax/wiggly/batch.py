@@ -160,7 +160,8 @@ def _surveyed_again(sweep: AttemptContext, so_far: SoFar, rough: np.ndarray) -> 
     """Twice as many slips of the `rough` cells, at last all: of many one lane alone."""
     some, path = rows_of(so_far.cells, rough), sweep.rounds.path
     samples = some.needs.samples * 2 * (some.needs.samples < SETTINGS.most_nodes)
-    can, alone = some.ground.are_few(path) | (samples > 0), some.ground.is_affordable(path)
+    can = some.ground.has_few_wells(path) | (samples > 0)
+    alone = some.ground.is_affordable(path)
     so_far = so_far.with_status(rough[~(can | alone)], Status.ROUGH_SURVEY)
     left = with_rows(so_far.open_, rough[alone & ~can], True)
     so_far = so_far._replace(open_=left)
@@ -181,7 +182,7 @@ def _in_tiles(sweep: AttemptContext, so_far: SoFar) -> SoFar:
     one lane may go further than usual: each tile would set off as far back.
     """
     path = sweep.rounds.path
-    chosen = np.flatnonzero(so_far.open_ & so_far.cells.ground.are_few(path))
+    chosen = np.flatnonzero(so_far.open_ & so_far.cells.ground.has_few_wells(path))
     if chosen.size == 0:
         return so_far
     some = rows_of(so_far.cells, chosen)

@@ -69,10 +69,8 @@ def affordable_wells(
 
     Wells that tips go through take as many steps there as any others.
     """
-    most, drag = (
-        np.full(lag.shape, ENCLOSURE_SETTINGS.affordable),
-        drag_of(path, eps, gamma),
-    )
+    most = np.full(lag.shape, ENCLOSURE_SETTINGS.affordable)
+    drag = drag_of(path, eps, gamma)
     if not np.any(drag > 1):
         return most
     one, share = np.ones(lag.shape), np.zeros(lag.shape)

@@ -201,7 +201,7 @@ def test_a_scene_with_another_part_is_refused(part, other):
     fx.mechanics(scene(SLANTED), wiggly, eps=EPS * (1 + 1e-15))  # the same, built anew
 
 
-def test_the_same_parts_built_another_way_are_accepted(tmp_path):
+def test_the_same_parts_built_another_way_are_accepted():
     """A spline read back rounds otherwise; a load as a function is prepared for a time."""
     heights = 0.02 * np.sin(2 * np.pi * np.arange(11) / 11)
     bent = fx.loads.Custom(lambda t: 0.5 * jnp.sin(2 * t))

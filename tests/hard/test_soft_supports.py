@@ -1,13 +1,19 @@
 """Supports a hundred to 1e5 times softer than wells: tips stay a second behind the path."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from paths import path_of
 
 import frictionjax as fx
 from frictionjax.model import tabulated_scene
+from frictionjax.wiggly import batch
+from frictionjax.wiggly.attempts import SoFar
 from frictionjax.wiggly.enclosure import SETTINGS, marching
 from frictionjax.wiggly.plan import planned
+from frictionjax.wiggly.settings import SETTINGS as WAYS
+from frictionjax.wiggly.sums import nothing_found
 from frictionjax.wiggly.ways import Way
 
 BRISTLE = fx.bristles.SlantedSpring(stiffness=1.0, rest_length=2.4, height=1.0, angle=1.0)
@@ -107,3 +113,22 @@ def test_fast_tips_of_which_brackets_stay_open_end():
     data = fx.sweep(scene, [0.01], 1.0)
     assert data.status.item() == fx.Status.OPEN_BRACKET
     assert data.steps.item() < 1e6
+
+
+@pytest.mark.parametrize("alone", [True, False])
+def test_where_no_more_slips_can_be_sampled_one_lane_goes_if_it_may(alone):
+    """With more wells than tiles go through; else the status says that it is rough."""
+    scene, eps, gamma = scene_on(2e-4), np.array([0.027]), np.array([1.0])
+    cells = batch._cells_of(plan_of(scene, eps[0], gamma[0]), eps, gamma)
+    samples = np.array([WAYS.most_nodes])
+    cells = cells._replace(needs=cells.needs._replace(samples=samples))
+    if not alone:
+        usual = cells.ground._replace(affordable=np.array([SETTINGS.affordable]))
+        cells = cells._replace(ground=usual)
+    known = SoFar(cells, nothing_found(1, 2), np.array([False]))
+    known = known.with_status(np.array([0]), fx.Status.OK)
+    sweep = SimpleNamespace(rounds=SimpleNamespace(path=path_of(scene)))
+    found = batch._surveyed_again(sweep, known, np.array([0]))
+    assert found.open_.tolist() == [alone]
+    ended = fx.Status.OK if alone else fx.Status.ROUGH_SURVEY
+    assert found.answers.status.tolist() == [int(ended)]

@@ -91,7 +91,7 @@ def test_one_lane_may_go_further_where_drags_are_larger_than_friction(
 def test_tips_go_as_far_as_they_come_before_the_path_turns(follows):
     """A triangle of twelve ways in 3 s, by small steps."""
     edges, states = np.linspace(0, 3, 13), np.arange(13.0) % 2
-    path = SimpleNamespace(edges=edges, states=states, travel=np.arange(13.0), stiffest=1.0)
+    path = SimpleNamespace(edges=edges, states=states, travel=np.arange(13.0))
     found = lane_steps.tip_share(path, follows)
     times = np.linspace(0, 3, 30_001)
     tip, way, share = 0.0, 0.0, 1e-4 / follows
@@ -104,7 +104,6 @@ def test_tips_do_not_follow_a_jump():
     """However short it is, for what a tip takes to; then they go on their way."""
     edges, states = np.array([0.0, 1.0, 1.0 + 1e-12, 2.0]), np.array([0.0, 0.0, 1.0, 1.0])
     path = SimpleNamespace(edges=edges, states=states, travel=np.array([0.0, 0, 1, 1]))
-    path.stiffest = 1.0
     assert lane_steps.tip_share(path, 1e5) == pytest.approx(1e-5, rel=1e-4)
     assert lane_steps.tip_share(path, 0.1) == pytest.approx(1.0, rel=1e-4)
 

@@ -146,8 +146,8 @@ class BracketContext(NamedTuple):
 
     @property
     def _forgets(self) -> np.ndarray:
-        """0 of cells that remember so much that brackets go through all of it, in vain, and
-        1 of usual ones, (cells,)."""
+        """1 of usual cells, (cells,); less, down to 0, of those that remember so much that
+        brackets go through all of it, in vain."""
         memory = self.ground.longest_memory / SETTINGS.longest_memory
         return np.clip(2 - memory, 0.0, 1.0)
 

@@ -52,7 +52,7 @@ class CellBounds(NamedTuple):
         """Whether one lane alone may go through all of the path, (cells,)."""
         return path.travel[-1] / self.eps <= self.affordable
 
-    def are_few(self, path: Path) -> np.ndarray:
+    def has_few_wells(self, path: Path) -> np.ndarray:
         """Whether the path has no more wells than one lane usually goes through."""
         return path.travel[-1] / self.eps <= SETTINGS.affordable
 
