@@ -15,7 +15,7 @@ class Engine(enum.Enum):
     """What a scene is given to, by the name of the call.
 
     >>> fx.effects.Engine.COST.value
-    'work_precision, predict_cost and fit_budget'
+    'a measure of cost (work_precision, predict_cost, fit_budget)'
     """
 
     LIMIT = "solve_limit"
@@ -27,7 +27,7 @@ class Engine(enum.Enum):
     LIMIT_CERTIFICATE = "certify_limit, and principle.D"
     PRINCIPLE = "principle.D_eps"
     MECHANICS = "mechanics"
-    COST = "work_precision, predict_cost and fit_budget"
+    COST = "a measure of cost (work_precision, predict_cost, fit_budget)"
     TRACE = "fit_trace"
     ENSEMBLE = "ensemble"
     FRICTION_CURVE = "friction_curve"

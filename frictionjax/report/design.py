@@ -22,7 +22,7 @@ from ..design import (
     surface_heights,
     write_heights,
 )
-from ..effects import CompliantArray, NapFlip
+from ..effects import CompliantArray, Engine, NapFlip, does
 from ..io import load_scene, scene_document, unit_of
 from ..model import Scene, friction
 from ..profiles import AbstractProfile
@@ -91,8 +91,9 @@ def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
     coefficients = law.table()
     sections.append((title, str(coefficients)))
     check = None
-    if isinstance(scene.support, Spring) and not scene.effects:
-        check = check_design(profile, bristle, support=scene.support)
+    slides = all(does(Engine.SLIDE, effect) for effect in scene.effects)
+    if isinstance(scene.support, Spring) and slides:
+        check = check_design(profile, bristle, support=scene.support, effects=scene.effects)
         sections.append(("On the dynamics", repr(check)))
     text = joined(sections)
     toml = scene_document(scene, job.study)

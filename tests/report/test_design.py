@@ -165,7 +165,8 @@ def test_scenes_with_effects_are_designed_with_them(tmp_path, wanted):
     result = run("design", path, "--rho-plus", 0.2, *wanted, "--out", folder)
     assert result.exit_code == 0, result.output
     assert "Friction coefficients of each bristle" in result.stdout
-    assert "Steady slide" not in result.stdout
+    slides = "Steady slide, gamma = 1, rate = 1 N/s, forces of all 2 bristles"
+    assert slides in result.stdout
     assert not (folder / "map.png").exists()
     scene = fx.load_scene(folder / "design.toml")
     assert len(scene.effects) == 1

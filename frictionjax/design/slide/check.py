@@ -1,5 +1,7 @@
 """What a design of the limit shows on the dynamics: the gap, at a few eps."""
 
+import dataclasses
+from collections.abc import Sequence
 from typing import Any
 
 import equinox as eqx
@@ -9,12 +11,15 @@ from ..._checks import CodedResult, Real, as_real, with_nan
 from ..._text import ResultTable
 from ...bristles import AbstractBristle, pulling_text
 from ...coefficients import Coefficients
+from ...effects import AbstractEffect, Engine
 from ...model import friction
 from ...profiles import AbstractProfile
 from ...supports import Spring
 from ...wiggly import Status
+from ..common import coefficients_in_scene, compliant_count, effects_of_scene
 from .slide_friction import SteadySlide, steady_slide
 
+_FORCES = ("mean_plus", "mean_minus", "peak_plus", "peak_minus")
 _MEANS = ("eps/m", "mean +/N", "gap", "mean -/N", "gap", "ratio", "gap")
 _HEADER = (*_MEANS, "peak +/N", "peak -/N", "status")
 
@@ -22,13 +27,15 @@ _HEADER = (*_MEANS, "peak +/N", "peak -/N", "status")
 class DesignCheck(CodedResult, eqx.Module):
     """The limit `law`, the steady `slide` at every eps, and the gaps between them.
 
-    `ok`, `status` and `message` are those of the slides.
+    `bristles`: of a compliant array; forces are of all of them. `ok`, `status` and
+    `message` are those of the slides.
     """
 
     law: Coefficients
     slide: SteadySlide
     gamma: Real
     rate: Real
+    bristles: int = eqx.field(static=True, default=1)
     _outcomes = Status
 
     @property
@@ -95,6 +102,7 @@ class DesignCheck(CodedResult, eqx.Module):
         if shape := np.shape(self.law.rho_plus):
             return f"DesignCheck(batch {shape}: {self.slide!r})"
         told = f"gamma = {float(self.gamma):.4g}, rate = {float(self.rate):.4g} N/s"
+        told += f", forces of all {self.bristles} bristles" * (self.bristles > 1)
         pulls = "" if self.law.alpha is None else pulling_text(self.law.alpha)
         pulls = f"\n({pulls})" if pulls else ""
         return f"Steady slide, {told}; gaps to the limit\n{self.table}{pulls}"
@@ -108,14 +116,17 @@ def check_design(
     gamma: float = 1.0,
     rate: float = 1.0,
     support: Spring | None = None,
+    effects: Sequence[AbstractEffect] = (),
     *,
     progress: bool = False,
 ) -> DesignCheck:
     """Steady slides at a few eps (m) beside the limit; prints as a table.
 
     `profile`, `bristle`: the design. `gamma`, `rate` (N/s), `support`: as in
-    `steady_slide`. The mean force nears the limit from above where viscosity rules, and
-    from below by half the drop of a slip, `k_h eps/2`, where the tip rests between slips.
+    `steady_slide`. `effects`: of the scene that it is for, as in `fit_profile`; of a
+    compliant array forces are those of all its bristles. The mean force nears the limit
+    from above where viscosity rules, and from below by half the drop of a slip,
+    `k_h eps/2`, where the tip rests between slips.
 
     `progress`: a line on standard error where it takes more than two seconds.
 
@@ -139,7 +150,25 @@ def check_design(
         gamma=gamma,
         rate=rate,
         support=support,
+        effects=effects,
         progress=progress,
     )
-    law = friction(profile, bristle)
-    return DesignCheck(law, slide, as_real(gamma), as_real(rate))
+    count = compliant_count(effects)
+    forces = {name: count * getattr(slide, name) for name in _FORCES}
+    return DesignCheck(
+        law=_law(profile, bristle, effects),
+        slide=dataclasses.replace(slide, **forces),
+        gamma=as_real(gamma),
+        rate=as_real(rate),
+        bristles=count,
+    )
+
+
+def _law(
+    profile: AbstractProfile, bristle: AbstractBristle, effects: Sequence[AbstractEffect]
+) -> Coefficients:
+    """What a design for such scenes is held against."""
+    if not effects:
+        return friction(profile, bristle)
+    asked = effects_of_scene(effects, Engine.SLIDE, [bristle])
+    return coefficients_in_scene(asked, profile, bristle)

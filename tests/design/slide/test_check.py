@@ -34,3 +34,30 @@ def test_a_designed_ratio_is_simulated_within_a_percent(bristle, ratio):
     slide = fx.steady_slide(fit.profile, bristle, EPS)
     assert slide.ok
     np.testing.assert_allclose((slide.mean_plus, slide.mean_minus), forces, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("effect", "bristles"),
+    [
+        (fx.effects.CompliantArray([0.0, 0.4, 0.7]), 3),
+        (fx.effects.RigidArray([0.0, 0.0]), 2),
+    ],
+    ids=["compliant", "rigid"],
+)
+def test_a_design_for_a_scene_is_checked_with_its_effects(effect, bristles):
+    effects = (effect,)
+    target = fx.Target(SLANTED, 0.12, -0.1)
+    fit = fx.fit_profile(target, harmonics=4, effects=effects)
+    found = fx.check_design(fit.profile, SLANTED, 1e-3, effects=effects)
+    assert found.ok
+    law = float(found.law.rho_plus), float(found.law.rho_minus)
+    np.testing.assert_allclose(law, [0.12, -0.1], rtol=1e-6)
+    # Slides lag by half the drop of a slip, k_h eps/2 of each spring.
+    assert abs(found.gap_plus[0]) < 0.05
+    assert abs(found.gap_minus[0]) < 0.05
+    slide = fx.steady_slide(fit.profile, SLANTED, 1e-3, effects=effects)
+    springs = bristles if isinstance(effect, fx.effects.CompliantArray) else 1
+    assert float(found.slide.mean_plus[0]) == pytest.approx(
+        springs * float(slide.mean_plus), rel=1e-12
+    )
+    assert ("all 3 bristles" in repr(found)) == (springs == 3)
