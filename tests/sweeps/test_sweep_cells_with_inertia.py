@@ -50,6 +50,21 @@ def test_suprema_are_those_of_a_fine_curve(data):
     assert float(cell.strip_excess) == pytest.approx(np.max(outside), abs=5e-3 * eps)
 
 
+@pytest.mark.slow  # a support of one's own
+def test_supports_of_functions_are_swept_too():
+    """A program of some ten gigabytes, which ended the process."""
+    soft = fx.supports.Convex(lambda z: 0.025 * z**2 + z**4 / 4)
+    scene = massive_scene(1e-5).replace(support=soft)
+    cell = fx.sweep(scene, 0.05, 1.0, np.linspace(0, 3, 6001)).isel(eps=0, gamma=0)
+    assert int(cell.status) == fx.Status.OK
+    seen = np.abs(cell.z - cell.z_limit).max()
+    outside = np.maximum(cell.z_minus - cell.z, cell.z - cell.z_plus).max()
+    lost = np.abs(cell.dissipation - cell.dissipation_limit).max()
+    assert float(cell.sup_error) == pytest.approx(float(seen), abs=1e-3 * 0.05)
+    assert float(cell.strip_excess) == pytest.approx(float(outside), abs=1e-3 * 0.05)
+    assert float(cell.dissipation_error) == pytest.approx(float(lost), rel=1e-3)
+
+
 def test_what_is_not_asked_for_is_not_there():
     scene = massive_scene(mass_for(0.05, 1.0, 0.0), 3.0)
     few = fx.sweep(scene, EPS[:1], [1.0], [0.0, 3.0], dissipation=False, suprema=False)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Bool
+from jaxtyping import Array, Bool, Float
 
 from ..._checks import Real
 from ..._compile import Program
@@ -150,7 +150,8 @@ def march_with_mass(
             lambda going: step(lanes, going, at),
             going,
         )
-        _, limit, limit_lost = _limit_in(scene, at, at.length, at.limit)
+        strip = _strip_at(scene, at, at.length[None])[:, 0]
+        limit, limit_lost = _limit_in(scene, at, strip)
         return OnTheWay(going, limit, limit_lost), report(lanes, going, at)
 
     after, found = jax.lax.scan(through, before, segments)
@@ -236,7 +237,8 @@ def _widened(
 ) -> SupremaSoFar:
     """SupremaSoFar with what a step shows at a few shares of it."""
     far, outside, apart = going.suprema
-    for share in SETTINGS.shares:
+    strips = _strip_at(scene, at, going.time + jnp.asarray(SETTINGS.shares) * size)
+    for share, strip in zip(SETTINGS.shares, strips.T, strict=True):
         y, lost = (
             dense_output(SETTINGS.tableau, before, end, list(stages), jnp.asarray(share))
             for before, end, stages in (
@@ -245,25 +247,35 @@ def _widened(
             )
         )
         z = tip.field.state(y)
-        strip, limit, limit_lost = _limit_in(scene, at, going.time + share * size, z)
+        limit, limit_lost = _limit_in(scene, at, strip)
         far = jnp.maximum(far, jnp.abs(z - limit))
         outside = jnp.maximum(outside, jnp.maximum(strip[0] - z, z - strip[1]))
         apart = jnp.maximum(apart, jnp.abs(lost - limit_lost))
     return SupremaSoFar(far, outside, apart)
 
 
-def _limit_in(scene: MassiveScene, at: _Stretch, time: Real, near: Real) -> tuple:
-    """Strip, state and dissipation of the limit system `time` after a stretch starts.
+def _strip_at(scene: MassiveScene, at: _Stretch, times: Array) -> Float[Array, "2 n"]:
+    """Lower and upper edge in m, times (n,) in s after a stretch starts.
+
+    Searched for: a tip may be far from the edge at which the limit system is. (And three of
+    Newton's steps written out, for the support of a function, are a program of gigabytes.)
+    """
+    loads = jax.vmap(scene.load)(at.start + times)
+    held = jnp.stack([loads - scene.rho_plus, loads - scene.rho_minus])
+    return scene.support.state_of(held)
+
+
+def _limit_in(
+    scene: MassiveScene, at: _Stretch, strip: Float[Array, "2"]
+) -> tuple[Real, Real]:
+    """State and dissipation of the limit system, in a strip with these edges.
 
     It is the play operator: on a stretch on which the load does not turn, one clip.
     """
-    load = scene.load(at.start + time)
-    lower = scene.support.state_near(load - scene.rho_plus, near)
-    upper = scene.support.state_near(load - scene.rho_minus, near)
-    limit = jnp.clip(at.limit, lower, upper)
+    limit = jnp.clip(at.limit, *strip)
     way = limit - at.limit
     rho = jnp.where(way >= 0, scene.rho_plus, scene.rho_minus)
-    return (lower, upper), limit, at.limit_lost + rho * way
+    return limit, at.limit_lost + rho * way
 
 
 def _at_stop(

@@ -264,18 +264,18 @@ def _outside(
 ) -> tuple[Real, Real]:
     """How far z is outside the strip in m, negative inside, and how fast it goes away."""
     support, z = scene.support, point.state
-    forces = support.force(guide), support.force(z)
-
-    def edge_under(rho: Real) -> Real:
-        # Where the guide slides it is the edge; where it rests, the edge is near z outside.
-        held = point.load - rho
-        off = jnp.abs(held - forces[0]), jnp.abs(held - forces[1])
-        return support.state_near(held, jnp.where(off[0] <= off[1], guide, z))
-
-    lower, upper = edge_under(scene.rho_plus), edge_under(scene.rho_minus)
-    below = lower - z > z - upper
-    gap = jnp.where(below, lower - z, z - upper)
+    here = support.force(z)
+    under, over = point.load - scene.rho_plus, point.load - scene.rho_minus
+    # By forces: only the edge that z is nearer to is near enough to be found from it, as
+    # the other may be where the support is far softer or stiffer.
+    below = under - here > here - over
+    held = jnp.where(below, under, over)
+    # Where the guide slides it is the edge; where it rests, the edge is near z outside.
+    off = jnp.abs(held - support.force(guide)) <= jnp.abs(held - here)
+    edge = support.state_near(held, jnp.where(off, guide, z))
+    gap = jnp.where(below, edge - z, z - edge)
+    gap = jnp.where(jnp.maximum(under - here, here - over) > 0, gap, jnp.minimum(gap, 0.0))
     slope = point.by_time * cell.viscosity * cell.eps * point.stretch
-    away = slope / support.stiffness_at(jnp.where(below, lower, upper)) - speed
+    away = slope / support.stiffness_at(edge) - speed
     # The guide is inside.
     return jnp.minimum(gap, jnp.abs(guide - z)), jnp.where(below, away, -away)

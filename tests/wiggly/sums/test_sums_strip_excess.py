@@ -71,6 +71,18 @@ def test_lanes_know_how_far_tips_leave_the_strip(name, eps):
     assert abs(float(cell.strip_excess) - expected) < 1e-3 * eps
 
 
+@pytest.mark.slow  # a support of one's own
+def test_where_the_support_is_soft_only_what_is_outside_counts():
+    """Tips in the strip were said to be outside it, by 0.68 eps for 0.31."""
+    soft = fx.supports.Convex(lambda z: 0.025 * z**2 + z**4 / 4)
+    parts = fx.profiles.Sine(0.05), fx.bristles.Homothetic(1.0), soft
+    scene, eps = fx.Scene(*parts, fx.loads.Sine(0.1, 26.6), 26.6), 1e-3
+    cell = cell_of(scene, eps, np.linspace(0.0, 26.6, 100_001))
+    seen = np.maximum(cell.z_minus - cell.z, cell.z - cell.z_plus).values.max()
+    assert int(cell.status) == fx.Status.OK
+    assert abs(float(cell.strip_excess) - seen) < 2e-3 * eps
+
+
 def test_what_a_reload_leaves_outside_is_the_most():
     """What is outside before the last reload is less: that is what is measured."""
     scene = scene_under(*CASES["reloaded"])
