@@ -49,7 +49,8 @@ def ensemble(
     Returns a data set over `path` and `time`: `z`, `work` (`-int l' z`, what the load has
     added to `Phi - l z + V_eps`); over `time` `z_mean` and the 95% interval `z_low`,
     `z_high` of the mean, infinite for one path; over `path` `status`. The interval holds
-    what numbers of paths leave open; steps are as long as `stochastic/settings.py` says.
+    what numbers of paths leave open; values are those of the step nearest to each time, of
+    steps (attribute `step`, s) as long as `stochastic/settings.py` says.
 
     `progress`: a line on standard error where it takes more than two seconds.
 

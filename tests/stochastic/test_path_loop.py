@@ -1,5 +1,6 @@
 """What paths know of physics, each time against a number from elsewhere."""
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from noisy_wells import (
@@ -96,6 +97,18 @@ def test_free_tips_diffuse_as_lifson_and_jackson_say(ratio):
     assert diffusion == pytest.approx(
         {1.0: 0.6238603604, 2.0: 0.1924368785}[ratio], rel=0.05
     )
+
+
+def test_the_first_steps_diffuse_as_the_others():
+    """Half a step of noise was missing: a sixth of the variance after three steps."""
+    flat = fx.GivenPotential(lambda y: 1e-9 * jnp.sin(2 * jnp.pi * y))
+    heat = {"temperature": 0.05, "duration": 0.1}
+    step = path_steps.SETTINGS.step_diffusion**2 * EPS**2 / (2 * heat["temperature"])
+    ts = step * np.array([1, 3, 10, 30])
+    found = run_paths(cell(flat, **heat), ts, path_keys(3, 40_000), np.zeros(40_000))
+    assert found.step == pytest.approx(step, rel=0.01)
+    exact = heat["temperature"] * -np.expm1(-2 * ts)  # Ornstein and Uhlenbeck
+    assert np.var(found.z, axis=0) / exact == pytest.approx(np.ones(4), abs=0.02)
 
 
 @pytest.mark.slow  # 160,000 paths twice
