@@ -15,9 +15,10 @@ class CompliantArray(AbstractEffect):
 
     Bristle i moves in `V_eps(z_i + eps offset_i)`. `offsets`: where they stand, in periods
     of the surface, shape (N,). What is told of an array is the mean of its bristles: state,
-    dissipation, force. Its friction is N times that of one; how much it ripples falls with
-    N, as `1/sqrt(N)` where bristles stand anywhere. Elastic coupling between bristles is
-    not simulated.
+    dissipation, force, and in sweeps the errors of each, no less than those of the mean
+    state; `strip_excess` is that of the bristle that leaves the strip furthest. Its
+    friction is N times that of one; how much it ripples falls with N, as `1/sqrt(N)` where
+    bristles stand anywhere. Elastic coupling between bristles is not simulated.
 
     Raises `ValueError` for offsets that are no row of finite numbers.
 

@@ -99,11 +99,21 @@ def origin(title: str, scene: Scene | str, **facts: Any) -> dict[str, Any]:
     }
 
 
+_OF_ARRAYS = {
+    "sup_error": "of an array the mean over its bristles: at least that of their mean z",
+    "dissipation_error": "of an array the mean over its bristles: at least that of the mean",
+    "strip_excess": "of an array that of the bristle that leaves the strip furthest",
+}
+
+
 def describe(
     data: "xr.Dataset", scenes: Sequence[Scene], accuracy: float, solver: str
 ) -> "xr.Dataset":
     """Attach units, long names, CF flags and provenance to the data set of a sweep."""
     set_meanings(data, _MEANING)
+    if "z_spread" in data:
+        for name in set(_OF_ARRAYS) & set(data.variables):
+            data[name].attrs["comment"] = _OF_ARRAYS[name]
     title = "Convergence of a wiggly viscous system to directional dry friction"
     several = f"{len(scenes)} scenes, see the variable parts"
     scene = several if "scene" in data.dims else scenes[0]

@@ -101,6 +101,13 @@ def test_a_sweep_has_means_and_spreads():
     np.testing.assert_allclose(spread, alone.stats["spread"], rtol=1e-9, atol=1e-15)
     assert data.z_spread.attrs["units"] == "m"
     assert fx.study(data) is not None
+    # Suprema are of each bristle: no less than those of what is told beside them.
+    for name in ("z", "dissipation"):
+        least = np.abs(data[name] - data[f"{name}_limit"]).max("time")
+        most = data["sup_error" if name == "z" else "dissipation_error"]
+        assert np.all(most > least)
+        assert "mean over its bristles" in most.attrs["comment"]
+    assert "furthest" in data.strip_excess.attrs["comment"]
 
 
 def test_a_bristle_that_fails_is_told(monkeypatch):
