@@ -49,7 +49,7 @@ class MachineCost(NamedTuple):
         return float(np.dot(self[:5], _amounts(work)))
 
 
-_REVISION = 2  # of `measure_machine`: what others have kept is not read
+_REVISION = 3  # of `measure_machine`: what others have kept is not read
 _UNWRITTEN: dict[str, MachineCost] = {}  # where the cache folder cannot be written
 
 
@@ -63,6 +63,7 @@ def _amounts(work: Workload) -> np.ndarray:
     chain = work.weight * work.chain.max(initial=0.0)
     calls = (
         1
+        + SETTINGS.piece_calls * work.pieces.max(initial=0)
         + SETTINGS.map_calls * work.maps.sum()
         + SETTINGS.round_calls * work.rounds.max(initial=0.0)
     )

@@ -101,7 +101,7 @@ def origin(title: str, scene: Scene | str, **facts: Any) -> dict[str, Any]:
 
 _OF_ARRAYS = {
     "sup_error": "of an array the mean over its bristles: at least that of their mean z",
-    "dissipation_error": "of an array the mean over its bristles: at least that of the mean",
+    "dissipation_error": "of an array the mean over its bristles: at least the mean's",
     "strip_excess": "of an array that of the bristle that leaves the strip furthest",
 }
 

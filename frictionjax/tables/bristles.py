@@ -88,6 +88,7 @@ def bristle_series(
 
     `with_rods`: those too, where the bristle is a rod.
     """
+    highest = max(highest, SETTINGS.lowest)
     known = _SERIES.get(bristle)
     if known is None or known[0] != highest:
         etas = _NODES * highest

@@ -64,6 +64,7 @@ class Settings(NamedTuple):
     # traces try. (A size for degree 1: as for harmonics.)
     degrees: tuple[int, ...] = (4, 8, 12)
     least: float = 1e-14  # of the largest value: coefficients below are left out
+    lowest: float = 1e-300  # m: heights below are none to a float
 
     # Supports as power series (`supports.py`).
     support_terms: int = 24

@@ -24,7 +24,8 @@ def drag_of(path: Path, eps: np.ndarray, gamma: np.ndarray) -> np.ndarray:
 
 def steps_a_well(control: StepPlan, lag: np.ndarray, drag: np.ndarray) -> np.ndarray:
     """Of a lane on its way, about, (cells,); `lag` in wells, `drag` over friction."""
-    smooth = np.minimum(-np.log10(drag), SETTINGS.smoothest)
+    # Nothing drags where the limit never slides.
+    smooth = np.minimum(-np.log10(np.maximum(drag, 1e-300)), SETTINGS.smoothest)
     return np.exp(
         SETTINGS.constant
         - SETTINGS.by_tolerance * np.log10(control.tolerance)

@@ -21,8 +21,8 @@ class Workload(NamedTuple):
 
     `steps`: of all lanes. `chain`: those that one lane takes after the other. `jobs`:
     lanes that set off; `segments`: of their ways. `maps`: slides of which slip maps are
-    made; `rounds`: those of them that wait for each other. `weight`: of a step, relative to
-    one of parts in the smallest tables.
+    made; `rounds`: those of them that wait for each other. `pieces`: of the path, between
+    turns of the load. `weight`: of a step, relative to one of parts in the smallest tables.
     """
 
     steps: np.ndarray
@@ -31,6 +31,7 @@ class Workload(NamedTuple):
     segments: np.ndarray
     maps: np.ndarray
     rounds: np.ndarray
+    pieces: np.ndarray
     weight: float
 
 
@@ -54,11 +55,13 @@ def workload(
     by_map = way == Way.SLIP_MAP
     lag = ground.longest_lag
     steps = steps_a_well(control, lag, drag_of(path, eps, gamma))
-    total = steps * cost_of(path, eps, needs, times)
-    chain = steps * longest_lane(path, eps, needs)
-    wells = path.travel[-1] / eps / np.maximum(np.count_nonzero(path.direction), 1)
+    rests = SETTINGS.steps_a_piece * path.direction.size
+    longest, ways = longest_lane(path, eps, needs), path.travel[-1] / eps
+    total = steps * cost_of(path, eps, needs, times) + rests
+    chain = steps * longest + rests * np.where(ways > 0, longest / np.maximum(ways, 1), 1.0)
+    wells = ways / np.maximum(np.count_nonzero(path.direction), 1)
     orders = np.log10(np.maximum(wells, SETTINGS.long_slide))
-    growth = (path.travel[-1] / eps / 1e3) ** SETTINGS.map_growth
+    growth = (ways / 1e3) ** SETTINGS.map_growth
     slides = slides_of(path, eps) & by_map[:, None]
     maps, rounds = np.count_nonzero(slides, axis=1), _longest_chains(slides, needs.restarts)
     each = SETTINGS.map_steps * orders**SETTINGS.map_orders
@@ -67,10 +70,12 @@ def workload(
     chain = np.where(by_map, SETTINGS.map_chain * rounds * steps * growth, chain)
     jobs, segments = _rows(path, eps, needs, times)
     # Beside maps only turns are gone through, as far as tips lag there.
-    turns = np.minimum(maps * lag, path.travel[-1] / eps) / needs.leg
+    turns = np.minimum(maps * lag, ways) / needs.leg
     panels = maps * SETTINGS.map_segments * orders**2
     segments = np.where(by_map, panels + turns, segments)
-    return Workload(total, chain, jobs, segments, maps, rounds, _weight_of(tables))
+    pieces = np.full(eps.size, path.direction.size)
+    weight = _weight_of(tables)
+    return Workload(total, chain, jobs, segments, maps, rounds, pieces, weight)
 
 
 def _longest_chains(slides: np.ndarray, cut: np.ndarray) -> np.ndarray:

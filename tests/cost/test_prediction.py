@@ -17,6 +17,7 @@ from frictionjax.cost.machine_cost import (
     keep_machine,
     known_machine,
 )
+from frictionjax.cost.settings import SETTINGS
 from frictionjax.model import tabulated_scene
 from frictionjax.report.job import read_job
 from frictionjax.report.study import expectation, expected_cost, within_budget
@@ -92,6 +93,7 @@ _STEPPED = fx.loads.PiecewiseLinear(
     [
         (fx.loads.Sine(1.0488, 3.0), 30.0, 1e-3, 0.5),  # 21 slip maps, side by side
         (fx.loads.Sine(1.0488, 3.0), 30.0, 1e-2, 0.5),  # one lane through all
+        (fx.loads.Sine(0.05, 3.0), 300.0, 1e-2, 1.0),  # never out of the strip
         # Slip maps one after the other: slides end at speed.
         pytest.param(
             fx.loads.Triangle(1.0488, 0.3), 3.0, 1e-3, 1.0, marks=pytest.mark.slow
@@ -118,6 +120,15 @@ def test_the_work_of_jumps_is_foreseen(gamma, steps):
     cell = np.array([1e-3]), np.array([gamma])
     work = workload(scene_of(_STEPPED), *cell, 61, 1e-3, "auto")
     assert 0.4 < steps / float(work.steps[0]) < 2.5
+
+
+def test_turns_take_time_where_nothing_slides():
+    """2000 of them: 1.8 to 3.4 s, foretold as 0.04 s."""
+    long = scene_of(fx.loads.Sine(0.05, 3.0)).replace(duration=3000.0)
+    found = [fx.predict_cost(one, [1e-2, 1e-5], 1.0) for one in (scene_of(), long)]
+    turns = 2000 * SETTINGS.piece_calls * MACHINE.call
+    assert found[1].seconds - found[0].seconds > 0.9 * turns
+    assert 0.3 < found[1].seconds < 3.0
 
 
 def test_slip_maps_that_wait_for_each_other():
