@@ -273,6 +273,9 @@ def _outside(
     # Where the guide slides it is the edge; where it rests, the edge is near z outside.
     off = jnp.abs(held - support.force(guide)) <= jnp.abs(held - here)
     edge = support.state_near(held, jnp.where(off, guide, z))
+    # An edge that z has passed is between them, however soft the support is at the guide.
+    between = jnp.clip(edge, jnp.minimum(guide, z), jnp.maximum(guide, z))
+    edge = support.state_near(held, between)
     gap = jnp.where(below, edge - z, z - edge)
     gap = jnp.where(jnp.maximum(under - here, here - over) > 0, gap, jnp.minimum(gap, 0.0))
     slope = point.by_time * cell.viscosity * cell.eps * point.stretch

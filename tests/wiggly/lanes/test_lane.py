@@ -29,7 +29,7 @@ def outside(load, z, guide):
     return _outside(scene, cell, point, guide, none)[0]
 
 
-@pytest.mark.parametrize("off", [-2.0, -0.3, 0.3, 2.0])
+@pytest.mark.parametrize("off", [-100.0, -2.0, -0.3, 0.3, 2.0, 100.0])
 def test_how_far_a_tip_is_outside_is_told_by_the_edge_beside_it(off):
     loads = np.linspace(-0.1, 0.1, 41)
     lower, upper = (np.asarray(SUPPORT.state_of(loads - rho)) for rho in RHO)
