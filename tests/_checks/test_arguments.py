@@ -165,7 +165,7 @@ def test_wells_that_floats_cannot_tell_apart_are_refused(call):
     with pytest.raises(ValueError, match=r"eps = 1e-07: needs eps >= 9.095e-06"):
         call(scene_of(fx.supports.Spring(1e-7)), 1e-7)
     leans = known().replace(bristle=fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0))
-    with pytest.raises(ValueError, match="eps = 4.94066e-324: needs eps >= "):
+    with pytest.raises(ValueError, match=r"eps = 4.94066e-324: needs eps >= "):
         call(leans, 5e-324)  # heights of 0 m
 
 
