@@ -71,9 +71,9 @@ FLOORS = {
     ],
     "design.surface": [
         {"barrier", "settings", "status"},
-        {"starts", "seen_slopes", "least_distance", "reachable", "history"},
+        {"exchange", "starts", "reachable", "history"},
         {"multistart", "open_directions", "seen_family"},
-        {"least_bent", "array_surface", "result"},
+        {"least_bent", "array_surface", "fallback", "result"},
         {"report"},
         {"fit"},
     ],

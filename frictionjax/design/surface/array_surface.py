@@ -27,9 +27,18 @@ from ...effects import RigidArray
 from ..common import coefficients_of, extreme_slopes
 from .barrier import SETTINGS as BARRIER_SETTINGS
 from .barrier import FitShape, FitTask, Iterates, Reach, Settled
-from .least_distance import least_distance, most_uneven
+from .exchange import SETTINGS as EXCHANGE_SETTINGS
+from .exchange import (
+    SeenSlopes,
+    bumps,
+    least_distance,
+    most_uneven,
+    phases_of,
+    shares_seen,
+    turned,
+    with_ends_seen,
+)
 from .multistart import StartRuns, repeated
-from .seen_slopes import SeenSlopes, bumps, phases_of, shares_seen, turned, with_ends_seen
 from .settings import SETTINGS
 
 
@@ -90,7 +99,7 @@ def _least_bent(seen: SeenSlopes, ends: Any) -> _Found | None:
     if plus < minus:
         found = _least_bent(seen, (minus, plus))
         return None if found is None else found._replace(waves=-found.waves)
-    rows = seen.grid(SETTINGS.rows_seen)
+    rows = seen.grid(EXCHANGE_SETTINGS.rows_seen)
     waves = _within(seen, ends, None, rows)
     if waves is None:
         return None
@@ -120,7 +129,9 @@ def _free_energies(seen: SeenSlopes, ends: Any, places: np.ndarray) -> np.ndarra
     top = seen.at(0.0)
     own, cross = top @ top, seen.at(places) @ top
     determinant = own**2 - cross**2
-    alone = determinant <= SETTINGS.impossible * own**2  # v(s) = -v(0), whatever v is
+    alone = (
+        determinant <= EXCHANGE_SETTINGS.impossible * own**2
+    )  # v(s) = -v(0), whatever v is
     energies = own * (plus**2 + minus**2) + 2 * cross * plus * minus
     return np.where(alone, plus**2 / own, energies / np.where(alone, 1.0, determinant))
 
@@ -159,10 +170,10 @@ def _exactly(
     seen: SeenSlopes, ends: Any, place: float | None, rows: np.ndarray
 ) -> _Found | None:
     """Rows added where the range is left, then both ends to rounding."""
-    waves, over = _within(seen, ends, place, rows), SETTINGS.over * np.sum(ends)
+    waves, over = _within(seen, ends, place, rows), EXCHANGE_SETTINGS.over * np.sum(ends)
     if waves is None:
         return None
-    for _ in range(SETTINGS.additions):
+    for _ in range(EXCHANGE_SETTINGS.additions):
         places, slopes = bumps(seen, waves)
         out = np.maximum(slopes - ends[0], -ends[1] - slopes) > over
         if not np.any(out):
@@ -193,7 +204,7 @@ def ratio_seen(array: RigidArray, harmonics: int) -> float:
 
 def largest_ratio(seen: SeenSlopes) -> float:
     """Of extreme slopes seen, that a surface has: all but the largest there is."""
-    waves = most_uneven(seen.grid(SETTINGS.rows_ratio), seen.at(0.0))
+    waves = most_uneven(seen.grid(EXCHANGE_SETTINGS.rows_ratio), seen.at(0.0))
     slopes = bumps(seen, waves)[1]
     return float(np.max(slopes) / -np.min(slopes))
 

@@ -28,6 +28,7 @@ from ..common import (
 )
 from .array_surface import fit_to_array, require_plain
 from .barrier import FitShape, FitTask, free_energy
+from .fallback import room_left
 from .least_bent import least_bent
 from .multistart import StartRuns, descended
 from .report import report_fit
@@ -93,6 +94,8 @@ def fit_profile(
     a start whose optimum is proven stands for the others, which do not run. Every iterate
     is admissible (`1 + a omega > 0`, the bristles' own bounds; free bristles keep 0.1% from
     the steepest slopes that they follow) and keeps the other bounds with a margin of 0.5%.
+    Where only surfaces nearer to them have the slopes, the least bent of those, by
+    exchange, is one start more.
     Targets that no surface meets come back with the best weighted compromise and a
     `.status` and `.message` that say why.
 
@@ -128,8 +131,10 @@ def fit_profile(
         if runs is None:
             tell(f"{starts} starts")
             runs = _descended(problem, apart, seed, max_steps)
+        tell("what bounds leave room for")
+        found = room_left(problem, runs, apart)
         tell("what is left open")
-        return report_fit(problem, runs, apart)
+        return report_fit(problem, found)
 
 
 def _descended(problem: SurfaceProblem, apart: Any, seed: int, max_steps: int) -> StartRuns:

@@ -12,7 +12,7 @@ from ..._checks import Real
 from ...effects import RigidArray
 from ..common import AbstractLaw
 from .barrier import at, peaks, reach, waves_of_heights, with_extreme_slopes
-from .seen_slopes import shares_seen, times_shares
+from .exchange import shares_seen, times_shares
 from .settings import SETTINGS
 
 

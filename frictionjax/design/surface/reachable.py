@@ -8,7 +8,6 @@ import numpy as np
 from ..._checks import as_text, no_less, no_more
 from ...numerics import rows_of
 from ..common import AbstractLaw, FreeLaw, Geometry, extreme_slopes
-from .barrier import ORDERS, FitShape, basis
 from .settings import SETTINGS
 
 
@@ -75,37 +74,6 @@ def _mu(a: float, omega: float) -> float:
     return omega / stretch if bounded else float(np.copysign(np.inf, omega))
 
 
-def reachable_share(
-    layout: FitShape, plus: float, minus: float, curvature: float, height: float
-) -> float:
-    """The largest multiple of the slopes (`plus`, -`minus`) that the bounds leave room for.
-
-    A linear program (HiGHS), the lowest slope half a period from the highest.
-    """
-    from scipy.optimize import linprog  # 0.3 s, for targets out of reach only
-
-    slopes, bends, heights = (basis(layout.harmonics, layout.points, k) for k in ORDERS)
-    half, none = layout.points // 2, np.zeros((layout.points, 1))
-    one = none + 1
-    blocks = [
-        (slopes, -plus * one, none, none, 0.0),
-        (-slopes, -minus * one, none, none, 0.0),
-        (-slopes[:1], plus * one[:1], none[:1], none[:1], 0.0),
-        (slopes[half : half + 1], minus * one[:1], none[:1], none[:1], 0.0),
-    ]
-    if layout.sharp:
-        blocks += [(side * bends, none, none, none, curvature) for side in (1, -1)]
-    if layout.high:
-        blocks += [(heights, none, -one, none, 0.0), (-heights, none, none, -one, 0.0)]
-        blocks += [(0 * slopes[:1], none[:1], one[:1], one[:1], height)]
-    rows = np.concatenate([np.concatenate(block[:4], axis=1) for block in blocks])
-    ends = np.concatenate([np.full(len(block[0]), block[4]) for block in blocks])
-    aim = np.zeros(rows.shape[1])
-    aim[-3] = -1.0
-    found = linprog(aim, rows, ends, bounds=(None, None), method="highs")
-    return float(-found.fun) if found.status == 0 else np.inf
-
-
 def reachable_text(
     limits: list[tuple[float, float]],
     harmonics: int,
@@ -135,8 +103,8 @@ def reachable_text(
 
 
 def share_text(share: float, slopes: np.ndarray) -> str:
-    """What `reachable_share` found for these slopes (omega_plus, -omega_minus)."""
+    """How much `steepest_surface` found of these slopes (omega_plus, -omega_minus)."""
     return (
-        f"{as_text(min(share, 1.0))} of the slopes asked for, {as_text(slopes[0])} and "
+        f"{no_more(share, 4)} of the slopes asked for, {as_text(slopes[0])} and "
         f"{as_text(-slopes[1])}, within the bounds on the surface"
     )

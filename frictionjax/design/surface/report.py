@@ -13,13 +13,13 @@ from ..common import FreeLaw, coefficients_in_scene
 from .array_surface import ratio_seen
 from .barrier import SETTINGS as BARRIER_SETTINGS
 from .barrier import bending_energy, heights_of_waves
+from .fallback import RoomLeft, slopes_wanted
 from .history import History, Start
 from .multistart import StartRuns, targets_met
 from .open_directions import identifiability
 from .reachable import (
     followed,
     limits_of,
-    reachable_share,
     reachable_text,
     share_text,
     slopes_asked,
@@ -29,9 +29,9 @@ from .settings import SETTINGS
 from .status import ProfileStatus
 
 
-def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
+def report_fit(problem: Any, found: RoomLeft) -> ProfileFit:
     """The result of the best start; see `ProfileFit`."""
-    task = problem.task
+    task, (runs, places, share) = problem.task, found
     slope = float(task.slope)
     losses = np.sum(np.asarray(runs.settled.residuals) ** 2, axis=1) * problem.scale**2
     energies = slope**2 * np.sum(np.asarray(runs.settled.waves) ** 2, axis=1)
@@ -43,22 +43,27 @@ def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
     free = runs.settled.free[best]
     bristles = _bristles(problem, free)
     # They are computed while the starts are listed.
-    found = tuple(coefficients_in_scene(problem.asked, profile, b) for b in bristles)
+    laws = tuple(coefficients_in_scene(problem.asked, profile, b) for b in bristles)
     wanted = np.asarray(task.coefficients)
     met = targets_met(task, runs.settled.residuals)
-    statuses = [_status(problem, runs, i, losses[i], met[i]) for i in range(order.size)]
+    # Of free bristles each start asks for other slopes: the share is the best one's.
+    shares = [None if problem.layout.free else share] * order.size
+    shares[best] = share
+    statuses = [
+        _status(problem, runs, i, losses[i], met[i], shares[i]) for i in range(order.size)
+    ]
     status = statuses[best]
     starts = tuple(
         _start(problem, runs, int(i), statuses[i], losses[i], energies[i], places[i])
         for i in order
     )
     history = _history(problem, runs)
-    reached = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in found])
-    why = _message(problem, runs, best, status, reached, losses[best])
+    reached = np.array([[float(c.rho_plus), float(c.rho_minus)] for c in laws])
+    why = _message(problem, found, best, status, reached, losses[best])
     fit = ProfileFit(
         profile=profile,
         bristles=bristles,
-        coefficients=found,
+        coefficients=laws,
         targets=wanted,
         bending_energy=bending_energy(cos, sin),
         bending_bound=slope**2 * max(0.0, float(runs.bound[best])),
@@ -78,7 +83,7 @@ def report_fit(problem: Any, runs: StartRuns, places: np.ndarray) -> ProfileFit:
     )
     if problem.asked.nap_flip is None:
         return fit
-    turns = dict.fromkeys(found.message for found in fit.naps)
+    turns = dict.fromkeys(known.message for known in fit.naps)
     return dataclasses.replace(fit, why="; ".join([why, *turns]))
 
 
@@ -118,14 +123,14 @@ def _free_values(problem: Any, free: Any) -> dict[str, float]:
 
 
 def _status(
-    problem: Any, runs: StartRuns, index: int, loss: float, met: bool
+    problem: Any, runs: StartRuns, index: int, loss: float, met: bool, share: float | None
 ) -> ProfileStatus:
     if not np.isfinite(loss):
         return ProfileStatus.NOT_FINITE
     if not bool(runs.path.done[index]):
         return ProfileStatus.MAX_STEPS
     if not bool(runs.settled.met[index]):
-        return _bound_reached(problem, runs, index)
+        return _bound_reached(problem, runs, index, share)
     if met:
         return ProfileStatus.MET
     given = problem.targets[0].uncertainty is not None
@@ -145,24 +150,38 @@ def _likely(freedom: int) -> float:
     return float(chi2.ppf(SETTINGS.sure, max(freedom, 1)))
 
 
-def _bound_reached(problem: Any, runs: StartRuns, index: int) -> ProfileStatus:
+def _bound_reached(
+    problem: Any, runs: StartRuns, index: int, share: float | None
+) -> ProfileStatus:
     room = {name: float(values[index]) for name, values in runs.room.items()}
     fixed = not problem.layout.free
     if fixed and not followed(problem.law.known, _asked(problem, runs, index)):
         return ProfileStatus.INADMISSIBLE
     if room["slopes"] < SETTINGS.near + BARRIER_SETTINGS.edge:
         return ProfileStatus.INADMISSIBLE
+    if share is None or share < 1:
+        felt = _bound_felt(room, share)
+        if felt is not None:
+            return felt
+    wanted = np.asarray(runs.settled.wanted[index])
+    if fixed and len(problem.targets) == 1:  # a run may end far from what is asked
+        wanted = np.abs(_asked(problem, runs, index)[0])
+    if _within(wanted, _most(problem)):
+        out = not fixed and (share is None or share < 1)
+        return ProfileStatus.OUT_OF_BOUNDS if out else ProfileStatus.NOT_FOUND
+    return ProfileStatus.TOO_FEW_HARMONICS
+
+
+def _bound_felt(room: dict[str, float], share: float | None) -> ProfileStatus | None:
+    """The bound on the surface that a start came to; one of them where `share` < 1."""
     margin = 1 - BARRIER_SETTINGS.row_margin + SETTINGS.near
     if room.get("curvature", 1.0) < margin:
         return ProfileStatus.TOO_SHARP
     if room.get("height", 1.0) < margin:
         return ProfileStatus.TOO_HIGH
-    wanted = np.asarray(runs.settled.wanted[index])
-    if fixed and len(problem.targets) == 1:  # a run may end far from what is asked
-        wanted = np.abs(_asked(problem, runs, index)[0])
-    if _within(wanted, _most(problem)):
-        return ProfileStatus.NOT_FOUND if fixed else ProfileStatus.OUT_OF_BOUNDS
-    return ProfileStatus.TOO_FEW_HARMONICS
+    if share is None:
+        return None
+    return ProfileStatus.TOO_HIGH if "height" in room else ProfileStatus.TOO_SHARP
 
 
 def _within(wanted: np.ndarray, most: float) -> bool:
@@ -177,7 +196,7 @@ def _most(problem: Any) -> float:
 
 def _message(
     problem: Any,
-    runs: StartRuns,
+    found: RoomLeft,
     best: int,
     status: ProfileStatus,
     reached: Any,
@@ -195,7 +214,7 @@ def _message(
         return f"{status.message}; rms residual {misfit:.3g} of the {unit}: {nearest}"
     if status in (ProfileStatus.MAX_STEPS, ProfileStatus.NOT_FINITE):
         return status.message
-    return f"{status.message}; {_reachable(problem, runs, best)}; nearest: {nearest}"
+    return f"{status.message}; {_reachable(problem, found, best)}; nearest: {nearest}"
 
 
 def _asked(problem: Any, runs: StartRuns, index: int) -> np.ndarray:
@@ -204,19 +223,13 @@ def _asked(problem: Any, runs: StartRuns, index: int) -> np.ndarray:
     return slopes_asked(known, np.asarray(problem.task.coefficients))
 
 
-def _reachable(problem: Any, runs: StartRuns, best: int) -> str:
-    task, layout = problem.task, problem.layout
+def _reachable(problem: Any, found: RoomLeft, best: int) -> str:
+    task, layout, runs = problem.task, problem.layout, found.runs
     asked = _asked(problem, runs, best)
     within = ""
-    if (layout.sharp or layout.high) and np.all(np.isfinite(asked)):
-        # The best compromise, which lies between the targets.
-        wanted = np.asarray(runs.settled.wanted[best]) * float(task.slope)
-        slopes = np.clip(wanted, np.min(asked, axis=0), np.max(asked, axis=0))
-        plus, minus = (slopes / float(task.slope)).tolist()
-        share = reachable_share(
-            layout, plus, minus, float(task.curvature), float(task.height)
-        )
-        within = share_text(share, slopes)
+    if found.share is not None and found.share < 1:
+        slopes = slopes_wanted(problem, runs, best)
+        within = "" if slopes is None else share_text(found.share, slopes)
     limits = limits_of(task.law, runs.settled.free[best])
     return reachable_text(limits, layout.harmonics, asked, within, as_text(_most(problem)))
 

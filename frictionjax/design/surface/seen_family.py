@@ -7,7 +7,8 @@ import numpy as np
 from ...effects import RigidArray
 from ...profiles import Fourier
 from .barrier import heights_of_waves, waves_of_heights
-from .seen_slopes import SeenSlopes, bumps, phases_of, shares_seen, turned, with_ends_seen
+from .exchange import SETTINGS as EXCHANGE_SETTINGS
+from .exchange import SeenSlopes, bumps, phases_of, shares_seen, turned, with_ends_seen
 from .settings import SETTINGS
 
 
@@ -25,7 +26,7 @@ def surfaces_seen_alike(
     places, slopes = bumps(seen, own)
     ends = np.array([np.max(slopes), -np.min(slopes)])
     off = np.minimum(np.abs(slopes - ends[0]), np.abs(slopes + ends[1]))
-    touching = seen.at(places[off <= SETTINGS.touching * np.sum(ends)])
+    touching = seen.at(places[off <= EXCHANGE_SETTINGS.touching * np.sum(ends)])
     span = np.linalg.qr(touching.T)[0]
     draw, decay = np.random.default_rng(seed), np.tile(np.arange(1, shares.size + 1), 2)
     found = []

@@ -31,22 +31,10 @@ class Settings(NamedTuple):
     # The closed form (`least_bent.py`).
     agreed: float = 1e-12  # of the targets, weighted: rounding of coefficients
 
-    # Tips at different phases (`seen_slopes.py`, `array_surface.py`, `least_distance.py`).
-    unseen: float = 1e-12  # of all weights: what is left of a wave is rounding
-    rows_seen: int = 8  # a wave: rows are added where the range is left
-    rows_ratio: int = 32
-    # Of the range: how far beyond its ends is left to the last digits. At 1e-10 rows come
-    # so near to each other that problems that have a solution seem to have none.
-    over: float = 1e-6
-    additions: int = 20
+    # Tips at different phases (`array_surface.py`).
     place: float = 1e-5  # of the grid's width: the lowest slope's own is flat
-    seen_steps: int = 30
-    ends_seen: float = 4e-15  # of their range
-    touching: float = 3e-6
     reached: float = 1e-9
-    impossible: float = 1e-12
     less_uneven: float = 0.9  # of what a ratio is above 1: the next one tried
-    exchanges: int = 50  # a row
 
     # What coefficients leave open (`open_directions.py`).
     rank: float = 1e-9  # of the largest singular value

@@ -21,7 +21,8 @@ def places(layout: FitShape, count: int) -> list[float]:
     """Where starts have their lowest slope, in periods from the highest, on the rows.
 
     Half a period is best unless the height is bounded: then a surface of several bumps
-    can be lower.
+    can be lower. Where few harmonics are bounded in curvature it is best but for some
+    percent: `room_left` looks at other places too.
     """
     known = SETTINGS.places
     wanted = [known[i % len(known)] if layout.high else 0.5 for i in range(count)]

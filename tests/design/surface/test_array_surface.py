@@ -7,8 +7,8 @@ from scipy.optimize import nnls
 
 import frictionjax as fx
 from frictionjax.design.surface.array_surface import fit_to_array, ratio_seen
+from frictionjax.design.surface.exchange import SeenSlopes, bumps, shares_seen
 from frictionjax.design.surface.fit import surface_problem
-from frictionjax.design.surface.seen_slopes import SeenSlopes, bumps, shares_seen
 from frictionjax.design.surface.status import ProfileStatus
 
 VERTICAL = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)

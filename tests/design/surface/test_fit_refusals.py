@@ -20,7 +20,7 @@ UNREACHABLE = [
         -0.1,
         {"smallest_radius": 2.0, "largest_amplitude": 10.0},
         ProfileStatus.TOO_SHARP,
-        "0.275492 of the slopes asked for",
+        "0.2754 of the slopes asked for",
     ),
     (
         HOMOTHETIC,

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Complex, Float
 
-from ...effects import RigidArray
-from .barrier import basis, basis_at
+from ....effects import RigidArray
+from ..barrier import basis, basis_at
 from .settings import SETTINGS
 
 

@@ -15,7 +15,7 @@ def least_distance(
 
     By non-negative least squares (Lawson and Hanson, Solving Least Squares Problems, 23.4).
     """
-    from scipy.optimize import nnls  # 0.7 s, for tips at different phases only
+    from scipy.optimize import nnls  # 0.7 s, where no barrier is followed
 
     both = np.concatenate([rows.T, ends[None]])
     aim = np.zeros(len(both))

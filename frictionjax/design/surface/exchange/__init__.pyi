@@ -1,0 +1,15 @@
+from .least_bent import BentSurface as BentSurface
+from .least_bent import least_bent_within as least_bent_within
+from .seen_slopes import SeenSlopes as SeenSlopes
+from .seen_slopes import bumps as bumps
+from .seen_slopes import phases_of as phases_of
+from .seen_slopes import shares_seen as shares_seen
+from .seen_slopes import times_shares as times_shares
+from .seen_slopes import turned as turned
+from .seen_slopes import with_ends_seen as with_ends_seen
+from .settings import SETTINGS as SETTINGS
+from .shortest import least_distance as least_distance
+from .shortest import most_uneven as most_uneven
+from .steepest import SurfaceBounds as SurfaceBounds
+from .steepest import extrema as extrema
+from .steepest import steepest_surface as steepest_surface
