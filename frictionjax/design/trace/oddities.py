@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..._checks import as_text
+from ...wiggly import pulls_at
 from ..measured_trace import Trace
 from .energy import TraceStates, seen_as, share_gained
 from .outliers import outliers_of
@@ -45,7 +46,7 @@ def oddity_of(trace: Trace, problem: TraceProblem) -> Oddity | None:
         return noise
     gains = _gains(gained)
     mended = _mended(problem, trace, (*_LARGER, 1.0)) if gains else None
-    if mended or (outliers := _outliers(trace)):
+    if mended or (outliers := _outliers(trace, problem)):
         return mended or outliers
     if gains:
         return Oddity(TraceStatus.IMPOSSIBLE, _GAINS.format(gained))
@@ -56,9 +57,9 @@ def _gains(share: float) -> bool:
     return share > SETTINGS.gained
 
 
-def _outliers(trace: Trace) -> Oddity | None:
+def _outliers(trace: Trace, problem: TraceProblem) -> Oddity | None:
     """Samples far off all others: what they are, and how they are left out."""
-    found = outliers_of(trace.values)
+    found = outliers_of(trace.values, _start_of(trace, problem))
     if not found.size:
         return None
     first, unit = found[0], "N" if trace.quantity == "force" else "m"
@@ -68,8 +69,17 @@ def _outliers(trace: Trace) -> Oddity | None:
     return Oddity(TraceStatus.OUTLIERS, told)
 
 
+def _start_of(trace: Trace, problem: TraceProblem) -> float:
+    """What is measured at the start of the scene."""
+    z0 = float(problem.scene.z0)
+    if trace.quantity == "z":
+        return z0
+    load, held, _ = pulls_at(problem.scene, np.zeros(1), np.array([z0]))
+    return float(load[0] - held[0])
+
+
 def _still(seen: TraceStates, eps: float) -> Oddity | None:
-    """A tip that stays where it is, whatever the force.
+    """A tip that stays in its well, and does not follow the force there.
 
     In a well the force rises with z. Of the load in place of the force z is noise.
     """
@@ -79,8 +89,12 @@ def _still(seen: TraceStates, eps: float) -> Oddity | None:
     z, force = seen.z - np.mean(seen.z), seen.force - np.mean(seen.force)
     if z @ force > SETTINGS.follows * np.linalg.norm(z) * np.linalg.norm(force):
         return None
-    size = as_text(np.ptp(seen.force))
-    told = f"z is constant while the force changes by {size} N, as if it were the load"
+    changed = f"while the force changes by {as_text(np.ptp(seen.force))} N"
+    noise = seen.sd or seen.scatter / seen.stiffness
+    if high - low <= max(SETTINGS.still * eps, SETTINGS.sure * noise):
+        told = f"z is constant {changed}, as if it were the load"
+    else:
+        told = f"z moves by {(high - low) / eps:.2g} eps {changed}"
     return Oddity(TraceStatus.NO_SLIDE, told)
 
 

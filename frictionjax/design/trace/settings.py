@@ -32,6 +32,7 @@ class Settings(NamedTuple):
     # Times the noise, which the force has to exceed (root mean square).
     drowned: float = 1.5
     sure: float = 6.0
+    still: float = 0.02  # of z that is constant, at most
     follows: float = 0.5  # correlation of z and force in a well: 1 without noise
     too_large: float = 3.0  # times the force that the load can build up
 

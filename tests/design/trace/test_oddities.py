@@ -28,15 +28,15 @@ SCENE = fx.Scene(
 TIMES = np.linspace(0.01, 5.99, 300)
 
 
-def load(ts):
-    return 1.0488 * np.sin(2 * np.pi * ts / 3.0)
+def load(ts, size=1.0488):
+    return size * np.sin(2 * np.pi * ts / 3.0)
 
 
-def states(ts, gamma=1.0, eps=EPS, step=5e-4):
+def states(ts, gamma=1.0, eps=EPS, step=5e-4, size=1.0488):
     """The scene's trajectory by Euler's method: no program to compile."""
     grid = np.arange(0, LENGTH + step, step)
     z = np.zeros(grid.size)
-    for i, pull in enumerate(load(grid)[:-1]):
+    for i, pull in enumerate(load(grid, size)[:-1]):
         force = pull - z[i] - 0.1 * np.cos(2 * np.pi * z[i] / eps)
         z[i + 1] = z[i] + step * force / eps**gamma
     return np.interp(ts, grid, z)
@@ -201,6 +201,40 @@ def test_outliers_are_far_from_their_neighbours_and_from_all_others():
     assert outliers_of(far).tolist() == [10, 11]
     knock = 30 * np.exp(-(((np.arange(100) - 50) / 4) ** 2))  # a peak of many samples
     assert outliers_of(saw + knock).size == 0
+
+
+WEAK = 0.005  # N: nothing slides
+
+
+@pytest.mark.parametrize("quantity", ["force", "z"])
+@pytest.mark.parametrize("samples", [300, 3000])
+def test_a_start_that_relaxes_into_its_well_is_no_outlier(quantity, samples):
+    """z0 = 0 is between two wells, a quarter of eps from the next one."""
+    ts = np.linspace(0.0, 5.98, samples)
+    z = states(ts, step=2e-4, size=WEAK)
+    values = z if quantity == "z" else load(ts, WEAK) - z
+    scene = SCENE.replace(load=fx.loads.Sine(WEAK, 3.0))
+
+    def found(values):
+        trace = traced(values, None, ts, quantity)
+        return oddity_of(trace, trace_problem(trace, scene, EPS, 1.0, 4, 1e-3))
+
+    assert outliers_of(values).size
+    assert found(values) is None or found(values).status == TraceStatus.NO_SLIDE
+    wrong = values.copy()
+    wrong[2] = 3 * values[-1]  # not on the way
+    assert found(wrong).status == TraceStatus.OUTLIERS
+
+
+def test_a_tip_that_falls_into_its_well_is_not_called_constant():
+    """By half an eps, and slowly: forces change by more than the load does."""
+    z = -0.5 * EPS * (1 - np.exp(-TIMES / 0.5))
+    scene = SCENE.replace(load=fx.loads.Sine(WEAK, 3.0))
+    trace = traced(load(TIMES, WEAK) - z, 1e-5)
+    found = oddity_of(trace, trace_problem(trace, scene, EPS, 1.0, 4, 1e-3))
+    assert found.status == TraceStatus.NO_SLIDE
+    assert "z moves by 0.39 eps while the force changes by 0.029" in found.text
+    assert "constant" not in found.text
 
 
 FROM_ZERO = np.linspace(0.0, 5.98, 300)
