@@ -32,6 +32,7 @@ from ..common import (
     DesignResult,
     FreeParameter,
     free_parameter,
+    on_slopes,
     quantity_of,
     require_passed_on,
 )
@@ -54,8 +55,10 @@ class SlideFit(ShownNumbers, SelfDrawn, DesignResult, eqx.Module):
     """A bristle whose steady slide at `eps` gives a wanted quantity.
 
     As `AngleFit`, with the quantity made of the slide's forces, `force` "mean" or "peak":
-    `value`, `achieved`, `target`, `solutions` (all that a scan of 43 values an interval
-    tells apart, its extrema polished), `reachable` (intervals, 2): least and largest
+    `value`, of `solutions` the nearest to what it was, but for those whose limit has less
+    than a twentieth of the friction, `rho_plus - rho_minus`, of the others; `achieved`,
+    `target`, `solutions` (all that a scan of 43 values an interval tells apart, its extrema
+    polished), `reachable` (intervals, 2): least and largest
     quantity of that scan. `failed` (n,): values of it at which there is a bristle but its
     slide was not found, but for those next to an end where nothing grows towards the
     target; without a solution the status is then UNKNOWN, not UNREACHABLE. `slide`: of the
@@ -115,9 +118,11 @@ class SlideFit(ShownNumbers, SelfDrawn, DesignResult, eqx.Module):
                 f"{asked}: {self.status.message}: {count} slides were not computed, the "
                 f"first at {limit.free} = {first}; {shown}"
             )
+        count = int(np.size(self.solutions))
+        others = "" if count < 2 else f" ({count} solutions)"
         pulls = pulling_text(normal_force(self.bristle), self.bristle)
         told = f"; {pulls}" if pulls else ""
-        return f"{asked}: {self.status.message}, {value}{told}"
+        return f"{asked}: {self.status.message}, {value}{others}{told}"
 
     @property
     def _in_the_limit(self) -> str:
@@ -326,7 +331,8 @@ def _searched(
     status = FitStatus.UNKNOWN if failed.size else FitStatus.UNREACHABLE
     if found.size:
         now = float(free_parameter(bristle, limit.free).now(bristle))
-        at = found[np.argmin(np.abs(values(found) - now))]
+        some = _rubbing(free, limit, found)
+        at = some[np.argmin(np.abs(values(some) - now))]
         status = FitStatus.TANGENT if at in turns else FitStatus.OK
     best = alone(at)
     part = free.put(limit.bristle, best.value)
@@ -345,6 +351,16 @@ def _searched(
         status,
         force,
     )
+
+
+def _rubbing(free: FreeParameter, limit: AngleFit, found: np.ndarray) -> np.ndarray:
+    """Without solutions whose friction in the limit is tiny beside that of others.
+
+    Next to where a bristle stops pressing ratios of slides are those of their drag.
+    """
+    laws = [on_slopes(free.at(limit.bristle, x), limit.slopes) for x in found]
+    sizes = np.array([float(abs(law.rho_plus - law.rho_minus)) for law in laws])
+    return found[sizes >= SETTINGS.rubs * np.max(sizes)]
 
 
 def _sliding_parts(

@@ -153,3 +153,29 @@ def test_slides_that_were_not_computed_are_not_unreachable(monkeypatch):
     assert "no other is known" in nothing.message
     with pytest.raises(ValueError, match=r"eps = 0.01: needs an eps at which some bristle"):
         fit(9, 1.6, follows=False)
+
+
+def test_of_several_solutions_one_that_rubs_is_taken(monkeypatch):
+    """The bristle stops pressing at arccos(1/2.4) = 1.14102: 1.1405 is nearer to it."""
+    one = np.ones(())
+    known = SteadySlide(np.asarray(EPS), one, -one, one, -one, 0 * one, 0 * one)
+
+    def fit(other):
+        def shown(x):
+            return 1.0 + (x - 0.9) * (x - other)
+
+        def quantities(free, bristle, profile, asked, places):
+            return shown(places)
+
+        def alone(free, bristle, profile, asked, x):
+            return slide_fit._Slide(shown(x), 2 * x - 0.9 - other, one, x, known)
+
+        monkeypatch.setattr(slide_fit, "_quantities", quantities)
+        monkeypatch.setattr(slide_fit, "_alone", alone)
+        return fx.fit_slide(WAVES, leaning(1.1), EPS, ratio=1.0, bounds=(0.2, 1.2))
+
+    found = fit(1.1405)
+    np.testing.assert_allclose(found.solutions, [0.9, 1.1405], rtol=1e-9)
+    assert found.value == pytest.approx(0.9)
+    assert "angle = 0.9 (2 solutions)" in found.message
+    assert fit(1.08).value == pytest.approx(1.08)  # presses: the nearest
