@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..._checks import as_text, require_flags, require_real, with_nan
+from ..._checks import as_text, require, require_flags, require_real, with_nan
 from ..._compile import waiting
 from ..._text import Named, ShownNumbers, require_no_axes
 from ...bristles import AbstractBristle
@@ -199,7 +199,9 @@ def fit_slide_profile(
     Returns a `SlideProfileFit`: `.profile`, `.slides`, their forces in N, `.success` and
     more.
 
-    Raises `ValueError` as `fit_profile` and `steady_slide` do.
+    Raises `ValueError` as `fit_profile` and `steady_slide` do, and for targets without
+    uncertainties of no more than `eps^gamma rate/k_h`, for each bristle of a compliant
+    array: slides on every surface have larger mean and peak forces.
 
     >>> wanted = fx.Target(scene.bristle, rho_plus=0.12, rho_minus=-0.05)
     >>> fx.fit_slide_profile(wanted, eps=0.01)
@@ -215,6 +217,8 @@ def fit_slide_profile(
     for name, value in (("eps", eps), ("gamma", gamma), ("rate", rate)):
         require_real(name, value, f"{name} > 0", lambda v: v > 0)
     support = spring_of(support)
+    drag = float(eps) ** float(gamma) * float(rate) / float(support.stiffness)
+    _require_more_than_drag(many, count * drag, force)
 
     def tried(at: np.ndarray) -> _Trial:
         shares = np.exp(at).reshape(-1, 2)
@@ -253,6 +257,25 @@ def fit_slide_profile(
         steps=history.size,
         status=_status(last, wanted),
     )
+
+
+def _require_more_than_drag(targets: list[Target], drag: float, force: str) -> None:
+    """Raise `ValueError` for forces that no slide of a surface has, however smooth.
+
+    In a period of a slide at v = rate/k_h the wiggles, which have the period eps in z,
+    do no work: v mean(f) = mean(f z') = eps^gamma mean(z'^2) >= eps^gamma v^2 (eq. 2.8),
+    and a peak is no less than the mean. Of a compliant array for each bristle; of a rigid
+    one once, as its tips have one z. Targets with uncertainties need not be met.
+    """
+    for index, target in enumerate(targets):
+        name = "target" if len(targets) == 1 else f"targets[{index}]"
+        for side in ("rho_plus", "rho_minus") if target.uncertainty is None else ():
+            value = float(getattr(target, side))
+            needs = (
+                f"more than {as_text(drag)} N, what every slide takes by its drag alone, "
+                f"eps^gamma rate/k_h, in {force} forces: ask for more, or drag slower"
+            )
+            require(abs(value) > drag, f"{name}.{side}", value, needs)
 
 
 def _shared(target: Target, shares: np.ndarray) -> Target:

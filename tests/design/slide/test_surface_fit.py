@@ -62,7 +62,8 @@ def test_what_slides_and_designs_do_not_know_is_named():
 
 @pytest.mark.slow
 def test_what_no_limit_design_leads_to_says_so():
-    found = fx.fit_slide_profile(TARGET._replace(rho_plus=0.3, rho_minus=-0.001), EPS)
+    uneven = TARGET._replace(rho_plus=0.3, rho_minus=-0.001)
+    found = fx.fit_slide_profile(uneven, EPS, rate=0.05)  # with less drag than that
     assert not found.success
     assert found.status == ProfileStatus.TOO_FEW_HARMONICS
     assert "not reached; slides show [" in found.message
@@ -182,3 +183,36 @@ def test_wrong_arguments_are_named():
         fx.fit_slide_profile(TARGET, -1.0)
     with pytest.raises(ValueError, match=r"target.rho_plus = -0\.03: needs rho_plus > 0"):
         fx.fit_slide_profile(TARGET._replace(rho_plus=-0.03), EPS)
+
+
+def test_targets_below_the_drag_alone_are_named():
+    """eps^gamma rate/k_h = 0.02 N, twice that for two bristles of a compliant array."""
+    asked = {"eps": EPS, "rate": 4.0, "support": fx.supports.Spring(2.0)}
+    low = fx.Target(SLANTED, 0.03, -0.02)
+    with pytest.raises(ValueError, match=r"rho_minus = -0.02: needs more than 0.02 N"):
+        fx.fit_slide_profile(low, **asked)
+    with pytest.raises(
+        ValueError, match="eps.gamma rate/k_h, in peak forces: ask for more"
+    ):
+        fx.fit_slide_profile(low, **asked, force="peak")
+    with pytest.raises(ValueError, match=r"targets\[1\].rho_minus = -0.02: needs more"):
+        fx.fit_slide_profile([TARGET, low], **asked)
+    two = (fx.effects.CompliantArray([0.0, 0.3]),)
+    with pytest.raises(ValueError, match=r"target.rho_plus = 0.03: needs more than 0.04 N"):
+        fx.fit_slide_profile(TARGET, **asked, effects=two)
+
+
+@pytest.mark.parametrize("kind", ["slanted", "rod", "rigid", "compliant"])
+def test_no_slide_has_less_than_its_drag(kind):
+    """Of slides whose wiggles are 100 times less, and the drag once for a rigid array."""
+    parts = {"rod": fx.bristles.AngularSpring(1.0, 1.4, 1.0, 0.3)}
+    effects = {
+        "rigid": (fx.effects.RigidArray([0.0, 0.1]),),
+        "compliant": (fx.effects.CompliantArray([0.0, 0.3]),),
+    }
+    surface = fx.profiles.Fourier([0.0003], [0.0002])
+    part, of = parts.get(kind, SLANTED), effects.get(kind, ())
+    slide = fx.steady_slide(surface, part, 0.1, rate=2.0, effects=of)
+    forces = slide.mean_plus, -slide.mean_minus, slide.peak_plus, -slide.peak_minus
+    assert np.all(np.array(forces) >= 0.2 * (1 - 1e-9))
+    assert slide.mean_plus < 0.21
