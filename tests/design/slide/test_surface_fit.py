@@ -192,7 +192,7 @@ def test_targets_below_the_drag_alone_are_named():
     with pytest.raises(ValueError, match=r"rho_minus = -0.02: needs more than 0.02 N"):
         fx.fit_slide_profile(low, **asked)
     with pytest.raises(
-        ValueError, match="eps.gamma rate/k_h, in peak forces: ask for more"
+        ValueError, match=r"eps.gamma rate/k_h, in peak forces: ask for more"
     ):
         fx.fit_slide_profile(low, **asked, force="peak")
     with pytest.raises(ValueError, match=r"targets\[1\].rho_minus = -0.02: needs more"):
