@@ -129,9 +129,8 @@ def _free_energies(seen: SeenSlopes, ends: Any, places: np.ndarray) -> np.ndarra
     top = seen.at(0.0)
     own, cross = top @ top, seen.at(places) @ top
     determinant = own**2 - cross**2
-    alone = (
-        determinant <= EXCHANGE_SETTINGS.impossible * own**2
-    )  # v(s) = -v(0), whatever v is
+    # v(s) = -v(0), whatever v is.
+    alone = determinant <= EXCHANGE_SETTINGS.impossible * own**2
     energies = own * (plus**2 + minus**2) + 2 * cross * plus * minus
     return np.where(alone, plus**2 / own, energies / np.where(alone, 1.0, determinant))
 
