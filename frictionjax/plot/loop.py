@@ -12,15 +12,20 @@ from ..coefficients import Coefficients
 from ..supports import AbstractSupport
 from ..sweeps import whole_grid
 from .style import (
-    GUIDE,
     LIMIT,
     choose_eps,
     choose_gamma,
+    draw_level,
     label_eps,
     new_figure,
     shades,
     styled,
 )
+
+_RESOLVED = 6  # times a well: joined, fewer would draw a sawtooth with slips left out
+_FEW = 0.25  # of the wells that may hold fewer
+_JOINED: Any = {"linewidth": 1}
+_DOTS: Any = {"linestyle": "", "marker": ".", "markersize": 2.5}
 
 
 @styled
@@ -35,7 +40,8 @@ def draw_loop(
 
     `dataset`: of `sweep`; `gamma`, `eps` (m): as in `draw_trajectories`. `support` and
     `found` (of `friction`) belong to the scene of the data set. The limit's loop and
-    `rho_plus`, `rho_minus` are drawn over it.
+    `rho_plus`, `rho_minus` are drawn over it. An eps whose slips are finer than the times
+    of the data set is drawn as dots: ask `sweep` for more `ts` to see them.
 
     Raises `ValueError` for a gamma or an eps that the data set does not hold.
 
@@ -49,19 +55,38 @@ def draw_loop(
     chosen = choose_eps(dataset, gamma, eps)
     figure, grid = new_figure(1, 1, 7.2, 4.6)
     axes = grid[0, 0]
+    load, finer = dataset["load"].values, False
     for value, shade in zip(chosen, shades(chosen.size), strict=True):
         z = dataset.z.sel(gamma=gamma, eps=value).values
-        force = friction_force(support, dataset["load"].values, z)
-        axes.plot(z, force, color=shade, linewidth=1, label=label_eps(value))
+        joined = follows_slips(z, float(value))
+        finer |= not joined
+        look = _JOINED if joined else _DOTS
+        force = friction_force(support, load, z)
+        axes.plot(z, force, color=shade, label=label_eps(value), **look)
     z = dataset.z_limit.values
-    force = friction_force(support, dataset["load"].values, z)
+    force = friction_force(support, load, z)
     axes.plot(z, force, "--", color=LIMIT, linewidth=1.4, label="limit")
-    _coefficients(axes, found)
+    for name, level in (("\\rho_+", found.rho_plus), ("\\rho_-", found.rho_minus)):
+        draw_level(axes, float(level), name)
+    axes.margins(y=0.12)
     axes.set(xlabel="z (m)", ylabel="friction force $\\ell - \\Phi'(z)$ (N)")
     several = "s" if chosen.size > 1 else ""
-    axes.set_title(f"Friction loop{several} and limit, $\\gamma$ = {gamma:.3g}")
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    dots = "; dots: too few times to follow slips" if finer else ""
+    axes.set_title(f"Friction loop{several} and limit, $\\gamma$ = {gamma:.3g}{dots}")
+    below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13)}  # names stand beside
+    axes.legend(**below, ncols=min(chosen.size + 1, 4), markerscale=3)
     return figure
+
+
+def follows_slips(z: np.ndarray, eps: float) -> bool:
+    """Whether most wells that `z` (m), shape (time,), passes hold enough of its times."""
+    passed = np.abs(np.diff(np.floor(z[np.isfinite(z)] / eps)))
+    last = np.flatnonzero(passed)
+    if not last.size:
+        return True
+    times = np.diff(last, prepend=-1)
+    leapt = int(passed[last].sum()) - last.size  # wells without a time of their own
+    return leapt + int(np.sum(times < _RESOLVED)) <= _FEW * (leapt + last.size)
 
 
 @Program
@@ -72,20 +97,3 @@ def _force(support: AbstractSupport, load, z):
 def friction_force(support: AbstractSupport, load, z) -> np.ndarray:
     """`l - Phi'(z)` in N, shapes (time,): what friction holds against."""
     return np.asarray(_force(support, np.asarray(load), np.asarray(z)))
-
-
-def _coefficients(axes: Any, found: Coefficients) -> None:
-    for name, value in (("\\rho_+", found.rho_plus), ("\\rho_-", found.rho_minus)):
-        level = float(value)
-        axes.axhline(level, color=GUIDE, linewidth=0.9, zorder=1)
-        axes.annotate(
-            f"${name}$ = {level:.3g} N",
-            (0.3, level),
-            xycoords=axes.get_yaxis_transform(),
-            xytext=(0, -6 if level > 0 else 6),
-            textcoords="offset points",
-            ha="center",
-            va="top" if level > 0 else "bottom",
-            color="#555555",
-        )
-    axes.margins(y=0.12)

@@ -91,7 +91,8 @@ _CAPTIONS = {
     "close trajectories": "Right: a few slips from hollow to hollow, framed on the left.",
     "loop": (
         "The friction force against the state, once to and fro. The smaller eps, the "
-        "nearer the loop is to the two levels of dry friction."
+        "nearer the loop is to the two levels of dry friction. Dots stand for an eps whose "
+        "slips the stored times are too few to follow."
     ),
     "dissipation": "The energy that has become heat. The dashed line is the limit's.",
     "turning": "How the rod turns over: before, bent over its tip, and after.",

@@ -176,6 +176,29 @@ def test_loop_is_force_against_displacement():
     assert levels == pytest.approx([float(LAW.rho_plus), float(LAW.rho_minus)])
 
 
+def test_an_eps_whose_slips_the_times_do_not_follow_is_no_line_of_a_false_sawtooth():
+    """Of 601 times on a way of 0.9 m some 15 a well, 1 and far fewer."""
+    found = sweep_like(failed=False).interp(time=np.linspace(0, 3, 601))
+    found["status"] = found.status.astype(np.int8)
+    found = found.assign_coords(eps=np.geomspace(0.1, 1e-4, 6))
+    eps = found.eps.values[[0, 2, 5]]
+    axes = drawn(fx.plot.draw_loop(found, SPRING, LAW, gamma=1.0, eps=eps))[0]
+    looks = [(one.get_linestyle(), one.get_marker()) for one in axes.lines[:4]]
+    assert looks == [("-", "None"), ("None", "."), ("None", "."), ("--", "None")]
+    assert axes.get_title(loc="left").endswith("dots: too few times to follow slips")
+    fine = fx.plot.draw_loop(found, SPRING, LAW, gamma=1.0, eps=eps[0])
+    assert "dots" not in drawn(fine)[0].get_title(loc="left")
+
+
+def test_levels_of_the_loop_are_named_where_no_curve_runs():
+    axes = drawn(fx.plot.draw_loop(sweep_like(), SPRING, LAW, gamma=0.5))[0]
+    inside = axes.get_window_extent()
+    assert all(name.get_window_extent().x0 > inside.x1 for name in axes.texts)
+    legend = axes.get_legend().get_window_extent()
+    assert legend.y1 < inside.y0
+    assert 0 < legend.x0 < legend.x1 < axes.figure.bbox.x1
+
+
 def test_dissipation():
     found = sweep_like()
     axes = drawn(fx.plot.draw_dissipation(found, gamma=0.5))[0]
