@@ -35,8 +35,6 @@ from .sections import (
     words_section,
 )
 
-_WANTED = 1e-3  # in eps, what the first sentence is about
-
 
 class MeasuredCell(NamedTuple):
     """Of one eps and gamma: a title, what it was judged by, a line for each run."""
@@ -57,15 +55,6 @@ class CostFacts(NamedTuple):
     coefficients: ResultTable
     picture: Figure
     toml: str
-    seconds: float
-
-
-class _Best(NamedTuple):
-    """The fastest run that is as accurate as wanted."""
-
-    solver: str
-    asked: float
-    error: float
     seconds: float
 
 
@@ -94,7 +83,7 @@ _FILES = (
 
 
 def cost_page(facts: CostFacts, asked: ReportRequest) -> str:
-    """The page: the fastest method, all runs, what was wrong, what judged them."""
+    """The page: which method to take, all runs, what was wrong, what judged them."""
     job, data = facts.job, facts.data
     law = friction(job.scene)
     cell = _shown_cell(data)
@@ -104,7 +93,7 @@ def cost_page(facts: CostFacts, asked: ReportRequest) -> str:
             title="What accuracy costs",
             about=_ABOUT,
             verdict=verdict_of_cost(data),
-            first=[items([str(data.attrs["advice"]), *job.notes])],
+            first=[items(job.notes)] if job.notes else [],
             sections=[
                 _picture_section(facts),
                 *_runs(facts),
@@ -144,31 +133,8 @@ def _shown_cell(data: xr.Dataset) -> xr.Dataset:
 
 
 def verdict_of_cost(data: xr.Dataset) -> str:
-    """Which method is fastest at an accuracy of 1e-3 eps, and what cannot be trusted."""
-    cell = _shown_cell(data)
-    where = f"eps = {float(cell.eps):.4g} m, gamma = {float(cell.gamma):.4g}"
-    best = _fastest(cell)
-    if best is None:
-        told = f"At {where} no method came within {_WANTED:g} eps of the reference"
-    else:
-        told = (
-            f"To know the motion to {_WANTED:g} eps at {where}, take `{best.solver}` and "
-            f"ask it for {best.asked:.0e}: it took {best.seconds:.3g} s and was "
-            f"{best.error:.1e} eps off"
-        )
-    return f"{told}. {_trust(data)}"
-
-
-def _fastest(cell: xr.Dataset) -> _Best | None:
-    found = []
-    for solver in cell.solver.values:
-        for accuracy in cell.accuracy.values:
-            run = cell.sel(solver=solver, accuracy=accuracy)
-            error, good = float(run.error), int(run.status) == Status.OK
-            seconds = float(run.seconds)
-            if good and not int(run.wrong) and error <= _WANTED and np.isfinite(seconds):
-                found.append(_Best(str(solver), float(accuracy), error, seconds))
-    return min(found, key=lambda one: one.seconds) if found else None
+    """Which method to take, as the shell says it, and what cannot be trusted."""
+    return f"{data.attrs['advice']} {_trust(data)}"
 
 
 def _trust(data: xr.Dataset) -> str:

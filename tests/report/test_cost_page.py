@@ -8,6 +8,7 @@ import xarray as xr
 from html_pages import cells_of_table, checked_page
 
 import frictionjax as fx
+from frictionjax.cost.advice import advice
 from frictionjax.report.cost import measured_cells, run_cost
 from frictionjax.report.cost_page import verdict_of_cost
 from frictionjax.report.job import ReportRequest, read_job
@@ -76,16 +77,21 @@ def test_what_was_wrong_and_what_was_not_done_is_listed(page):
     assert f"frictionjax cost scene.toml {again} --seconds 1 --out again" in page.text
 
 
-def test_the_first_sentence_is_of_the_fastest_run_that_is_right():
-    said = verdict_of_cost(measured())
-    assert said.startswith("To know the motion to 0.001 eps at eps = 0.001 m, gamma = 1")
-    assert "take `auto` and ask it for 1e-02: it took 0.3 s and was 1.0e-03 eps off" in said
+def test_the_first_sentence_is_what_the_shell_prints_and_there_is_no_other(page):
+    (said,) = page.text.split("For 1e-3 eps take <this>.")[1:]
+    assert said.lstrip().startswith("Of 12 runs 2 reported success and were half an eps")
+    assert "ask it for" not in page.text
+    data = measured()
+    data.attrs["advice"] = advice(data)
+    told = "For 1e-03 eps take method='LSODA', accuracy=1e-03: z within 1.0e-04 eps in all"
+    assert verdict_of_cost(data).startswith(f"{told} 2 cells in 0.8 s, the next method")
 
 
 def test_where_nothing_is_accurate_enough_it_says_so():
     data = measured()
     data["error"] = data.error + 1.0
-    assert "no method came within 0.001 eps" in verdict_of_cost(data)
+    data.attrs["advice"] = advice(data)
+    assert "No method was measured to keep 1e-03 eps" in verdict_of_cost(data)
     assert "none reported success" in verdict_of_cost(data.assign(wrong=0 * data.wrong))
 
 
