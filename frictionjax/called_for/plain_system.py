@@ -23,6 +23,7 @@ _FELT = 6.0  # times eps: the most that tips move while a slip is late
 # Times the law of a slide, of which 0.978 to 1.011 was seen on scenes that ship (`pytest -m
 # slow tests/called_for/test_estimates.py` holds the bound).
 _LAW = 1.03
+_STRAIGHT = 1e-300  # N: W''' of a straight flank, by which nothing is divided
 
 
 class HigherOrder(NamedTuple):
@@ -55,6 +56,11 @@ def higher_order(at: Setting) -> HigherOrder:
     gamma = 2, slips were late by 20 times what the extreme force says.) Where tips rest
     inside wells they move by `eps^2 Q'/W''`, and slips last longer as forces change. Where
     the load turns while a tip is on a fold that is no bound.
+
+    On straight flanks W''' is 0, and second order says nothing. There maxima of W' and of
+    `W' + eps Q'`, and likewise those with the support's force, lie no further apart than
+    `eps max|Q'|`: extreme forces change by no more, the support is pulled on by no more
+    than that over Phi'', and no place is further away than half a period.
     """
     Y = np.arange(_PLACES) / _PLACES - 0.5
     Y = np.append(Y, [at.data.phase[np.argmax(s * at.data.force)] for s in (1.0, -1.0)])
@@ -62,14 +68,17 @@ def higher_order(at: Setting) -> HigherOrder:
     fixed = _tabulated(at), np.asarray(at.eps)
     slope, bend, steep, sharp = in_chunks(_rest, _PLACES + 2, fixed, (Y,))
     tops = slice(-2, None)
-    place = at.eps * np.abs(bend[tops]) / np.maximum(np.abs(sharp[tops]), 1e-300)
+    largest = float(np.max(np.abs(slope)))
+    place = at.eps * np.abs(bend[tops]) / np.maximum(np.abs(sharp[tops]), _STRAIGHT)
+    place = np.minimum(place, min(largest / at.softest, 0.5))
     forces = at.eps * (np.abs(slope[tops]) + 0.5 * place * np.abs(bend[tops]))
+    forces = np.minimum(forces, at.eps * largest)
     force = float(np.max(forces))
     carried = max(1.0, at.fastest * at.stiffest / at.softest - 1)
     late = float(np.max(at.fastest * forces / at.softest + carried * at.eps * place))
     flat = at.eps * at.softest / at.fastest
     inside = at.eps**2 * float(np.max(np.abs(slope) / np.maximum(np.abs(steep), flat)))
-    share = at.eps * float(np.max(np.abs(slope))) / at.rho
+    share = at.eps * largest / at.rho
     slip = _SLIP * at.eps ** (1 + at.gamma) / float(np.max(np.abs(steep)))
     longer = share * min(at.fastest * at.speed * slip, _FELT * at.eps)
     in_z = max(late, inside) + longer

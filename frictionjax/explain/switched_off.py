@@ -44,7 +44,7 @@ def higher_order_told(at: Setting, tell: Callable[[str], None]) -> Estimate:
         return told
     tell("solving with the higher order and without it")
     where = f"the load turns on a fold, t = {turns[0]:.3g} s"
-    accuracy = max(_FINER * told.in_z / at.eps, _FINEST)
+    accuracy = float(np.clip(_FINER * told.in_z / at.eps, _FINEST, _FINER))
     phases = bristle_places(at.scene)
     some, few = thinned(phases, _BRISTLES), thinned(turns, _TURNS)
     seen = _largest_change(at, telling_times(at, few), accuracy, some)

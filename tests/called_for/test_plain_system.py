@@ -1,6 +1,7 @@
 """What is told of the plain system, on scenes that ship, against an effect switched off."""
 
 import equinox as eqx
+import jax
 import numpy as np
 import pytest
 from outside_slips import states_outside_slips, times_about
@@ -98,6 +99,45 @@ def test_no_scene_that_ships_is_left_out():
     assert {*EVERY, *AGAIN, *NONE} == set(example_lines())
     for name, other in AGAIN.items():
         assert eqx.tree_equal(scene_that_ships(name), scene_that_ships(other))
+
+
+FLANKS = fx.profiles.Polyline([0.0, 0.7], [0.0, 0.06], radius=0.03)
+UPRIGHT = fx.bristles.VerticalSpring(2.0, 3.0, 1.2)
+SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
+
+
+def on_straight_flanks(bristle, load):
+    return fx.Scene(FLANKS, bristle, fx.supports.Spring(1.5), load, duration=2.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("bristle", "load", "eps"),
+    [
+        (UPRIGHT, fx.loads.Ramp(1.0), 0.05),
+        (UPRIGHT, fx.loads.Ramp(1.0), 1e-3),
+        (UPRIGHT, fx.loads.Triangle(1.0, 2.0), 0.05),
+        (SLANTED, fx.loads.Sine(1.0, 2.0), 0.05),
+        (SLANTED, fx.loads.Triangle(1.0, 2.0), 1e-3),
+    ],
+)
+def test_on_straight_flanks_the_higher_order_changes_less_than_told(bristle, load, eps):
+    scene = on_straight_flanks(bristle, load)
+    told = told_of(scene, 1.0, eps)
+    assert change_outside_slips(scene, 1.0, eps) <= told
+
+
+@pytest.mark.parametrize("eps", [0.05, 1e-3])
+def test_on_straight_flanks_forces_change_by_what_the_higher_order_is(eps):
+    """Of an upright spring `(F'(eps w) - F'(0)) w'`, though W''' is 0 at the folds."""
+    places = (np.arange(4000) + 0.5) / 4000
+    height, slope = FLANKS(places), jax.vmap(jax.grad(FLANKS))(places)
+    pull = jax.vmap(jax.grad(UPRIGHT.energy))
+    change = (pull(eps * height) - pull(0.0 * height)) * slope
+    scene = on_straight_flanks(UPRIGHT, fx.loads.Ramp(1.0))
+    row = fx.explain(scene, eps, 1.0).effects.sel(effect="higher order")
+    assert float(row.in_z) < 0.5 * eps
+    assert float(row.in_force) == pytest.approx(float(np.max(np.abs(change))), rel=0.01)
 
 
 @pytest.mark.parametrize("name", NONE)

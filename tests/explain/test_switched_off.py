@@ -59,6 +59,15 @@ def test_mass_and_noise_are_not_in_what_is_measured(monkeypatch):
     assert asked[0]["phase"] is None
 
 
+def test_however_much_is_told_it_is_measured_to_a_thousandth_of_eps(monkeypatch):
+    found, asked = higher_order(setting_of(SPRING, EPS, GAMMA)), []
+    far = found._replace(estimate=found.estimate._replace(in_z=50 * EPS))
+    monkeypatch.setattr(switched_off, "higher_order", lambda at: far)
+    monkeypatch.setattr(switched_off, "integrate_cells", lambda **a: asked.append(a))
+    row_of(SPRING)
+    assert asked[0]["accuracy"] == 1e-3
+
+
 def test_each_bristle_of_an_array_is_measured_and_of_many_some(monkeypatch):
     asked = []
 
