@@ -58,9 +58,9 @@ class Explanation(SelfDrawn, _Parts):
         for name in [str(name) for name in self.effects.effect.values]:
             row = self.effects.sel(effect=name)
             numbers = [_number(row[key]) for key in ("in_z", "in_force")]
-            words = [("no", "yes")[bool(row[key])] for key in ("called_for", "asked")]
-            cost = _number(row.cost)
-            rows.append((name, *numbers, *words, cost, str(row.source.values)))
+            asked = ("no", "yes")[bool(row.asked)]
+            words = _called(row), asked, _number(row.cost), str(row.source.values)
+            rows.append((name, *numbers, *words))
         return ResultTable(header, tuple(rows), left=len(header))
 
     def __repr__(self) -> str:
@@ -73,6 +73,13 @@ class Explanation(SelfDrawn, _Parts):
 def _number(value: Any) -> str:
     number = float(value)
     return "-" if np.isnan(number) else f"{number:.3g}"
+
+
+def _called(row: xr.Dataset) -> str:
+    """Of what nothing is known, and is no other scene, neither yes nor no."""
+    if bool(row.called_for):
+        return "yes"
+    return "not known" if np.isnan(float(row.in_z)) else "no"
 
 
 @with_nan
@@ -91,13 +98,14 @@ def explain(
     Returns an `Explanation`. `.equation`: the composed equation as text. `.effects`: data
     set over `effect`, with `in_z` (m) and `in_force` (N), estimates from above of what it
     changes in the state at times outside of slips and in the friction force, `called_for`
-    (`in_z` is more than `accuracy` eps, or another scene is meant), `asked` (the scene has
-    it), `cost` (steps with it over steps without, by rules and laws of the schemes) and
-    `source`. Rows: "higher order", what `LeadingOrder` leaves out of the scene if it had no
-    mass and noise and did not turn over, of an array for the bristle that it changes most;
-    "finite speed", what viscosity adds to dry friction; the scene's effects. Where the load
-    turns while a tip is on a fold no closed form tells what the higher order changes: the
-    scene is solved with it and without, and `source` says so.
+    (`in_z` is more than `accuracy` eps, or another scene is meant; False too where `in_z`
+    is NaN, not known), `asked` (the scene has it), `cost` (steps with it over steps
+    without, by rules and laws of the schemes) and `source`. Rows: "higher order", what
+    `LeadingOrder` leaves out of the scene if it had no mass and noise and did not turn
+    over, of an array for the bristle that it changes most; "finite speed", what viscosity
+    adds to dry friction; the scene's effects. Where the load turns while a tip is on a fold
+    no closed form tells what the higher order changes: the scene is solved with it and
+    without, and `source` says so.
 
     `progress`: a line on standard error where it takes more than two seconds.
 

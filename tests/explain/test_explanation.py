@@ -93,6 +93,16 @@ def test_an_accuracy_calls_for_what_changes_more():
     assert not bool(row_of("higher order", scene, accuracy=2 * told).called_for)
 
 
+def test_of_what_nothing_is_known_it_says_neither_yes_nor_no():
+    """Of a load too weak to slide; a bristle that turns over is another scene: yes."""
+    weak = fx.loads.Sine(1e-3, 3.0)
+    flips = scene_of("angular", effects=(fx.effects.NapFlip(0.1),), load=weak)
+    rows = {row[0]: row for row in fx.explain(flips, 1e-2, 1.0).table().rows}
+    assert rows["finite speed"][1:4] == ("-", "-", "not known")
+    assert rows["NapFlip"][1:4] == ("-", "-", "yes")
+    assert rows["higher order"][3] in ("yes", "no")
+
+
 def test_what_a_scene_leaves_out_is_told_as_it_would_be():
     whole, leading = scene_of("slanted"), scene_of("slanted", effects=LEADING)
     rows = [row_of("higher order", scene) for scene in (whole, leading)]
