@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 
 from ..convergence import Verdict
@@ -49,10 +50,7 @@ _NUMBERS = (
 _MANY_DECADES = 3
 _LINE = 0.17  # inches
 _DIFFERS = 0.05  # of orders: what the points show is said too
-_KEY = (
-    "filled: in the window of the fit; hollow: left out; "
-    "dashed: predicted by the law; dotted: slope of the lemmas"
-)
+_GREY = "#666666"
 
 
 @styled
@@ -98,8 +96,25 @@ def draw_convergence(
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
     if figure is None:
         _make_room(drawn)
-    drawn.supxlabel(_KEY, fontsize=9, color="#666666")
+    _key(drawn, curves is not None)
     return drawn
+
+
+def _key(figure: Any, laws: bool) -> None:
+    """What points and lines are, of all panels and gammas alike."""
+    point: dict[str, Any] = {"color": _GREY, "marker": "o", "linestyle": "none"}
+    handles = [
+        Line2D([], [], **point, label="in the window of the fit"),
+        Line2D([], [], **point, markerfacecolor="white", label="left out"),
+        Line2D([], [], color=_GREY, label="fit: its order and 95% interval above"),
+    ]
+    if laws:
+        look: dict[str, Any] = {"color": _GREY, "linewidth": 0.9, "alpha": 0.7}
+        handles.append(Line2D([], [], **look, linestyle="--", label="theory: the law"))
+    slopes = "theory: slope of the lemmas"
+    handles.append(Line2D([], [], color=GUIDE, linewidth=1, linestyle=":", label=slopes))
+    columns = len(handles) if len(figure.axes) > 1 else 2
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns)
 
 
 def _make_room(figure: Figure) -> None:

@@ -259,9 +259,7 @@ def _panel(facts: StudyFacts, name: str) -> Figure:
     """Errors of one kind alone: a page may be narrow."""
     others = [other for other in _panels(facts) if other != name]
     data = facts.data.drop_vars(others)
-    figure = plot.draw_convergence(data, facts.found.orders, facts.found.curves)
-    figure.supxlabel("")  # too long for one panel: the captions say it
-    return figure
+    return plot.draw_convergence(data, facts.found.orders, facts.found.curves)
 
 
 def _cells(facts: StudyFacts) -> list[Section]:
