@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize, TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -30,6 +31,7 @@ _TITLES = {
     "difference": "Difference $\\rho_+ + \\rho_-$ (N)",
     "alpha": "Normal force without friction $\\alpha$ (N)",
 }
+_LIMIT = ", limit $\\epsilon \\to 0$"
 _SIGNED = ("ratio", "contrast", "difference", "alpha")
 _RATIOS = (1 / 10, 1 / 5, 1 / 3, 1 / 2, 2 / 3, 1, 1.5, 2, 3, 5, 10)
 _PLATE: Any = {"facecolor": "#ffffff", "edgecolor": "none", "alpha": 0.7, "pad": 0.8}
@@ -43,8 +45,10 @@ def draw_design_map(data: "xr.Dataset", quantities: Any = ("ratio", "contrast"))
 
     `data`: the data set; `quantities`: names of its variables, one or several.
     Ratios are coloured by their logarithm, so that left and right look alike; colours end
-    at the 2nd and 98th of a hundred values, and arrows on the bar say so. Hatched: no
-    bristle there can follow the surface; dotted: it would pull, and may not.
+    at the 2nd and 98th of a hundred values, and arrows on the bar say so. Each cell lies
+    about its design, up to half the way to the next. Hatched: no bristle there can follow
+    the surface; dotted: it would pull, and may not. Of a map with `eps` the limit is drawn,
+    as titles say; its slides are numbers of the data set.
 
     Raises `ValueError` for a quantity that the data set does not hold.
 
@@ -65,12 +69,14 @@ def draw_design_map(data: "xr.Dataset", quantities: Any = ("ratio", "contrast"))
 
 def _panel(figure: Any, axes: Any, data: "xr.Dataset", name: str) -> None:
     up, across = data["admissible"].dims
+    data = data.sortby([across, up])
     x, y = data[across].values, data[up].values
+    edges = _edges(x, False), _edges(y, str(up) == "asymmetry")
     shown, levels, texts = _shown(name, data[name].values)
     norm = _norm(name, shown)
     axes.set_facecolor("#f4f4f4")
     colours = "RdBu_r" if name in _SIGNED else "viridis"
-    mesh = axes.pcolormesh(x, y, shown, cmap=colours, norm=norm, rasterized=True)
+    mesh = axes.pcolormesh(*edges, shown, cmap=colours, norm=norm, rasterized=True)
     bar = figure.colorbar(mesh, ax=axes, extend=_beyond(shown, norm), pad=0.02)
     inside = [v for v in levels if norm.vmin <= v <= norm.vmax]
     bar.set_ticks(inside, labels=[texts[v] for v in inside])
@@ -78,11 +84,11 @@ def _panel(figure: Any, axes: Any, data: "xr.Dataset", name: str) -> None:
     alpha = data["alpha"].values
     for side in (alpha > 0, alpha < 0):  # friction jumps from one to the other
         _contours(axes, x, y, np.where(side, shown, np.nan), levels, texts)
-    _key(axes, x, y, data["admissible"].values, alpha)
+    handles = _left_out(axes, edges, data["admissible"].values, alpha)
+    _key(axes, handles + _sides(axes, x, y, alpha))
     axes.grid(False)
-    axes.set(
-        xlabel=number_label(str(across)), ylabel=number_label(str(up)), title=_TITLES[name]
-    )
+    title = _TITLES[name] + (_LIMIT if "eps" in data.attrs else "")
+    axes.set(xlabel=number_label(str(across)), ylabel=number_label(str(up)), title=title)
     if str(up) == "asymmetry":
         axes.set_yscale("log")
         ticks = [v for v in _RATIOS if y.min() <= v <= y.max()]
@@ -141,23 +147,60 @@ def _contours(axes: Any, x, y, shown, levels, texts) -> None:
         label.set_bbox(_PLATE)  # or it is lost on the dark ends of the colours
 
 
-def _key(axes: Any, x, y, admissible: np.ndarray, alpha: np.ndarray) -> None:
-    """Hatching where nothing is admissible, a dotted line where alpha changes sign."""
-    handles: list[Any] = []
-    flat = min(admissible.shape) < 2
+def _edges(values: np.ndarray, ratios: bool) -> np.ndarray:
+    """Ends of cells about increasing `values` (n,), shape (n + 1,): half the way, of ratios
+    by their logarithm."""
+    if ratios:
+        return np.exp(_edges(np.log(values), False))
+    if values.size == 1:
+        return values + np.array([-0.5, 0.5])
+    middle = 0.5 * (values[1:] + values[:-1])
+    ends = 2 * values[[0, -1]] - middle[[0, -1]]
+    return np.concatenate([ends[:1], middle, ends[1:]])
+
+
+def _left_out(
+    axes: Any,
+    edges: tuple[np.ndarray, np.ndarray],
+    admissible: np.ndarray,
+    alpha: np.ndarray,
+) -> list[Any]:
+    """Hatch the cells where nothing is admissible; what that is called, for a legend."""
     pulls = ~admissible & (alpha < 0)  # known, but not asked for
+    handles = []
+    look: Any = {"edgecolor": GUIDE, "linewidth": 0.0}
     for outside, (hatch, label) in zip((~admissible & ~pulls, pulls), _LEFT, strict=True):
-        if not outside.any() or flat:
+        if not outside.any():
             continue
-        shown = outside.astype(float)
-        with matplotlib.rc_context({"hatch.color": GUIDE, "hatch.linewidth": 0.5}):
-            axes.contourf(x, y, shown, levels=[0.5, 1.5], colors="none", hatches=[hatch])
-        look: Any = {"facecolor": "#f4f4f4", "edgecolor": GUIDE, "hatch": hatch}
-        handles.append(Patch(**look, label=label))
-    if np.nanmin(alpha) < 0 < np.nanmax(alpha) and not flat:
-        axes.contour(x, y, alpha, levels=[0.0], colors="#222222", linestyles="dotted")
-        label = "$\\alpha$ = 0: the bristle presses on one side, pulls on the other"
-        handles.append(Line2D([], [], color="#222222", linestyle=":", label=label))
+        with matplotlib.rc_context({"hatch.linewidth": 0.5}):
+            cells = PolyCollection(
+                list(_corners(*edges)[outside]), facecolor="none", **look
+            )
+            axes.add_collection(cells)
+            cells.set_hatch(hatch)
+        key: Any = {"facecolor": "#f4f4f4", "edgecolor": GUIDE, "hatch": hatch}
+        handles.append(Patch(**key, label=label))
+    return handles
+
+
+def _corners(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Of all cells, from their edges (columns + 1,), (rows + 1,): (rows, columns, 4, 2)."""
+    left, low = np.meshgrid(x[:-1], y[:-1])
+    right, high = np.meshgrid(x[1:], y[1:])
+    corners = (left, low), (right, low), (right, high), (left, high)
+    return np.stack([np.stack(corner, axis=-1) for corner in corners], axis=-2)
+
+
+def _sides(axes: Any, x: np.ndarray, y: np.ndarray, alpha: np.ndarray) -> list[Any]:
+    """A dotted line where alpha changes sign; what it is called, for a legend."""
+    if min(alpha.shape) < 2 or not np.nanmin(alpha) < 0 < np.nanmax(alpha):
+        return []
+    axes.contour(x, y, alpha, levels=[0.0], colors="#222222", linestyles="dotted")
+    label = "$\\alpha$ = 0: the bristle presses on one side, pulls on the other"
+    return [Line2D([], [], color="#222222", linestyle=":", label=label)]
+
+
+def _key(axes: Any, handles: list[Any]) -> None:
     if handles:
         place: Any = {"loc": "upper left", "bbox_to_anchor": (0.0, -0.12)}
         axes.legend(handles=handles, borderpad=0.0, ncols=1, **place)

@@ -101,6 +101,49 @@ def test_pictures_show_the_numbers_and_what_is_not_admissible():
         fx.plot.draw_design_map(data, "colour")
 
 
+def mapped_cells(collection):
+    """Lowest and highest x and y of each cell."""
+    corners = np.array([path.vertices for path in collection.get_paths()])
+    return np.concatenate([corners.min(axis=1), corners.max(axis=1)], axis=1)
+
+
+def test_pictures_hatch_the_cells_that_are_not_admissible_and_no_others():
+    rod = fx.bristles.AngularSpring(0.7, 1.3, 1.0, 0.25)
+    axes = ("height", [1.0, 1.1, 1.2]), ("rest_angle", [0.0, 0.4, 0.6])
+    data = fx.design_map(rod, *axes, WAVES)
+    outside = ~data["admissible"].values & ~data["pulls"].values
+    assert 0 < outside.sum() < outside.size
+    axes = fx.plot.draw_design_map(data, "ratio").axes[0]
+    hatched = next(one for one in axes.collections if one.get_hatch() == "////")
+    across, up = [0.95, 1.05, 1.15, 1.25], [-0.2, 0.2, 0.5, 0.7]
+    expected = [
+        (across[j], up[i], across[j + 1], up[i + 1]) for i, j in np.argwhere(outside)
+    ]
+    np.testing.assert_allclose(mapped_cells(hatched), expected)
+
+
+def test_cells_of_asymmetries_lie_about_their_values_on_a_logarithmic_axis():
+    axes = ("angle", [0.2, 0.4]), ("asymmetry", [2.0, 0.5, 1.0])
+    figure = fx.plot.draw_design_map(fx.design_map(SLANTED, *axes), "ratio")
+    mesh = figure.axes[0].collections[0]
+    corners = mesh.get_coordinates()
+    np.testing.assert_allclose(corners[:, 0, 1], 2.0 ** np.array([-1.5, -0.5, 0.5, 1.5]))
+    np.testing.assert_allclose(corners[0, :, 0], [0.1, 0.3, 0.5])
+    assert np.all(np.diff(np.ma.filled(mesh.get_array()), axis=0) > 0)
+    one = fx.design_map(SLANTED, ("angle", [0.2]), ("asymmetry", [1.0]))
+    fx.plot.draw_design_map(one, "ratio").savefig(io.BytesIO(), format="png", dpi=40)
+
+
+def test_a_map_of_slides_says_that_its_picture_is_of_the_limit():
+    axes = ("angle", [0.2, 0.4]), ("asymmetry", [0.5, 1.0])
+    titles = [
+        fx.plot.draw_design_map(found, "ratio").axes[0].get_title(loc="left")
+        for data in [fx.design_map(SLANTED, *axes)]
+        for found in (data, data.assign_attrs(eps=0.05))
+    ]
+    assert [title.endswith("limit $\\epsilon \\to 0$") for title in titles] == [False, True]
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
