@@ -263,6 +263,8 @@ def test_what_it_shows():
     np.testing.assert_array_equal(data.position, (found.rear + found.front) / 2)
     figure = fx.plot.draw_crawler(found)
     assert "m a cycle" in figure.axes[0].get_title(loc="left")
+    assert figure.axes[0].get_xlabel() == "t (s)"
+    assert figure.axes[0].get_ylabel() == "place (m)"
     failed = fx.crawler(SINE, ROD, 1.0, BREATH, 1.0, eps=0.05, max_steps=20)
     assert "budget" in fx.plot.draw_crawler(failed).axes[0].get_title(loc="left")
 

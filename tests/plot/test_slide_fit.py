@@ -20,6 +20,8 @@ def test_solutions_lie_at_what_was_wanted_and_the_limit_beside_them():
         assert line.get_ydata() == pytest.approx(1.3, rel=1e-6)
     curve = axes.lines[0]
     assert curve.get_label().startswith("limit")
+    (chosen,) = (one for one in dots if one.get_markerfacecolor() != "white")
+    assert chosen.get_label().startswith("slide, $\\epsilon$ = 0.02 m: angle = ")
     across = np.interp(1.3, curve.get_ydata(), curve.get_xdata())
     assert across == pytest.approx(float(fit.limit.value), rel=1e-3)
     assert abs(across - float(fit.value)) > 0.01

@@ -13,6 +13,7 @@ _PERIODS = 400  # of the surface that are drawn, at most: more would be a grey b
 _POINTS = 24  # a period
 _WIDEST = 6.0  # sizes of the bristle: of a longer way a part is shown, which follows
 _DEEP = 0.18  # sizes: ground below the surface
+_ASIDE = 3.0  # points: letters of both ends of a spring from these
 _ARC = 0.34  # sizes: how far from the root its angle is marked
 
 
@@ -87,9 +88,17 @@ class BristleArtist:
         for letter, end in zip(self._letters, ends, strict=False):
             letter.xy = tuple(end)
             letter.set_visible(True)
+        if places.far is not None:
+            self._part_letters(float(np.sign(places.far[row] - root[0])) or 1.0)
         self._turn_angle(root, float(places.angle[row]))
         self._look_at(root)
         self._title.set_text(self._told(row))
+
+    def _part_letters(self, side: float) -> None:
+        """Of root and far end, to the right where `side` is 1: the spring may be short."""
+        for letter, way in zip(self._letters[1:], (-side, side), strict=True):
+            letter.xyann = (_ASIDE * way, letter.xyann[1])
+            letter.set_horizontalalignment("left" if way > 0 else "right")
 
     def _bristle(self, root: np.ndarray, tip: np.ndarray, side: int) -> np.ndarray:
         if self.places.kind is Drawn.SPRING:

@@ -33,7 +33,7 @@ def draw_crawler(motion: Any, ax: Any = None) -> Any:
     axes.plot(ts, motion.front, color=colour(0), label="front foot")
     axes.plot(ts, motion.rear, color=colour(1), label="rear foot")
     axes.plot(ts, motion.position, color=GUIDE, linestyle="--", label="middle")
-    axes.set(xlabel="t in s", ylabel="place in m", xlim=(ts[0], ts[-1]))
+    axes.set(xlabel="t (s)", ylabel="place (m)", xlim=(ts[0], ts[-1]))
     axes.set_title(_title(motion))
     axes.legend(loc="best")
     return drawn

@@ -59,6 +59,22 @@ def test_angles_are_positive_to_the_left_of_the_vertical():
             assert np.arctan2(-down[0], -down[1]) == pytest.approx(0.3)
 
 
+def test_names_of_both_ends_stand_apart_however_short_the_spring_is():
+    rod, pull = fx.bristles.AngularSpring(1.0, 1.3, 1.0, 0.3), fx.loads.Sine(0.7, 4.0)
+    scene = fx.Scene(fx.profiles.Sine(0.1), rod, fx.supports.Spring(2.0), pull, 4.0)
+    limit = fx.solve_limit(scene, T)
+    seen = fx.mechanics(scene, limit)
+    ahead = (seen.q - seen.u).values
+    shortest, behind = int(np.argmin(np.abs(ahead))), int(np.argmin(ahead))
+    assert abs(ahead[shortest]) < 0.02
+    assert ahead[behind] < 0
+    for row in (shortest, behind):
+        (axes,) = rendered(fx.plot.draw_bristle(scene, limit, T[row]))
+        boxes = {one.get_text(): one.get_window_extent() for one in axes.texts}
+        assert not boxes["u"].overlaps(boxes["q"])
+        assert (boxes["q"].x0 > boxes["u"].x0) == (ahead[row] >= 0)
+
+
 @pytest.fixture(scope="module")
 def turned():
     scene = turning_scene(duration=3.0)
