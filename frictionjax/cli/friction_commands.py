@@ -79,7 +79,7 @@ def nap(
 
     out = "frictionjax-nap" if report and out is None else out
     folder = None if out is None else require_folder(out)
-    file = None if movie is None else require_gif(movie)
+    file = None if movie is None else require_gif(movie, folder)
     if file is None and eps is not None:
         raise click.UsageError("--eps: needs --movie FILE.gif beside it")
     job = read_job(scene, **surface)._replace(report=report_asked(report, started))

@@ -20,15 +20,18 @@ _FRAMES = 80
 _SLIPS = 25  # about so many on the way there and back: they can be told apart
 
 
-def require_gif(path: Any) -> Path:
+def require_gif(path: Any, made: Path | None = None) -> Path:
     """Check that a GIF of this name can be written; nothing is written yet.
 
-    Raises `ValueError` for another kind of file or a folder that is not there.
+    `made`: a folder that may not be there yet, but will be before the GIF is. Raises
+    `ValueError` for another kind of file or a folder that is not there.
     """
     file = Path(path)
     require(file.suffix.lower() == ".gif", "movie", str(path), "a file named *.gif")
     folder = file.parent
     there = folder.is_dir() and os.access(folder, os.W_OK) and not file.is_dir()
+    if made is not None and not folder.exists():
+        there = made.resolve() == folder.resolve()
     require(there, "movie", str(path), "a file in a folder that can be written to")
     return file
 

@@ -36,6 +36,22 @@ def test_the_eps_whose_slips_can_be_told_apart():
     assert movie._seen_best(still, [0.01, 0.1]) == 0.1
 
 
+def test_a_movie_may_go_into_the_folder_that_is_made(tmp_path, monkeypatch):
+    made = tmp_path / "one" / "out"
+    assert movie.require_gif(made / "m.gif", made) == made / "m.gif"
+    with pytest.raises(ValueError, match="needs a file in a folder"):
+        movie.require_gif(made / "further" / "m.gif", made)
+    there = []
+
+    def written(job, bending_stiffness, eps, path):
+        there.append(path.parent.is_dir())
+        return f"{path}"
+
+    monkeypatch.setattr("frictionjax.report.write_movie", written)
+    run("nap", "--bristle", "angular", "--out", made, "--movie", made / "m.gif")
+    assert there == [True]
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
