@@ -16,7 +16,9 @@ from ..profiles import (
     SeriesFit,
     complex_series,
     fit_rows_in_phase,
+    fit_series,
     mean_in_phase,
+    warn_of,
 )
 from .files import Measured
 from .settings import SETTINGS
@@ -48,7 +50,8 @@ def fit_profile(
     fundamental is in phase first, since grooves cross the rows of a map at an angle.
     `smoothing`: cut-off in m of a Gaussian filter along the rows; None: no filter.
 
-    Raises `ValueError` as `Fourier.from_heights`, and for a row that is not there.
+    Warns and raises `ValueError` as `Fourier.from_heights`, and for a row that is not
+    there.
 
     >>> x = np.linspace(0.0, 1e-4, 201)
     >>> groove = fx.measured.Measured(x, 3e-7 * np.sin(2 * np.pi * x / 2e-5)[None])
@@ -61,7 +64,9 @@ def fit_profile(
         rows = heights.shape[0]
         require(row < rows, "row", row, f"0 <= row <= {rows - 1}")
         heights = heights[row]
-    return Fourier.from_heights(measured.x, heights, period, harmonics, smoothing)
+    fit = fit_series(measured.x, heights, period, harmonics, smoothing)
+    warn_of(fit.slopes)
+    return fit
 
 
 class RowCoefficients(NamedTuple):

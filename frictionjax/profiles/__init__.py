@@ -8,6 +8,7 @@
 
 from .custom import Custom as Custom
 from .fourier import Fourier as Fourier
+from .fourier import fit_series as fit_series
 from .heights import HeightsFit as HeightsFit
 from .heights import SeriesFit as SeriesFit
 from .heights import find_period as find_period
@@ -21,4 +22,5 @@ from .sine import Sine as Sine
 from .slope_errors import AbstractSampled as AbstractSampled
 from .slope_errors import SlopeErrors as SlopeErrors
 from .slope_errors import SlopesUndetermined as SlopesUndetermined
+from .slope_errors import warn_of as warn_of
 from .spline import Spline as Spline

@@ -124,11 +124,9 @@ class Fourier(AbstractSampled):
         >>> print(f"period {fit.period:.2e} m, slopes up to {fit.slopes.omega_plus:.4f}")
         period 2.00e-05 m, slopes up to 0.0942
         """
-        fit_all = fit_map if np.ndim(heights) == 2 else fit_heights
-        fit = fit_all(x, heights, period, harmonics, smoothing)
-        profile, slopes = cls.of_measured(fit.cos, fit.sin, fit.waves)
-        warn_of(slopes)
-        return HeightsFit(profile, fit.period, fit.explained, slopes, smoothing)
+        fit = fit_series(x, heights, period, harmonics, smoothing)
+        warn_of(fit.slopes)
+        return fit
 
     @classmethod
     def of_measured(
@@ -141,3 +139,13 @@ class Fourier(AbstractSampled):
         errors = of_waves(slopes_of_waves(cos - 1j * sin), waves)
         taken = as_real(errors[4:]) if any(errors[4:]) else None
         return cls(as_real(cos), as_real(sin), as_real(errors[2:4]), taken), errors
+
+
+def fit_series(
+    x: Any, heights: Any, period: float | None, harmonics: int, smoothing: float | None
+) -> HeightsFit[Fourier]:
+    """As `Fourier.from_heights`, whose warning is left to the caller."""
+    fit_all = fit_map if np.ndim(heights) == 2 else fit_heights
+    fit = fit_all(x, heights, period, harmonics, smoothing)
+    profile, slopes = Fourier.of_measured(fit.cos, fit.sin, fit.waves)
+    return HeightsFit(profile, fit.period, fit.explained, slopes, smoothing)

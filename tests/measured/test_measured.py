@@ -26,6 +26,21 @@ def written(folder, text):
 
 
 @pytest.mark.parametrize(
+    "fit",
+    [
+        lambda noise: fit_profile(noise, harmonics=2),
+        lambda noise: fx.profiles.Fourier.from_heights(noise.x, noise.heights[0]),
+    ],
+)
+def test_a_warning_of_a_fit_points_to_the_line_that_asked_for_it(fit):
+    x = np.linspace(0, 1e-3, 400)
+    noise = Measured(x, np.random.default_rng(1).normal(size=(1, 400)))
+    with pytest.warns(fx.profiles.SlopesUndetermined) as caught:
+        fit(noise)
+    assert [one.filename for one in caught] == [__file__]
+
+
+@pytest.mark.parametrize(
     "text",
     [
         "x [m]\tz [m]\n0 1.5   \n1e-6 2.5\t\n3e-6 -0.5\n",
