@@ -23,8 +23,14 @@ from ..turning import (
     turning_window,
 )
 
-_NO_GEOMETRY = "the bristle has no geometry: its nap and the force along it are unknown"
+_NO_GEOMETRY = (
+    "the bristle has no geometry: its nap and the force along it are unknown, and "
+    "rho_with is of a slide to the right"
+)
 _UPRIGHT = "it stands upright and has no nap: a slide to the right is taken as with it"
+
+
+_WAYS = "to the right", "to the left"  # of a bristle whose nap is not known
 
 
 class _NapNumbers(NamedTuple):
@@ -65,6 +71,11 @@ class Nap(SelfDrawn, _NapNumbers):
         return np.nan if self.flipped is None else self.flipped.rho_with
 
     @property
+    def leans(self) -> bool:
+        """Whether its nap is known; else `rho_with` is of a slide to the right."""
+        return not np.isnan(self.axial_with)
+
+    @property
     def turns_over(self) -> bool:
         """Whether it turns over against its nap and only then, by its critical load."""
         loads, own = self.window, self.critical_load
@@ -72,6 +83,8 @@ class Nap(SelfDrawn, _NapNumbers):
 
     def table(self) -> ResultTable:
         """Friction and axial force of slides with the nap, against it and turned over.
+
+        Of a bristle whose nap is not known of slides to the right and to the left.
 
         >>> rod = fx.bristles.AngularSpring(1.0, length=1.4, height=1.0, rest_angle=0.3)
         >>> fx.nap(fx.profiles.Sine(slope=0.5), rod).table()
@@ -82,14 +95,16 @@ class Nap(SelfDrawn, _NapNumbers):
         against/with = 3.08422
         turns over against the nap for critical loads of 0.264736 to 1.054 N (bending ...
         """
+        ways = ("with the nap", "against it") if self.leans else _WAYS
         rows = [
-            ("with the nap", self.rho_with, self.axial_with),
-            ("against it", self.rho_against, self.axial_against),
+            (ways[0], self.rho_with, self.axial_with),
+            (ways[1], self.rho_against, self.axial_against),
         ]
         if self.flipped is not None:
             rows.append(("turned over", self.rho_flipped, self.axial_flipped))
         cells = tuple((name, f"{rho:.6g}", f"{axial:.6g}") for name, rho, axial in rows)
-        note = f"against/with = {self.ratio:.6g}\n{self.message}"
+        which = "against/with" if self.leans else "left/right"
+        note = f"{which} = {self.ratio:.6g}\n{self.message}"
         return ResultTable(("moved", "friction, N", "axial force, N"), cells, 1, note)
 
     def __repr__(self) -> str:

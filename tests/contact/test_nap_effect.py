@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.report.nap_page import verdict_of_nap
 from frictionjax.turning import axial_force
 
 ROD = fx.bristles.AngularSpring(2.0, 0.07, 0.05, 0.3)
@@ -136,6 +137,18 @@ def test_without_a_nap():
     found = fx.nap(SURFACE, fx.bristles.Homothetic(1.0))
     assert "no geometry" in found.message
     assert np.isnan(found.axial_with)
+    assert not found.leans
+    assert upright.leans
+    printed, law = repr(found), fx.friction(SURFACE, fx.bristles.Homothetic(1.0))
+    assert found.rho_with == pytest.approx(float(law.rho_plus))
+    for words in ("to the right", "to the left", f"left/right = {found.ratio:.6g}"):
+        assert words in printed
+    assert "with the nap" not in printed
+    assert "against/with" in repr(upright)
+    (axes,) = found.plot().axes
+    assert axes.get_title(loc="left").startswith("To the right and to the left: left/right")
+    assert "\\rho_{right}" in axes.texts[0].get_text()
+    assert verdict_of_nap(found).startswith("Moved to the right the bristle holds against")
 
 
 def test_arguments_are_named():

@@ -13,9 +13,10 @@ def draw_strokes(found: Nap, ax: Any = None) -> Any:
     A Figure, or `ax` where it is drawn into that.
 
     Solid: the bristle keeps its nap, and friction is `rho_with` one way and `rho_against`
-    the other. Dashed, of a rod that can turn over: it slides with its nap both ways, with
-    `rho_with` and `rho_flipped`. Of a stroke so long what happens where it ends is not
-    seen: `fx.plot.draw_nap_loops` draws it, of a scene.
+    the other, to the right and to the left where no nap is known. Dashed, of a rod that can
+    turn over: it slides with its nap both ways, with `rho_with` and `rho_flipped`. Of a
+    stroke so long what happens where it ends is not seen: `fx.plot.draw_nap_loops` draws
+    it, of a scene.
 
     >>> figure = fx.plot.draw_strokes(fx.nap(scene.profile, scene.bristle))
     >>> figure.axes[0].get_title(loc="left")
@@ -23,15 +24,18 @@ def draw_strokes(found: Nap, ax: Any = None) -> Any:
     """
     drawn, axes = axes_of(ax, 7.2, 4.2)
     axes.axhline(0, color=GUIDE, linewidth=0.8)
-    _loop(axes, found.rho_with, found.rho_against, 0, "-", "it keeps its nap")
-    _level(axes, found.rho_with, "\\rho_{with}")
-    _level(axes, -found.rho_against, "-\\rho_{against}")
+    kept = "it keeps its nap" if found.leans else "it stays as it stands"
+    _loop(axes, found.rho_with, found.rho_against, 0, "-", kept)
+    forth, back = ("with", "against") if found.leans else ("right", "left")
+    _level(axes, found.rho_with, f"\\rho_{{{forth}}}")
+    _level(axes, -found.rho_against, f"-\\rho_{{{back}}}")
     if found.flipped is not None:
         label = "it turns over" if found.turns_over else "if it turned over"
         _loop(axes, found.rho_with, found.rho_flipped, 1, "--", label)
         _level(axes, -found.rho_flipped, "-\\rho_{flipped}")
     axes.set(xlabel="way of the root (strokes)", ylabel="friction force (N)")
-    axes.set_title(f"With and against the nap: against/with = {found.ratio:.4g}")
+    title = "With and against the nap" if found.leans else "To the right and to the left"
+    axes.set_title(f"{title}: {back}/{forth} = {found.ratio:.4g}")
     axes.margins(x=0.02, y=0.16)
     axes.legend(loc="best")
     return drawn
