@@ -143,7 +143,7 @@ def predict_cost(
     Raises `ValueError` for arguments out of range, as `sweep` does.
 
     >>> print(fx.predict_cost(scene, eps=[1e-2, 1e-3], gamma=1.0, measure=False))
-    0.023 to 0.093 s of computation, up to 9.3 s of compilation the first time, 0.8 GB ...
+    0.024 to 0.097 s of computation, up to 9.3 s of compilation the first time, 0.8 GB ...
     """
     scene = scene_for(Engine.COST, scene)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
