@@ -48,7 +48,9 @@ def certify(
     balance is reported but cannot decide that: a shift by eps/100 costs 270 slips at
     eps = 1e-3 and gamma = 1, a skipped well that is made slowly 1e-4 of a slip. What is
     not seen: a slip that comes early by a jump of less than 0.06 eps, once the load alone
-    would have carried it over the fold.
+    would have carried it over the fold; and slips that come late or early little by little,
+    as under a load that is off by some hundredths of the friction: at eps = 0.01 and
+    gamma = 1 by a quarter of a slip period, between which z is 0.9 eps off.
 
     Of a scene with `effects.CompliantArray` of N bristles `z` has the shape (N, n), a row
     for each: `solve` of arrays of one offset each gives them, where that of all gives

@@ -48,8 +48,9 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
     most that was missing when a well was left, in units of `Phi'' eps`, the force of one
     well. `viscosity`: measured in slips, relative to `eps^gamma`; NaN without slips.
     `skipped`: wells crossed without the force. `status`: a `CertificateStatus`; `ok`:
-    whether the curve is within about eps/100 of a solution; `message`: the verdict. What
-    some of these are for arrays, tips with mass and rods that turn over, `certify` tells.
+    whether the curve is within about eps/100 of a solution, but for slips that come a
+    little late or early; `message`: the verdict. How late, and what some of these are for
+    arrays, tips with mass and rods that turn over, `certify` tells.
     """
 
     __slots__ = ()

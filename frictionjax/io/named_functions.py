@@ -67,7 +67,7 @@ def function_of(where: str, text: Any, folder: Path, allowed: bool) -> Callable:
     with _beside(folder):
         try:
             found: Any = importlib.import_module(module)
-        except Exception as problem:  # whatever the module does
+        except (Exception, SystemExit) as problem:  # whatever the module does
             raise ValueError(f"{said}: {_one_line(problem)}") from problem
     for part in name.split("."):
         need(hasattr(found, part), said, f"a name that {module} has")
@@ -102,7 +102,7 @@ def _beside(folder: Path) -> Iterator[None]:
         sys.path.remove(place)
 
 
-def _one_line(problem: Exception) -> str:
+def _one_line(problem: BaseException) -> str:
     said = " ".join(str(problem).split())
     return f"{type(problem).__name__}: {said}" if said else type(problem).__name__
 

@@ -129,6 +129,8 @@ def parse_scene(
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:
         raise ValueError(f"{name}: not TOML ({problem})") from None
+    except RecursionError:
+        raise ValueError(f"{name}: not a scene (lists or tables nested too deep)") from None
     try:
         scene = _scene_of(document, _Reading(folder or Path(), functions))
         return SceneFile(scene, _study_of(document.get("study", {})))

@@ -108,9 +108,13 @@ def _edges(bins: Any, z: Float[np.ndarray, " paths"]) -> Float[np.ndarray, " edg
     if asked.ndim == 0:
         count = float(asked)
         require(count >= 1 and count == round(count), "bins", bins, needs)
+        ends = float(np.min(z)), float(np.max(z))
         margin = 0.5 * max(float(np.ptp(z)), 1e-12 * float(np.max(np.abs(z))), 1e-300)
-        middle = 0.5 * float(np.min(z) + np.max(z))
-        return np.linspace(middle - margin, middle + margin, int(count) + 1)
+        middle = 0.5 * sum(ends)
+        edges = np.linspace(middle - margin, middle + margin, int(count) + 1)
+        # Rounded, the outermost would be a rounding beyond.
+        edges[0], edges[-1] = min(edges[0], ends[0]), max(edges[-1], ends[1])
+        return edges
     rising = asked.ndim == 1 and asked.size > 1 and np.all(np.diff(asked) > 0)
     require(rising, "bins", bins, needs)
     return asked

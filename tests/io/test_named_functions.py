@@ -172,13 +172,20 @@ def test_mistakes_are_named_on_one_line(files, old, new, told):
     assert "wrong.toml" in str(error.value)
 
 
-def test_modules_that_fail_are_told(files):
+@pytest.mark.parametrize(
+    ("name", "code", "told"),
+    [
+        ("broken", "1 / 0", "ZeroDivisionError: division by zero"),
+        ("leaving", "import sys; sys.exit(3)", "SystemExit: 3"),
+    ],
+)
+def test_modules_that_fail_are_told(files, name, code, told):
     folder, module = files
-    (folder / "broken_parts.py").write_text("1 / 0")
-    text = (folder / "given.toml").read_text().replace(f"{module}:W", "broken_parts:W")
-    (folder / "broken.toml").write_text(text)
-    with pytest.raises(ValueError, match="ZeroDivisionError: division by zero"):
-        fx.load_scene(folder / "broken.toml", functions=True)
+    (folder / f"{name}_parts.py").write_text(code)
+    text = (folder / "given.toml").read_text().replace(f"{module}:W", f"{name}_parts:W")
+    (folder / f"{name}.toml").write_text(text)
+    with pytest.raises(ValueError, match=told):
+        fx.load_scene(folder / f"{name}.toml", functions=True)
 
 
 def test_names_inside_names(files):

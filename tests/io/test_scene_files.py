@@ -176,6 +176,9 @@ def test_unreadable_files(tmp_path):
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ValueError, match=r"binary\.toml: cannot be read \(UTF-16"):
         fx.load_scene(tmp_path / "binary.toml")
+    (tmp_path / "deep.toml").write_text("a = " + "[" * 5000 + "]" * 5000)
+    with pytest.raises(ValueError, match=r"deep\.toml: not a scene \(lists or tables nes"):
+        fx.load_scene(tmp_path / "deep.toml")
     with pytest.raises(ValueError, match="path = 'NoneType': needs the path of a TOML"):
         fx.load_scene(None)
 

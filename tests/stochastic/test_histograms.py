@@ -4,7 +4,7 @@ from noisy_wells import COSINE, EPS
 from scipy import stats
 
 import frictionjax as fx
-from frictionjax.stochastic.histograms import spread_of_counts
+from frictionjax.stochastic.histograms import _edges, spread_of_counts
 
 PATHS = 150_000
 BINS = np.linspace(-0.02, 0.02, 13)
@@ -55,6 +55,15 @@ def test_counts_and_densities_agree(found):
     assert axes.get_xlabel() == "z (m)"
     (line,) = [one for one in axes.lines if one.get_label() == "Boltzmann's density"]
     assert np.array_equal(line.get_ydata(), fine)
+
+
+@pytest.mark.parametrize("bins", [1, 7, 20, 40])
+def test_no_path_is_beyond_the_outermost_bins(bins):
+    """An outermost path was left out by a rounding, every other time."""
+    rng = np.random.default_rng(bins)
+    for size in 10.0 ** rng.uniform(-9, 0, 200):
+        z = 0.1 + size * rng.normal(size=50)
+        assert np.sum(np.histogram(z, _edges(bins, z))[0]) == 50
 
 
 def test_intervals_are_clopper_and_pearsons():
