@@ -326,3 +326,23 @@ def test_the_certificate_knows_no_solver():
     }
     assert {"model", "effects"} <= imports["certification.py"]
     assert not {"wiggly", "limit", "sweeps"} & set().union(*imports.values())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("late", "seen"), [(0.25, False), (-0.25, False), (0.5, True)])
+def test_slips_that_come_late_little_by_little_are_seen_from_half_a_period_on(late, seen):
+    """What `certify` says of them: a quarter of a slip period is a wrong curve too."""
+    end, eps = 0.6, 0.01
+    scene = vertical(fx.loads.Sine(0.6, 3.0), end).replace(
+        bristle=fx.bristles.Homothetic(1.0)
+    )
+    period = eps / (0.4 * np.pi * np.cos(0.2 * np.pi))  # of slips at half time
+    times = np.linspace(0.0, end, 3001)
+    behind = late * period * np.exp(-(((times - 0.5 * end) / (0.25 * end)) ** 2))
+    load = 0.6 * np.sin(2 * np.pi / 3 * (times - behind))
+    other = scene.replace(load=fx.loads.PiecewiseLinear(times, load))
+    ts = np.linspace(0.0, end, 30001)
+    right, wrong = (fx.solve(s, eps, ts=ts, accuracy=1e-5).z for s in (scene, other))
+    assert np.max(np.abs(np.asarray(right - wrong))) > 0.9 * eps
+    assert fx.certify(scene, eps, 1.0, ts, right).ok
+    assert fx.certify(scene, eps, 1.0, ts, wrong).ok != seen
