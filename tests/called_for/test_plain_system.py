@@ -127,6 +127,7 @@ def test_on_straight_flanks_the_higher_order_changes_less_than_told(bristle, loa
     assert change_outside_slips(scene, 1.0, eps) <= told
 
 
+@pytest.mark.slow  # a surface of its own, through all that is explained
 @pytest.mark.parametrize("eps", [0.05, 1e-3])
 def test_on_straight_flanks_forces_change_by_what_the_higher_order_is(eps):
     """Of an upright spring `(F'(eps w) - F'(0)) w'`, though W''' is 0 at the folds."""
