@@ -71,7 +71,7 @@ class Nap(SelfDrawn, _NapNumbers):
         return np.nan if self.flipped is None else self.flipped.rho_with
 
     @property
-    def leans(self) -> bool:
+    def knows_nap(self) -> bool:
         """Whether its nap is known; else `rho_with` is of a slide to the right."""
         return not np.isnan(self.axial_with)
 
@@ -95,7 +95,7 @@ class Nap(SelfDrawn, _NapNumbers):
         against/with = 3.08422
         turns over against the nap for critical loads of 0.264736 to 1.054 N (bending ...
         """
-        ways = ("with the nap", "against it") if self.leans else _WAYS
+        ways = ("with the nap", "against it") if self.knows_nap else _WAYS
         rows = [
             (ways[0], self.rho_with, self.axial_with),
             (ways[1], self.rho_against, self.axial_against),
@@ -103,7 +103,7 @@ class Nap(SelfDrawn, _NapNumbers):
         if self.flipped is not None:
             rows.append(("turned over", self.rho_flipped, self.axial_flipped))
         cells = tuple((name, f"{rho:.6g}", f"{axial:.6g}") for name, rho, axial in rows)
-        which = "against/with" if self.leans else "left/right"
+        which = "against/with" if self.knows_nap else "left/right"
         note = f"{which} = {self.ratio:.6g}\n{self.message}"
         return ResultTable(("moved", "friction, N", "axial force, N"), cells, 1, note)
 

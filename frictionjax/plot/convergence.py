@@ -96,23 +96,24 @@ def draw_convergence(
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
     if figure is None:
         _make_room(drawn)
-    _key(drawn, curves is not None)
+    _key(drawn)
     return drawn
 
 
-def _key(figure: Any, laws: bool) -> None:
+def _key(figure: Any) -> None:
     """What points and lines are, of all panels and gammas alike."""
     point: dict[str, Any] = {"color": _GREY, "marker": "o", "linestyle": "none"}
+    law: dict[str, Any] = {"color": _GREY, "linewidth": 0.9, "alpha": 0.7}
+    slope: dict[str, Any] = {"color": GUIDE, "linewidth": 1}
     handles = [
         Line2D([], [], **point, label="in the window of the fit"),
         Line2D([], [], **point, markerfacecolor="white", label="left out"),
         Line2D([], [], color=_GREY, label="fit: its order and 95% interval above"),
+        Line2D([], [], **law, linestyle="--", label="theory: the law"),
+        Line2D([], [], **slope, linestyle=":", label="theory: slope of the lemmas"),
     ]
-    if laws:
-        look: dict[str, Any] = {"color": _GREY, "linewidth": 0.9, "alpha": 0.7}
-        handles.append(Line2D([], [], **look, linestyle="--", label="theory: the law"))
-    slopes = "theory: slope of the lemmas"
-    handles.append(Line2D([], [], color=GUIDE, linewidth=1, linestyle=":", label=slopes))
+    drawn = {line.get_linestyle() for axes in figure.axes for line in axes.lines}
+    handles = handles[:3] + [one for one in handles[3:] if one.get_linestyle() in drawn]
     columns = len(handles) if len(figure.axes) > 1 else 2
     figure.legend(handles=handles, loc="outside lower center", ncols=columns)
 

@@ -153,7 +153,7 @@ def _edges(values: np.ndarray, ratios: bool) -> np.ndarray:
     if ratios:
         return np.exp(_edges(np.log(values), False))
     if values.size == 1:
-        return values + np.array([-0.5, 0.5])
+        return values + np.array([-0.5, 0.5]) * (abs(values[0]) or 1.0)
     middle = 0.5 * (values[1:] + values[:-1])
     ends = 2 * values[[0, -1]] - middle[[0, -1]]
     return np.concatenate([ends[:1], middle, ends[1:]])

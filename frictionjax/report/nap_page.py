@@ -124,7 +124,7 @@ _WAYS = "to the right", "to the left"
 
 def verdict_of_nap(found: Nap) -> str:
     """Friction both ways, and what becomes of the bristle."""
-    ways = ("with its nap", "against its nap") if found.leans else _WAYS
+    ways = ("with its nap", "against its nap") if found.knows_nap else _WAYS
     told = (
         f"Moved {ways[0]} the bristle holds against {found.rho_with:.4g} N, {ways[1]} "
         f"{found.rho_against:.4g} N: {found.ratio:.4g} times as much."

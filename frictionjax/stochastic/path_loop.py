@@ -5,7 +5,7 @@ normal and independent: B. Leimkuhler and C. Matthews, Appl. Math. Res. eXpress 
 It costs what Euler's scheme does, and its averages are of order 2 in h (order 1), exact in
 a harmonic well at any step (Euler's variance: off by 1/(1 - h c/2 viscosity), c curvature).
 R_0 alone has the variance 3: a path sets off from a place that is known, and half of a
-normal R_0 would leave `z_n` with n - 1/2 steps of noise for n (by 16, 5 and 2% too little
+normal R_0 would leave `z_n` with n - 1/2 steps of noise for n (by 17, 5 and 2% too little
 after 3, 10 and 30 of free diffusion).
 
 Noise is counted: R_n of a path depends on its key and on n alone.

@@ -58,7 +58,8 @@ def workload(
     rests = SETTINGS.steps_a_piece * path.direction.size
     longest, ways = longest_lane(path, eps, needs), path.travel[-1] / eps
     total = steps * cost_of(path, eps, needs, times) + rests
-    chain = steps * longest + rests * np.where(ways > 0, longest / np.maximum(ways, 1), 1.0)
+    alone = np.where(ways > 0, longest / np.where(ways > 0, ways, 1.0), 1.0)
+    chain = steps * longest + rests * alone
     wells = ways / np.maximum(np.count_nonzero(path.direction), 1)
     orders = np.log10(np.maximum(wells, SETTINGS.long_slide))
     growth = (ways / 1e3) ** SETTINGS.map_growth

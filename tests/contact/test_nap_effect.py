@@ -137,8 +137,8 @@ def test_without_a_nap():
     found = fx.nap(SURFACE, fx.bristles.Homothetic(1.0))
     assert "no geometry" in found.message
     assert np.isnan(found.axial_with)
-    assert not found.leans
-    assert upright.leans
+    assert not found.knows_nap
+    assert upright.knows_nap
     printed, law = repr(found), fx.friction(SURFACE, fx.bristles.Homothetic(1.0))
     assert found.rho_with == pytest.approx(float(law.rho_plus))
     for words in ("to the right", "to the left", f"left/right = {found.ratio:.6g}"):

@@ -55,8 +55,9 @@ class SlideFit(ShownNumbers, SelfDrawn, DesignResult, eqx.Module):
     """A bristle whose steady slide at `eps` gives a wanted quantity.
 
     As `AngleFit`, with the quantity made of the slide's forces, `force` "mean" or "peak":
-    `value`, of `solutions` the nearest to what it was, but for those whose limit has less
-    than a twentieth of the friction, `rho_plus - rho_minus`, of the others; `achieved`,
+    `value`, of `solutions` the nearest to what it was, but for those of which drag,
+    `eps^gamma rate/k_h`, is more than half of the friction in the mean of both ways, where
+    there are others; `achieved`,
     `target`, `solutions` (all that a scan of 43 values an interval tells apart, its extrema
     polished), `reachable` (intervals, 2): least and largest
     quantity of that scan. `failed` (n,): values of it at which there is a bristle but its
@@ -331,7 +332,7 @@ def _searched(
     status = FitStatus.UNKNOWN if failed.size else FitStatus.UNREACHABLE
     if found.size:
         now = float(free_parameter(bristle, limit.free).now(bristle))
-        some = _rubbing(free, limit, found)
+        some = _rubbing(free, limit, found, scene)
         at = some[np.argmin(np.abs(values(some) - now))]
         status = FitStatus.TANGENT if at in turns else FitStatus.OK
     best = alone(at)
@@ -353,14 +354,20 @@ def _searched(
     )
 
 
-def _rubbing(free: FreeParameter, limit: AngleFit, found: np.ndarray) -> np.ndarray:
-    """Without solutions whose friction in the limit is tiny beside that of others.
+def _rubbing(
+    free: FreeParameter, limit: AngleFit, found: np.ndarray, scene: tuple
+) -> np.ndarray:
+    """Without those of which drag is more than half of friction, where there are others.
 
     Next to where a bristle stops pressing ratios of slides are those of their drag.
     """
+    if found.size < 2:
+        return found
+    eps, gamma, rate, stiffness = (float(number) for number in scene)
     laws = [on_slopes(free.at(limit.bristle, x), limit.slopes) for x in found]
-    sizes = np.array([float(abs(law.rho_plus - law.rho_minus)) for law in laws])
-    return found[sizes >= SETTINGS.rubs * np.max(sizes)]
+    means = np.array([0.5 * float(abs(law.rho_plus - law.rho_minus)) for law in laws])
+    rubs = means > 2 * eps**gamma * rate / stiffness
+    return found[rubs] if np.any(rubs) else found
 
 
 def _sliding_parts(

@@ -53,7 +53,6 @@ class Settings(NamedTuple):
 
     # Bristles (`bristle_fit.py`).
     together: int = 2  # slides of a call
-    rubs: float = 0.05  # of the largest friction of solutions: others are not chosen
 
     # Surfaces (`surface_fit.py`), in log forces.
     settled: float = 1e-6  # slides are right to 1e-7

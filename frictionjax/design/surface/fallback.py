@@ -48,7 +48,7 @@ def room_left(problem: Any, runs: StartRuns, places: np.ndarray) -> RoomLeft:
     best = best_of(runs)
     slopes = slopes_wanted(problem, runs, best)
     uneven = 1.0 if slopes is None else float(np.max(slopes / slopes[::-1]))
-    if slopes is None or uneven >= layout.harmonics or not np.any(runs.path.done):
+    if slopes is None or not uneven < layout.harmonics or not np.any(runs.path.done):
         return RoomLeft(runs, places, None)
     bounds = _bounds(problem, slopes)
     found, share = _surface_within(bounds)
@@ -59,14 +59,17 @@ def room_left(problem: Any, runs: StartRuns, places: np.ndarray) -> RoomLeft:
     return RoomLeft(more, np.append(places, found.place), share)
 
 
-def _surface_within(bounds: SurfaceBounds) -> tuple[BentSurface | None, float]:
-    """The least bent with all of the slopes, if any, and the share that there is."""
+def _surface_within(bounds: SurfaceBounds) -> tuple[BentSurface | None, float | None]:
+    """The least bent with all of the slopes, if any, and the share that there is, None
+    where none was found."""
     found = least_bent_within(bounds)
     if found is not None:
         return found, 1.0
     steepest = steepest_surface(bounds)
-    if steepest is None or steepest.share < 1:
-        return None, 0.0 if steepest is None else steepest.share
+    if steepest is None:
+        return None, None
+    if steepest.share < 1:
+        return None, steepest.share
     place, own = steepest.place, steepest.waves / steepest.share
     return least_bent_within(bounds, place) or BentSurface(own, place, 0.0), steepest.share
 
@@ -128,7 +131,7 @@ def _row(
         settled=Settled(array(waves), free, reach, array(ends), left, array(True)),
         path=_one_step(task, runs, [*waves, plus, plus, minus, minus, *held, *free]),
         room={name: room[name] for name in runs.room},
-        bound=array(found.bound),
+        bound=array(min(found.bound, float(np.sum(np.square(waves))))),
         misfit=_first(np.sum(left**2), runs.misfit.shape[1]),
         ran=array(True),
     )

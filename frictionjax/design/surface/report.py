@@ -181,7 +181,8 @@ def _bound_felt(room: dict[str, float], share: float | None) -> ProfileStatus | 
         return ProfileStatus.TOO_HIGH
     if share is None:
         return None
-    return ProfileStatus.TOO_HIGH if "height" in room else ProfileStatus.TOO_SHARP
+    high = room.get("height", np.inf) < room.get("curvature", np.inf)
+    return ProfileStatus.TOO_HIGH if high else ProfileStatus.TOO_SHARP
 
 
 def _within(wanted: np.ndarray, most: float) -> bool:

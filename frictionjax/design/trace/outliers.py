@@ -38,5 +38,5 @@ def _begin(values: np.ndarray, beyond: np.ndarray, start: float, most: float) ->
     """
     count = int(np.argmin(beyond))
     way = np.concatenate([[start], values[: count + 1]])
-    steps = np.sign(way[-1] - start) * np.diff(way)
+    steps = (np.sign(way[-1] - start) or 1.0) * np.diff(way)
     return count if np.all(steps >= -most) else 0

@@ -24,9 +24,9 @@ def draw_strokes(found: Nap, ax: Any = None) -> Any:
     """
     drawn, axes = axes_of(ax, 7.2, 4.2)
     axes.axhline(0, color=GUIDE, linewidth=0.8)
-    kept = "it keeps its nap" if found.leans else "it stays as it stands"
+    kept = "it keeps its nap" if found.knows_nap else "it stays as it stands"
     _loop(axes, found.rho_with, found.rho_against, 0, "-", kept)
-    forth, back = ("with", "against") if found.leans else ("right", "left")
+    forth, back = ("with", "against") if found.knows_nap else ("right", "left")
     _level(axes, found.rho_with, f"\\rho_{{{forth}}}")
     _level(axes, -found.rho_against, f"-\\rho_{{{back}}}")
     if found.flipped is not None:
@@ -34,7 +34,8 @@ def draw_strokes(found: Nap, ax: Any = None) -> Any:
         _loop(axes, found.rho_with, found.rho_flipped, 1, "--", label)
         _level(axes, -found.rho_flipped, "-\\rho_{flipped}")
     axes.set(xlabel="way of the root (strokes)", ylabel="friction force (N)")
-    title = "With and against the nap" if found.leans else "To the right and to the left"
+    ways = "With and against the nap", "To the right and to the left"
+    title = ways[not found.knows_nap]
     axes.set_title(f"{title}: {back}/{forth} = {found.ratio:.4g}")
     axes.margins(x=0.02, y=0.16)
     axes.legend(loc="best")

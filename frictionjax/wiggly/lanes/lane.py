@@ -262,7 +262,10 @@ def _extent(
 def _outside(
     scene: LaneScene, cell: LaneCells, point: Point, guide: Real, speed: Real
 ) -> tuple[Real, Real]:
-    """How far z is outside the strip in m, negative inside, and how fast it goes away."""
+    """How far z is outside the strip in m, and how fast it goes away.
+
+    Inside not above 0, and its size means nothing.
+    """
     support, z = scene.support, point.state
     here = support.force(z)
     under, over = point.load - scene.rho_plus, point.load - scene.rho_minus

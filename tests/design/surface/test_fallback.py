@@ -95,3 +95,9 @@ def test_the_steepest_has_its_lowest_slope_where_that_is_best():
     found = steepest_surface(bounds)
     assert 1.003 < found.share < 1.02
     assert abs(found.place - 0.5) > 0.1
+
+
+def test_next_to_the_largest_ratio_of_slopes_the_share_is_known():
+    """There the lowest slope is at the places of Fejer's kernel: "0 of the slopes"."""
+    found = steepest_surface(SurfaceBounds(4, 1.0, 0.25 * (1 + 1e-7), np.inf, 0.05))
+    assert 0.2 < found.share < 1

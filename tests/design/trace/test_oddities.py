@@ -196,6 +196,9 @@ def test_outliers_are_far_from_their_neighbours_and_from_all_others():
     saw = np.tile([0.0, 1.0, 2.0, 3.0], 25)
     assert outliers_of(saw).size == 0
     assert outliers_of(np.zeros(9)).size == 0
+    spike = np.append([5.0, 0.0], 0.1 * np.sin(np.arange(98.0)))
+    spike[1] = 0.0
+    assert outliers_of(spike, 0.0).tolist() == outliers_of(spike).tolist() == [0]
     far = saw.copy()
     far[[10, 11]] = 90.0, -70.0
     assert outliers_of(far).tolist() == [10, 11]

@@ -124,5 +124,6 @@ def _pairs(seen: tuple[np.ndarray, np.ndarray], height: float) -> np.ndarray:
     above, below = np.argmax(values), np.argmin(values)
     low = places[values < values[above] - height]
     high = places[values > values[below] + height]
+    high = high[high != places[above]]  # which is in the first
     first = np.stack([np.full(low.size, places[above]), low], axis=1)
     return np.concatenate([first, np.stack([high, np.full(high.size, places[below])], 1)])

@@ -90,7 +90,7 @@ def with_ends_seen(seen: SeenSlopes, waves: np.ndarray, ends: Any) -> np.ndarray
         least = np.maximum(np.min(beyond, axis=0), SETTINGS.touching * span)
         where, which = _apart(places, beyond, beyond <= least, seen.harmonics)
         rows = seen.at(places[where])
-        waves = waves + np.linalg.pinv(rows, rtol=SETTINGS.rank) @ gaps[where, which]
+        waves = waves + np.linalg.pinv(rows, rtol=SETTINGS.rank_seen) @ gaps[where, which]
     return waves
 
 

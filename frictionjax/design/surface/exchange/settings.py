@@ -19,7 +19,7 @@ class Settings(NamedTuple):
     touching: float = 3e-6
     impossible: float = 1e-12
     exchanges: int = 50  # a row
-    rank: float = 1e-9  # of the largest singular value
+    rank_seen: float = 1e-9  # of the largest singular value
 
     # The steepest surface within bounds (`steepest.py`).
     scanned: tuple[int, int] = (16, 32)  # places of the lowest slope: 4 a harmonic

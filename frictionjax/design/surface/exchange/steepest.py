@@ -78,14 +78,24 @@ def steepest_surface(bounds: SurfaceBounds) -> SteepSurface | None:
     for index in peaks[np.argsort(-shares[peaks])][: SETTINGS.peaks]:
         if _share(best) >= min(shares[index], SETTINGS.enough):
             break
-        best = _around(bounds, places[index], places[0], best)
+        best = _around(bounds, places[index], 0.5 / _scanned(bounds.harmonics), best)
     return best
 
 
 def scanned_places(harmonics: int) -> np.ndarray:
-    """Places of the lowest slope, half a period the last."""
-    count = int(np.clip(4 * harmonics, *SETTINGS.scanned))
-    return 0.5 * np.arange(1, count + 1) / count
+    """Places of the lowest slope, half a period the last.
+
+    Those of Fejer's kernel among them: next to the largest ratio of slopes there are no
+    others.
+    """
+    count = _scanned(harmonics)
+    even = 0.5 * np.arange(1, count + 1) / count
+    kernel = np.arange(1, harmonics // 2 + 1) / (harmonics + 1)
+    return np.union1d(even, kernel)
+
+
+def _scanned(harmonics: int) -> int:
+    return int(np.clip(4 * harmonics, *SETTINGS.scanned))
 
 
 def _share(found: SteepSurface | None) -> float:
@@ -129,7 +139,8 @@ def _exact(
             break
         over, rows = _with_left(bounds, found, rows)
         if over <= SETTINGS.left:
-            known = found._replace(share=most / (1 + max(over, 0.0)))
+            less = 1 + max(over, 0.0)
+            known = found._replace(share=most / less, waves=found.waves / less)
             best = max((best, known), key=_share)
             break
     return rows, most, best
