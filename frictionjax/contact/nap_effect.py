@@ -30,9 +30,6 @@ _NO_GEOMETRY = (
 _UPRIGHT = "it stands upright and has no nap: a slide to the right is taken as with it"
 
 
-_WAYS = "to the right", "to the left"  # of a bristle whose nap is not known
-
-
 class _NapNumbers(NamedTuple):
     rho_with: float
     rho_against: float
@@ -76,6 +73,12 @@ class Nap(SelfDrawn, _NapNumbers):
         return not np.isnan(self.axial_with)
 
     @property
+    def ways(self) -> tuple[str, str]:
+        """What `rho_with` and `rho_against` are of, in words."""
+        known = self.knows_nap
+        return ("with the nap", "against it") if known else ("to the right", "to the left")
+
+    @property
     def turns_over(self) -> bool:
         """Whether it turns over against its nap and only then, by its critical load."""
         loads, own = self.window, self.critical_load
@@ -95,10 +98,10 @@ class Nap(SelfDrawn, _NapNumbers):
         against/with = 3.08422
         turns over against the nap for critical loads of 0.264736 to 1.054 N (bending ...
         """
-        ways = ("with the nap", "against it") if self.knows_nap else _WAYS
+        forth, back = self.ways
         rows = [
-            (ways[0], self.rho_with, self.axial_with),
-            (ways[1], self.rho_against, self.axial_against),
+            (forth, self.rho_with, self.axial_with),
+            (back, self.rho_against, self.axial_against),
         ]
         if self.flipped is not None:
             rows.append(("turned over", self.rho_flipped, self.axial_flipped))

@@ -63,7 +63,7 @@ def _amounts(work: Workload) -> np.ndarray:
     chain = work.weight * work.chain.max(initial=0.0)
     calls = (
         1
-        + SETTINGS.piece_calls * work.pieces.max(initial=0)
+        + SETTINGS.piece_calls * work.pieces
         + SETTINGS.map_calls * work.maps.sum()
         + SETTINGS.round_calls * work.rounds.max(initial=0.0)
     )

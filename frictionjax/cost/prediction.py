@@ -111,7 +111,7 @@ def _predicted(
 
 def _one(work: Workload, cell: int) -> Workload:
     some = slice(cell, cell + 1)
-    return Workload._make([*(column[some] for column in work[:-1]), work.weight])
+    return Workload._make([*(column[some] for column in work[:-2]), *work[-2:]])
 
 
 @with_nan

@@ -51,6 +51,7 @@ _MANY_DECADES = 3
 _LINE = 0.17  # inches
 _DIFFERS = 0.05  # of orders: what the points show is said too
 _GREY = "#666666"
+_ENTRY = 2.6  # inches, of the key
 
 
 @styled
@@ -114,7 +115,8 @@ def _key(figure: Any) -> None:
     ]
     drawn = {line.get_linestyle() for axes in figure.axes for line in axes.lines}
     handles = handles[:3] + [one for one in handles[3:] if one.get_linestyle() in drawn]
-    columns = len(handles) if len(figure.axes) > 1 else 2
+    fit = int(figure.bbox.width / figure.dpi / _ENTRY)
+    columns = min(max(fit, 1), len(handles))
     figure.legend(handles=handles, loc="outside lower center", ncols=columns)
 
 

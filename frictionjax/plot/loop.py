@@ -58,7 +58,7 @@ def draw_loop(
     load, finer = dataset["load"].values, False
     for value, shade in zip(chosen, shades(chosen.size), strict=True):
         z = dataset.z.sel(gamma=gamma, eps=value).values
-        joined = follows_slips(z, float(value))
+        joined = _follows_slips(z, float(value))
         finer |= not joined
         look = _JOINED if joined else _DOTS
         force = friction_force(support, load, z)
@@ -78,7 +78,7 @@ def draw_loop(
     return figure
 
 
-def follows_slips(z: np.ndarray, eps: float) -> bool:
+def _follows_slips(z: np.ndarray, eps: float) -> bool:
     """Whether most wells that `z` (m), shape (time,), passes hold enough of its times."""
     passed = np.abs(np.diff(np.floor(z[np.isfinite(z)] / eps)))
     last = np.flatnonzero(passed)

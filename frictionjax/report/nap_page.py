@@ -119,14 +119,11 @@ def nap_page(facts: NapFacts, asked: ReportRequest) -> str:
     )
 
 
-_WAYS = "to the right", "to the left"
-
-
 def verdict_of_nap(found: Nap) -> str:
     """Friction both ways, and what becomes of the bristle."""
-    ways = ("with its nap", "against its nap") if found.knows_nap else _WAYS
+    forth, back = found.ways
     told = (
-        f"Moved {ways[0]} the bristle holds against {found.rho_with:.4g} N, {ways[1]} "
+        f"Moved {forth} the bristle holds against {found.rho_with:.4g} N, {back} "
         f"{found.rho_against:.4g} N: {found.ratio:.4g} times as much."
     )
     if found.turns_over:

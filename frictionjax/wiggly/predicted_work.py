@@ -17,7 +17,7 @@ from .ways import Way, slides_of
 
 
 class Workload(NamedTuple):
-    """Work of lanes in each cell, shape (cells,).
+    """Work of lanes in each cell, shape (cells,), and of all of them: pieces, weight.
 
     `steps`: of all lanes. `chain`: those that one lane takes after the other. `jobs`:
     lanes that set off; `segments`: of their ways. `maps`: slides of which slip maps are
@@ -31,7 +31,7 @@ class Workload(NamedTuple):
     segments: np.ndarray
     maps: np.ndarray
     rounds: np.ndarray
-    pieces: np.ndarray
+    pieces: int
     weight: float
 
 
@@ -74,9 +74,8 @@ def workload(
     turns = np.minimum(maps * lag, ways) / needs.leg
     panels = maps * SETTINGS.map_segments * orders**2
     segments = np.where(by_map, panels + turns, segments)
-    pieces = np.full(eps.size, path.direction.size)
-    weight = _weight_of(tables)
-    return Workload(total, chain, jobs, segments, maps, rounds, pieces, weight)
+    alike = path.direction.size, _weight_of(tables)
+    return Workload(total, chain, jobs, segments, maps, rounds, *alike)
 
 
 def _longest_chains(slides: np.ndarray, cut: np.ndarray) -> np.ndarray:

@@ -57,14 +57,13 @@ class SlideFit(ShownNumbers, SelfDrawn, DesignResult, eqx.Module):
     As `AngleFit`, with the quantity made of the slide's forces, `force` "mean" or "peak":
     `value`, of `solutions` the nearest to what it was, but for those of which drag,
     `eps^gamma rate/k_h`, is more than half of the friction in the mean of both ways, where
-    there are others; `achieved`,
-    `target`, `solutions` (all that a scan of 43 values an interval tells apart, its extrema
-    polished), `reachable` (intervals, 2): least and largest
-    quantity of that scan. `failed` (n,): values of it at which there is a bristle but its
-    slide was not found, but for those next to an end where nothing grows towards the
-    target; without a solution the status is then UNKNOWN, not UNREACHABLE. `slide`: of the
-    bristle returned. `by_target`: d value/d target, infinite where the status is TANGENT.
-    `limit`: the fit for eps -> 0.
+    there are others; `achieved`, `target`, `solutions` (all that a scan of 43 values an
+    interval tells apart, its extrema polished), `reachable` (intervals, 2): least and
+    largest quantity of that scan. `failed` (n,): values of it at which there is a bristle
+    but its slide was not found, but for those next to an end where nothing grows towards
+    the target; without a solution the status is then UNKNOWN, not UNREACHABLE. `slide`: of
+    the bristle returned. `by_target`: d value/d target, infinite where the status is
+    TANGENT. `limit`: the fit for eps -> 0.
     """
 
     bristle: AbstractBristle

@@ -13,14 +13,14 @@ from .barrier import SETTINGS as BARRIER_SETTINGS
 from .barrier import Iterates, Reach, Settled
 from .exchange import (
     BentSurface,
-    SeenSlopes,
     SurfaceBounds,
     extrema,
     least_bent_within,
+    plain_slopes,
     steepest_surface,
     with_ends_seen,
 )
-from .multistart import StartRuns
+from .multistart import StartRuns, best_first
 from .reachable import followed, slopes_asked
 
 
@@ -45,7 +45,8 @@ def room_left(problem: Any, runs: StartRuns, places: np.ndarray) -> RoomLeft:
     layout = problem.layout
     if met or not (layout.sharp or layout.high):
         return RoomLeft(runs, places, 1.0 if met and not layout.free else None)
-    best = best_of(runs)
+    *_, order = best_first(runs, float(problem.task.slope), problem.scale)
+    best = int(order[0])
     slopes = slopes_wanted(problem, runs, best)
     uneven = 1.0 if slopes is None else float(np.max(slopes / slopes[::-1]))
     if slopes is None or not uneven < layout.harmonics or not np.any(runs.path.done):
@@ -72,12 +73,6 @@ def _surface_within(bounds: SurfaceBounds) -> tuple[BentSurface | None, float | 
         return None, steepest.share
     place, own = steepest.place, steepest.waves / steepest.share
     return least_bent_within(bounds, place) or BentSurface(own, place, 0.0), steepest.share
-
-
-def best_of(runs: StartRuns) -> int:
-    """The start with the smallest residuals."""
-    losses = np.sum(np.asarray(runs.settled.residuals) ** 2, axis=1)
-    return int(np.argmin(np.where(np.isfinite(losses), losses, np.inf)))
 
 
 def slopes_wanted(problem: Any, runs: StartRuns, index: int) -> np.ndarray | None:
@@ -108,8 +103,7 @@ def _row(
     array: Any = np.asarray
     task, free = problem.task, array(runs.settled.free[best])
     ends = np.array([bounds.plus, bounds.minus])
-    plain = SeenSlopes(bounds.harmonics, np.ones(found.waves.size))
-    waves = with_ends_seen(plain, found.waves, ends)
+    waves = with_ends_seen(plain_slopes(bounds.harmonics), found.waves, ends)
     slopes, bends, heights = (values for _, values in extrema(waves))
     plus, minus = np.max(slopes), -np.min(slopes)
     reach = Reach(plus, minus, np.max(np.abs(bends)), np.ptp(heights))

@@ -95,8 +95,8 @@ def fit_profile(
     is admissible (`1 + a omega > 0`, the bristles' own bounds; free bristles keep 0.1% from
     the steepest slopes that they follow) and keeps the other bounds with a margin of 0.5%.
     Where only surfaces nearer to them have the slopes, the least bent of those, by exchange
-    over some places of the lowest slope, is one start more: it takes 1 to 3 s at 16
-    harmonics, 45 at 40.
+    over some places of the lowest slope, is one start more: by hand, it takes
+    1 to 3 s at 16 harmonics, 45 at 40.
     Targets that no surface meets come back with the best weighted compromise and a
     `.status` and `.message` that say why.
 

@@ -102,6 +102,21 @@ def targets_met(task: FitTask, residuals: Any) -> np.ndarray:
     return np.max(np.abs(errors), axis=(1, 2)) <= SETTINGS.target_met
 
 
+def best_first(
+    runs: StartRuns, slope: float, scale: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Squared residuals, bending energies and the order of starts, (n,) each.
+
+    By residuals (times `scale`), and by energy among those that tie; `slope`: of the task.
+    """
+    losses = np.sum(np.asarray(runs.settled.residuals) ** 2, axis=1) * scale**2
+    energies = slope**2 * np.sum(np.asarray(runs.settled.waves) ** 2, axis=1)
+    filled = np.where(np.isfinite(losses), losses, np.inf)
+    level = np.min(filled)
+    tied = filled <= level * (1 + SETTINGS.tie) + SETTINGS.target_met**2
+    return losses, energies, np.lexsort((np.where(tied, energies, filled), ~tied))
+
+
 @eqx.filter_jit
 def multistart(
     layout: FitShape,

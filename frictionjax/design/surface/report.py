@@ -15,7 +15,7 @@ from .barrier import SETTINGS as BARRIER_SETTINGS
 from .barrier import bending_energy, heights_of_waves
 from .fallback import RoomLeft, slopes_wanted
 from .history import History, Start
-from .multistart import StartRuns, targets_met
+from .multistart import StartRuns, best_first, targets_met
 from .open_directions import identifiability
 from .reachable import (
     followed,
@@ -33,9 +33,7 @@ def report_fit(problem: Any, found: RoomLeft) -> ProfileFit:
     """The result of the best start; see `ProfileFit`."""
     task, (runs, places, share) = problem.task, found
     slope = float(task.slope)
-    losses = np.sum(np.asarray(runs.settled.residuals) ** 2, axis=1) * problem.scale**2
-    energies = slope**2 * np.sum(np.asarray(runs.settled.waves) ** 2, axis=1)
-    order = _sorted(losses, energies)
+    losses, energies, order = best_first(runs, slope, problem.scale)
     best = int(order[0])
     profile = Fourier(*_series(runs.settled.waves[best], np.asarray(task.slope)))
     cos: Any = np.asarray(profile.cos)
@@ -92,14 +90,6 @@ def _series(waves: Any, slope: Any) -> tuple[Any, Any]:
     """Compiled: NumPy arrays become JAX arrays in 30 us so, by `asarray` in 70."""
     cos, sin = heights_of_waves(waves)
     return slope * cos, slope * sin
-
-
-def _sorted(losses: np.ndarray, energies: np.ndarray) -> np.ndarray:
-    """Best first: by loss, and by bending energy among losses that tie."""
-    filled = np.where(np.isfinite(losses), losses, np.inf)
-    level = np.min(filled)
-    tied = filled <= level * (1 + SETTINGS.tie) + SETTINGS.target_met**2
-    return np.lexsort((np.where(tied, energies, filled), ~tied))
 
 
 def _bristles(problem: Any, free: Any) -> tuple:

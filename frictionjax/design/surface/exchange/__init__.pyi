@@ -3,6 +3,7 @@ from .least_bent import least_bent_within as least_bent_within
 from .seen_slopes import SeenSlopes as SeenSlopes
 from .seen_slopes import bumps as bumps
 from .seen_slopes import phases_of as phases_of
+from .seen_slopes import plain_slopes as plain_slopes
 from .seen_slopes import shares_seen as shares_seen
 from .seen_slopes import times_shares as times_shares
 from .seen_slopes import turned as turned

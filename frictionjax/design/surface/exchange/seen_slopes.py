@@ -53,6 +53,11 @@ class SeenSlopes(NamedTuple):
         return basis(self.harmonics, rows * self.harmonics) * self.sizes
 
 
+def plain_slopes(harmonics: int) -> SeenSlopes:
+    """Those of the surface itself."""
+    return SeenSlopes(harmonics, np.ones(2 * harmonics))
+
+
 def bumps(seen: SeenSlopes, waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Places and values of all extrema of the slopes seen.
 
@@ -61,9 +66,8 @@ def bumps(seen: SeenSlopes, waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     count = seen.harmonics
     cos, sin = np.split(seen.sizes * waves, 2)
-    bends = 1j * (
-        cos - 1j * sin
-    )  # a wave of v' is 2 pi n times that of v, sqrt(2)/(2 pi n)
+    # A wave of v' is 2 pi n times that of v, sqrt(2)/(2 pi n).
+    bends = 1j * (cos - 1j * sin)
     zeros = np.roots(np.concatenate([bends[::-1], [0.0], bends.conj()]))
     places = np.angle(zeros) / (2 * np.pi)
     slope, bend = (seen.at(places, order) @ waves for order in (1, 2))

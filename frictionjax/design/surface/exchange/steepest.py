@@ -13,7 +13,7 @@ from jaxtyping import Float
 
 from ..barrier import ORDERS, basis_at
 from ..barrier import SETTINGS as BARRIER_SETTINGS
-from .seen_slopes import SeenSlopes, bumps, turned
+from .seen_slopes import bumps, plain_slopes, turned
 from .settings import SETTINGS
 
 
@@ -59,7 +59,7 @@ def extrema(waves: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     """Places and values of all extrema of slopes, curvatures and heights."""
     harmonics = waves.size // 2
     turns = 2j * np.pi * np.arange(1, harmonics + 1)
-    plain = SeenSlopes(harmonics, np.ones(waves.size))
+    plain = plain_slopes(harmonics)
     return [bumps(plain, turned(waves, turns ** float(order))) for order in ORDERS]
 
 
