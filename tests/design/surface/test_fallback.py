@@ -7,7 +7,6 @@ import pytest
 from designs import HOMOTHETIC, slopes_of
 
 import frictionjax as fx
-from frictionjax.design.surface.exchange import SurfaceBounds, steepest_surface
 from frictionjax.design.surface.status import ProfileStatus
 
 TIGHT = [  # of witnesses with 0.3 to 0.5% to spare
@@ -75,29 +74,3 @@ def test_a_free_bristle_is_met_too_where_bounds_leave_little_room():
     fit = fx.fit_profile(target, starts=2, **free, **TIGHT[0][0])
     assert fit.success, fit.message
     assert np.ptp(slopes_of(fit.profile, order=-1)) <= 0.005
-
-
-@pytest.mark.parametrize("harmonics", [1, 2])
-def test_the_steepest_of_one_wave_is_in_closed_form(harmonics):
-    """`w = h/2 sin`: slopes pi h, and 1/(2 pi R) where |w''| is 1/R at most."""
-    high = SurfaceBounds(1, 1.0, 1.0, np.inf, 0.1)
-    assert np.isclose(steepest_surface(high).share, 0.1 * np.pi, rtol=1e-4)
-    sharp = SurfaceBounds(harmonics, 1.0, 1.0, 2.0, np.inf)
-    found = steepest_surface(sharp)
-    assert found.share >= (1 - 1e-4) / np.pi
-    assert found.place > 0.45
-
-
-def test_the_steepest_has_its_lowest_slope_where_that_is_best():
-    """Half a period away 4 waves that rise by 0.005 reach 0.867 of these slopes."""
-    slope = 0.0482
-    bounds = SurfaceBounds(4, 0.0408 / slope, 0.0556 / slope, np.inf, 0.005 / slope)
-    found = steepest_surface(bounds)
-    assert 1.003 < found.share < 1.02
-    assert abs(found.place - 0.5) > 0.1
-
-
-def test_next_to_the_largest_ratio_of_slopes_the_share_is_known():
-    """There the lowest slope is at the places of Fejer's kernel: "0 of the slopes"."""
-    found = steepest_surface(SurfaceBounds(4, 1.0, 0.25 * (1 + 1e-7), np.inf, 0.05))
-    assert 0.2 < found.share < 1
