@@ -56,6 +56,7 @@ FLOORS = {
     ],
     "certificate": [
         {"settings", "forces", "limit_curve"},
+        {"following"},
         {"curve", "verdicts", "sample_gaps"},
         {"transits", "tube", "critical_places", "massive_steps"},
         {"plain_curve", "massive_course"},

@@ -42,6 +42,7 @@ def bent_certificate(
     residual = float(np.sum(on.residual))
     measured = CurveMeasures(
         distance=distance(ts, z, at, on, eps, viscosity, 0.5 * scale / eps),
+        within=np.inf,
         missing_force=-np.inf,
         viscosity=np.nan,
         spacing=float(np.max(np.abs(np.diff(z)))) / eps,

@@ -39,18 +39,20 @@ def certify(
 
     `eps` in m, `gamma` > 0; `ts` in s, increasing, in [0, duration]; `z` in m; shapes
     (n,), n >= 2, NumPy or JAX. The curve's start is not compared with the scene's `z0`.
-    Needs slips sampled at eps/4 or finer; a tenth of eps is comfortable, and as much finer
-    as the wells have flanks narrower than a sine's: a rod that hardly keeps its contact
-    needs eps/500, and true curves are told `VISCOSITY` or `OFF` before.
+    Needs slips sampled at eps/4 or finer; a tenth of eps is comfortable.
 
     `ok` accepts a curve within eps/100 of a solution, whatever the deviation, and rejects
-    one that skips a well, is shifted by eps/10 or has another gamma. The residual of the
-    balance is reported but cannot decide that: a shift by eps/100 costs 270 slips at
-    eps = 1e-3 and gamma = 1, a skipped well that is made slowly 1e-4 of a slip. What is
-    not seen: a slip that comes early by a jump of less than 0.06 eps, once the load alone
-    would have carried it over the fold; and slips that come late or early little by little,
-    as under a load that is off by some hundredths of the friction: at eps = 0.01 and
-    gamma = 1 by a quarter of a slip period, between which z is 0.9 eps off.
+    one that skips a well, is shifted by eps/10, has another gamma, or slips late or early,
+    by a tenth of a slip period say. From samples where tips forget where they were two
+    solutions are followed, one from just below and one from just above, between which all
+    that are close to the curve have to be: `distance` is how far the curve is from all of
+    these, `within` how far it is at most from one. Where tips forget nothing for many
+    wells, as in fast slides, `within` may be inf; then forces over windows, the force that
+    a slip takes and the viscosity that shows in it decide too, which narrow wells under few
+    samples may fail: `VISCOSITY` or `OFF` of a true curve. In time a hundredth of what the
+    limit takes to slide by eps is allowed, as slips may be far shorter. The residual of the
+    balance is reported but cannot decide: a shift by eps/100 costs 270 slips at eps = 1e-3
+    and gamma = 1, a skipped well that is made slowly 1e-4 of a slip.
 
     Of a scene with `effects.CompliantArray` of N bristles `z` has the shape (N, n), a row
     for each: `solve` of arrays of one offset each gives them, where that of all gives
@@ -85,8 +87,9 @@ def certify(
 
     `progress`: a line on standard error where it takes more than two seconds.
 
-    Returns a `Certificate`: `.ok .status .message`, `.distance` in eps, `.residual` and
-    `.scale` in J, wells crossed, `.slips` and `.skipped`, and more, see its `.table()`.
+    Returns a `Certificate`: `.ok .status .message`, `.distance` and `.within` in eps,
+    `.residual` and `.scale` in J, wells crossed, `.slips` and `.skipped`, and more, see its
+    `.table()`.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
     bristle loses its contact.

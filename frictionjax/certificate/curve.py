@@ -19,7 +19,8 @@ Column = Any
 
 class CurveSamples(NamedTuple):
     """At the samples, shapes (n,): the tip y = well + inside in periods, `f` in N with its
-    derivatives by z, the load and `V_eps'` in N, and dz/dy in m.
+    derivatives by z, the load and `V_eps'` in N, dz/dy in m, and how fast the limit would
+    slide there, `|l'|/Phi''`, in m/s.
     """
 
     well: Column
@@ -30,6 +31,7 @@ class CurveSamples(NamedTuple):
     load: Column
     wiggle: Column
     stretch: Column
+    pace: Column
 
 
 class Intervals(NamedTuple):
@@ -62,6 +64,7 @@ def _sample(force: AbstractForce, t: Real, z: Real) -> CurveSamples:
         load=force.load(t),
         wiggle=driven.wiggle,
         stretch=driven.stretch,
+        pace=jnp.abs(force.load.slope(t)) / force.support.stiffness_at(z),
     )
 
 

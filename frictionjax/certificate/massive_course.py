@@ -5,9 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Int
 
-from ..numerics import cubic
+from ..numerics import RADAU_PLACES, cubic
 from .massive_steps import (
-    PLACES,
     MassiveEquation,
     MassiveSteps,
     SolvedStages,
@@ -107,7 +106,7 @@ def divided(gaps: SampleGaps, count: int) -> MassiveCourse:
     """`count` equal steps in each gap, on the cubics that join samples."""
     of = gaps.at(np.repeat(np.arange(gaps.start.size), count)[:, None])
     start = np.tile(np.arange(count) / count, gaps.start.size)
-    shares = np.column_stack([start, start[:, None] + PLACES / count])
+    shares = np.column_stack([start, start[:, None] + RADAU_PLACES / count])
     # Where a slip begins in a long gap the speed at its end would swing the cubic.
     most = np.maximum(3 * np.abs(of.rise), SETTINGS.swing)
     slopes = (np.clip(of.length * rate, -most, most) for rate in (of.rate0, of.rate1))
@@ -144,13 +143,14 @@ def joined_courses(
 
 def _lagrange(shares: np.ndarray) -> np.ndarray:
     """Weights of the start and the stages of a step in the cubic through them."""
-    known = np.append(0.0, PLACES)
+    known = np.append(0.0, RADAU_PLACES)
     rows = [np.prod([(shares - b) / (a - b) for b in known if b != a], 0) for a in known]
     return np.stack(rows)
 
 
+_HALF = 0.5 * RADAU_PLACES
 _HALVES = np.stack(
-    [_lagrange(np.append(0.0, 0.5 * PLACES)), _lagrange(np.append(0.5, 0.5 + 0.5 * PLACES))]
+    [_lagrange(np.append(0.0, _HALF)), _lagrange(np.append(0.5, 0.5 + _HALF))]
 )
 
 

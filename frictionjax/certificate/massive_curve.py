@@ -86,6 +86,7 @@ def massive_certificate(
         slips=slips,
         skipped=0,
         distance=distance,
+        within=distance,
         missing_force=math.nan,
         viscosity=ratio,
         spacing=spacing,

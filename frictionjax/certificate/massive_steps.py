@@ -1,7 +1,7 @@
 """The equation of a tip with mass in steps, linear near states that are known.
 
-Radau IIA with three stages, of order 5, which forgets a speed that is forgotten within one
-step (E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, section IV.8).
+Radau IIA (`numerics.RADAU_WEIGHTS`), which forgets a speed that is forgotten within one
+step.
 `y' = u/G`, `u' = (f - eps^gamma eps u)/(m eps)`, y the tip in periods, `u = z'/eps`.
 """
 
@@ -15,19 +15,9 @@ from jaxtyping import Array
 
 from .._checks import Real
 from .._compile import Program, in_chunks
+from ..numerics import RADAU_PLACES, RADAU_WEIGHTS, inverse_of_three
 from .forces import Force
 from .settings import SETTINGS
-
-_ROOT = 6**0.5
-PLACES = np.array([(4 - _ROOT) / 10, (4 + _ROOT) / 10, 1.0])
-"""Of the stages in a step."""
-_WEIGHTS = np.array(
-    [
-        [(88 - 7 * _ROOT) / 360, (296 - 169 * _ROOT) / 1800, (-2 + 3 * _ROOT) / 225],
-        [(296 + 169 * _ROOT) / 1800, (88 + 7 * _ROOT) / 360, (-2 - 3 * _ROOT) / 225],
-        [(16 - _ROOT) / 36, (16 + _ROOT) / 36, 1 / 9],
-    ]
-)
 
 
 class MassiveEquation(eqx.Module):
@@ -94,24 +84,16 @@ def _rates(equation: MassiveEquation, well: Real, t: Array, y: Array, u: Array) 
     )
 
 
-def _inverse(m: Array) -> Array:
-    """Of (3, 3), by cofactors: lanes side by side, where LAPACK takes one at a time."""
-    first = jnp.cross(m[:, 1], m[:, 2])
-    second = jnp.cross(m[:, 2], m[:, 0])
-    third = jnp.cross(m[:, 0], m[:, 1])
-    return jnp.stack([first, second, third]) / jnp.dot(m[:, 0], first)
-
-
 def _solved(equation: MassiveEquation, step: MassiveSteps) -> SolvedStages:
     """Newton's step for the stages of one step; speeds are eliminated."""
-    times = step.start + jnp.asarray(PLACES) * step.length
-    weights = step.length * jnp.asarray(_WEIGHTS)
+    times = step.start + jnp.asarray(RADAU_PLACES) * step.length
+    weights = step.length * jnp.asarray(RADAU_WEIGHTS)
     rates = _rates(equation, step.well, times, step.tips, step.speeds)
     forgotten = equation.viscosity / equation.mass
-    damped = _inverse(jnp.eye(3) + forgotten * weights)
+    damped = inverse_of_three(jnp.eye(3) + forgotten * weights)
     pulled = damped @ (weights * rates.speed_by_tip)
     moved = weights * rates.tip_by_speed
-    left = _inverse(jnp.eye(3) - weights * rates.tip_by_tip - moved @ pulled)
+    left = inverse_of_three(jnp.eye(3) - weights * rates.tip_by_tip - moved @ pulled)
 
     def changes(tip: Array, speed: Array) -> tuple[Array, Array]:
         late = damped @ speed

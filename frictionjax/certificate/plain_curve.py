@@ -4,12 +4,14 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Float
 
-from ..model import Scene
+from ..model import Scene, known_turning_points, padded_edges
 from .curve import along_curve, every_second
+from .following import FollowedCurve, distances_from_rests
 from .forces import AbstractForce, Force, force_in_tables, force_of
 from .settings import SETTINGS
-from .transits import folds_of, missing_forces, viscosity_ratio
+from .transits import folds_of, missing_forces, most_forgetful, viscosity_ratio
 from .tube import distance
 from .verdicts import Certificate, CertificateStatus
 
@@ -18,6 +20,7 @@ class CurveMeasures(NamedTuple):
     """What verdicts go by, each as in a `Certificate`."""
 
     distance: float
+    within: float
     missing_force: float
     viscosity: float
     spacing: float
@@ -28,18 +31,28 @@ def plain_certificate(
 ) -> Certificate:
     """Of finite samples; `viscosity` is `eps^gamma`, `scale` the energy of a slip in J."""
     force = force_in_tables(force_of(scene, jnp.asarray(eps)), ts)
-    return certificate_under(force, viscosity, scale, ts, z)
+    turning_points = known_turning_points(scene.load, scene.duration, scene.turns)
+    stops = padded_edges(turning_points, scene.duration)
+    return certificate_under(force, viscosity, scale, ts, z, stops)
 
 
-def certificate_under(force: Force, viscosity: float, scale: float, ts, z) -> Certificate:
-    """The same under a force that is known."""
+def certificate_under(
+    force: Force, viscosity: float, scale: float, ts, z, stops: Float[np.ndarray, " s"]
+) -> Certificate:
+    """The same under a force that is known; `stops`: when its load turns, in s."""
     eps = float(force.eps)
     at, on = along_curve(force, viscosity, ts, z)
     residual = float(np.sum(on.residual))
     folds = folds_of(force)
     missing = missing_forces(force, folds, at)
+    by_windows = distance(ts, z, at, on, eps, viscosity, 0.5 * scale / eps)
+    columns = at.well, at.inside, at.force, at.stretch, at.pace
+    curve = FollowedCurve(ts, z, *columns, stops)
+    rests = distances_from_rests(force, viscosity, curve, most_forgetful(folds, at))
+    surely = rests.most <= SETTINGS.surely
     measured = CurveMeasures(
-        distance=distance(ts, z, at, on, eps, viscosity, 0.5 * scale / eps),
+        distance=rests.least if surely else max(by_windows, rests.least),
+        within=rests.most,
         missing_force=float(np.max(missing, initial=-np.inf)),
         viscosity=viscosity_ratio(folds, z, at, on) / viscosity,
         spacing=float(np.max(np.abs(np.diff(z)))) / eps,
@@ -64,20 +77,19 @@ def residual_error(force: AbstractForce, viscosity: float, ts, z, residual: floa
 
 def together(found: list[Certificate]) -> Certificate:
     """Of several curves: sums, and the worst of them."""
-    worst = CurveMeasures(
-        distance=max(one.distance for one in found),
-        missing_force=max(one.missing_force for one in found),
-        viscosity=_farthest_from_1([one.viscosity for one in found]),
-        spacing=max(one.spacing for one in found),
-    )
+    statuses = [one.status for one in found]
     return Certificate(
         residual=sum(one.residual for one in found),
         residual_error=sum(one.residual_error for one in found),
         scale=found[0].scale,
         slips=sum(one.slips for one in found),
         skipped=sum(one.skipped for one in found),
-        status=verdict(worst),
-        **worst._asdict(),
+        distance=max(one.distance for one in found),
+        within=max(one.within for one in found),
+        missing_force=max(one.missing_force for one in found),
+        viscosity=_farthest_from_1([one.viscosity for one in found]),
+        spacing=max(one.spacing for one in found),
+        status=min(statuses, key=_IN_TURN.index),
     )
 
 
@@ -86,13 +98,25 @@ def _farthest_from_1(ratios: list[float]) -> float:
     return max(ratios, key=lambda ratio: -1.0 if np.isnan(ratio) else abs(ratio - 1))
 
 
+_IN_TURN = (
+    CertificateStatus.NOT_FINITE,
+    CertificateStatus.UNRESOLVED,
+    CertificateStatus.SKIPPED,
+    CertificateStatus.VISCOSITY,
+    CertificateStatus.OFF,
+    CertificateStatus.OK,
+)
+
+
 def verdict(measured: CurveMeasures) -> CertificateStatus:
     """The first test that fails. NaN is no slip: nothing to measure the viscosity by."""
     if measured.spacing > SETTINGS.coarsest:
         return CertificateStatus.UNRESOLVED
+    near = measured.distance <= SETTINGS.farthest
+    if near and measured.within <= SETTINGS.surely:
+        return CertificateStatus.OK
     if measured.missing_force > SETTINGS.missing_force:
         return CertificateStatus.SKIPPED
     if abs(measured.viscosity - 1) > SETTINGS.viscosity:
         return CertificateStatus.VISCOSITY
-    near = measured.distance <= SETTINGS.farthest
     return CertificateStatus.OK if near else CertificateStatus.OFF

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
+from jaxtyping import Array, Int
 
 from .._compile import Program, once_a_scene
 from ..numerics import Extrema, periodic_extrema, rows_of
@@ -105,6 +105,21 @@ def _pull(force: Force, well: np.ndarray, place: float) -> tuple[np.ndarray, np.
 def _pulls(force: Force, well, place):
     z = jax.vmap(lambda n: force.state(n, place))(well)
     return jax.vmap(force.support.force)(z), jax.vmap(force.support.stiffness_at)(z)
+
+
+def most_forgetful(folds: CurveFolds, at: CurveSamples) -> Int[np.ndarray, " k"]:
+    """Numbers of samples: the first, and of every well the one forgotten fastest."""
+    size = at.well.size
+    entries = [
+        along(transits(at.well, at.inside, folds.places[-sign], SETTINGS.around_fold), sign)
+        for sign in (1, -1)
+    ]
+    entered = np.concatenate([entry.after for entry in entries])
+    edges = np.unique(np.append(entered, 0))
+    visit = np.repeat(np.arange(edges.size), np.diff(np.append(edges, size)))
+    steepest = np.lexsort((at.slope, visit))[edges]
+    numbers = np.unique(np.append(steepest, 0))
+    return numbers[numbers < size - 1]
 
 
 def viscosity_ratio(

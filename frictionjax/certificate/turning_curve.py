@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ..effects import NapFlip
-from ..model import BristlePotential, Scene, known_turning_points
+from ..model import BristlePotential, Scene, known_turning_points, padded_edges
 from ..turning import FlippingRod, SceneParts, bent_force, flipping_rod
 from .bent_root import BentForceOnRoot, bent_certificate
 from .critical_places import Beside, RodSide
@@ -74,6 +74,7 @@ class _Course(NamedTuple):
     viscosity: float
     scale: float
     turning_points: _Column
+    stops: _Column
 
     def straight(
         self, some: TurningSamples, begins: _Change | None, later: float | None
@@ -96,7 +97,7 @@ class _Course(NamedTuple):
         ts, z = _joined(some, begins, ends)
         found = None
         if ts.size > 1:
-            args = self.viscosity, self.scale, ts, side.seen(z)
+            args = self.viscosity, self.scale, ts, side.seen(z), self.stops
             found = certificate_under(side.force, *args)
         return _Found(found, wrong=wrong, open=unseen, change=ends, pinned=pinned)
 
@@ -208,7 +209,8 @@ def _course(
     )
     sides = {side: RodSide.of(parts, side, eps) for side in (1, -1)}
     turns = known_turning_points(scene.load, scene.duration, scene.turns)
-    return _Course(law, parts, sides, eps, viscosity, scale, turns)
+    stops = padded_edges(turns, scene.duration)
+    return _Course(law, parts, sides, eps, viscosity, scale, turns, stops)
 
 
 def _stretches(course: _Course, samples: TurningSamples) -> list[_Found]:

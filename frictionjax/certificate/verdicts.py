@@ -32,6 +32,7 @@ class _Numbers(NamedTuple):
     slips: int
     skipped: int
     distance: float
+    within: float
     missing_force: float
     viscosity: float
     spacing: float
@@ -44,13 +45,13 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
     `residual` of the energy-dissipation balance in J, `int (eps^gamma z' + D E)^2 /
     (2 eps^gamma)`, with its quadrature error `residual_error`; `scale = eps (rho_plus -
     rho_minus)`, the energy of one slip, in J. `slips`: wells crossed. `distance`: the
-    curve is at least so far, in units of eps, from every solution. `missing_force`: the
+    curve is at least so far, in units of eps, from every solution; `within`: at most so
+    far from one, inf where that cannot be said. `missing_force`: the
     most that was missing when a well was left, in units of `Phi'' eps`, the force of one
     well. `viscosity`: measured in slips, relative to `eps^gamma`; NaN without slips.
     `skipped`: wells crossed without the force. `status`: a `CertificateStatus`; `ok`:
-    whether the curve is within about eps/100 of a solution, but for slips that come a
-    little late or early; `message`: the verdict. How late, and what some of these are for
-    arrays, tips with mass and rods that turn over, `certify` tells.
+    whether the curve is within about eps/100 of a solution; `message`: the verdict. What
+    some of these are for arrays, tips with mass and rods that turn over, `certify` tells.
     """
 
     __slots__ = ()
@@ -69,15 +70,19 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
     def shares(self) -> dict[str, float]:
         """Numbers that decide, over the most of each that is accepted: above 1 is refused.
 
-        `viscosity` by its distance from 1. NaN: of a curve that has none, without slips.
-        What else decides of tips with mass and rods that turn over, `status` tells.
+        Forces and viscosities decide where `within` does not, `viscosity` by its distance
+        from 1. NaN: of a curve that has none, without slips. What else decides of tips with
+        mass and rods that turn over, `status` tells.
         """
-        return {
-            "spacing": self.spacing / SETTINGS.coarsest,
+        apart = {"spacing": self.spacing / SETTINGS.coarsest}
+        near = {"distance": self.distance / SETTINGS.farthest}
+        if self.within <= SETTINGS.surely:
+            return {**apart, **near}
+        slips = {
             "missing_force": self.missing_force / SETTINGS.missing_force,
             "viscosity": abs(self.viscosity - 1) / SETTINGS.viscosity,
-            "distance": self.distance / SETTINGS.farthest,
         }
+        return {**apart, **slips, **near}
 
     def __repr__(self) -> str:
         numbers = zip(self._fields[:-1], self[:-1], strict=True)
@@ -87,6 +92,7 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
     def _numbers(self) -> list[Named]:
         return [
             Named("distance", self.distance, "eps", "at least, from every solution"),
+            Named("within", self.within, "eps", "at most, from a solution"),
             Named("residual", self.residual, "J", "of the energy-dissipation balance"),
             Named("residual_error", self.residual_error, "J", "of its quadrature"),
             Named("scale", self.scale, "J", "energy of one slip"),
@@ -108,6 +114,7 @@ def nothing_known(scale: float) -> Certificate:
         slips=0,
         skipped=0,
         distance=unknown,
+        within=unknown,
         missing_force=unknown,
         viscosity=unknown,
         spacing=unknown,

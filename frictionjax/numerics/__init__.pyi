@@ -11,6 +11,9 @@ from .hermite import cubic as cubic
 from .hermite import cubic_slope as cubic_slope
 from .power_series import power_integral as power_integral
 from .power_series import power_sum as power_sum
+from .radau import RADAU_PLACES as RADAU_PLACES
+from .radau import RADAU_WEIGHTS as RADAU_WEIGHTS
+from .radau import inverse_of_three as inverse_of_three
 from .records import concatenated as concatenated
 from .records import rows_of as rows_of
 from .records import stacked as stacked

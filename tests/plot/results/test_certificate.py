@@ -8,7 +8,9 @@ from frictionjax.certificate.plain_curve import CurveMeasures, verdict
 from frictionjax.certificate.settings import SETTINGS
 from frictionjax.certificate.verdicts import Certificate, CertificateStatus
 
-GOOD = CurveMeasures(distance=0.01, missing_force=-0.2, viscosity=1.05, spacing=0.1)
+GOOD = CurveMeasures(
+    distance=0.01, within=math.inf, missing_force=-0.2, viscosity=1.05, spacing=0.1
+)
 REST = {"residual": 0.0, "residual_error": 0.0, "scale": 1.0, "slips": 3, "skipped": 0}
 
 
