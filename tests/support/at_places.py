@@ -3,6 +3,7 @@
 Step by step is a program for each step, 0.03 s of a core each.
 """
 
+import equinox as eqx
 import jax
 import numpy as np
 
@@ -10,6 +11,17 @@ import numpy as np
 def at_places(fn, places):
     """Values, (n,)."""
     return np.asarray(jax.jit(jax.vmap(fn))(places))
+
+
+def each_at_places(fns, places):
+    """Values of several functions, (functions, n), by one program."""
+    return np.array(jax.jit(jax.vmap(lambda place: [fn(place) for fn in fns]))(places))
+
+
+@eqx.filter_jit
+def part_at(part, places):
+    """Values of a part, (n,): parts of one kind share a program."""
+    return jax.vmap(part)(places)
 
 
 def with_derivatives(fn, places):

@@ -1,5 +1,6 @@
 """Loads of all classes, times at which they are asked, and the kind of a table."""
 
+import equinox as eqx
 import jax
 import numpy as np
 
@@ -18,8 +19,13 @@ LOADS = {
 
 
 def with_slopes(load, times):
-    """Values and slopes, (2, n), by one program."""
-    return np.array(jax.jit(jax.vmap(lambda t: (load(t), load.slope(t))))(times))
+    """Values and slopes, (2, n), by one program for all loads of a kind."""
+    return np.array(_with_slopes(load, times))
+
+
+@eqx.filter_jit
+def _with_slopes(load, times):
+    return jax.vmap(lambda t: (load(t), load.slope(t)))(times)
 
 
 def shapes(table):

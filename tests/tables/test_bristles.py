@@ -1,9 +1,9 @@
 """Bristles as power series."""
 
+import equinox as eqx
 import jax
 import numpy as np
 import pytest
-from at_places import at_places
 
 import frictionjax as fx
 from frictionjax.tables import (
@@ -23,8 +23,17 @@ BRISTLES = {
 
 
 def slopes(bristle, etas):
-    every = jax.grad(bristle.offset), jax.grad(bristle.energy)
-    return np.stack([at_places(fn, etas) for fn in every])
+    return np.stack(_slopes(bristle, etas))
+
+
+@eqx.filter_jit
+def _slopes(bristle, etas):
+    return [jax.vmap(jax.grad(fn))(etas) for fn in (bristle.offset, bristle.energy)]
+
+
+@eqx.filter_jit
+def with_slopes(bristle, eta):
+    return bristle.with_slopes(eta)
 
 
 @pytest.mark.parametrize("name", BRISTLES)
@@ -51,7 +60,7 @@ def test_of_a_line_a_line_is_left(name):
 def test_slopes_are_those_of_offset_and_energy(name):
     eta = 3e-3
     for bristle in (BRISTLES[name], bristle_series(BRISTLES[name], 1e-2)):
-        offset, *rest = bristle.with_slopes(eta)
+        offset, *rest = with_slopes(bristle, np.asarray(eta))
         assert float(offset) == pytest.approx(float(bristle.offset(eta)), rel=1e-15)
         np.testing.assert_allclose(rest, slopes(bristle, np.array([eta]))[:, 0], 4e-15)
 

@@ -1,10 +1,10 @@
 """Supports as power series."""
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from at_places import at_places
 
 import frictionjax as fx
 from frictionjax.tables import SeriesSupport, support_table
@@ -16,6 +16,18 @@ ENERGIES = {
 }
 
 
+@eqx.filter_jit
+def readings(support, z):
+    """Forces, stiffnesses and energies, (n,) each."""
+    of = support.force, support.stiffness_at, support.energy
+    return [jax.vmap(fn)(z) for fn in of]
+
+
+@eqx.filter_jit
+def states(support, forces):
+    return jax.vmap(support.state_of)(forces)
+
+
 @pytest.mark.parametrize("name", ENERGIES)
 @pytest.mark.parametrize(("least", "largest"), [(-1.0, 1.5), (2.0, 2.1)])
 def test_a_series_is_the_support_to_rounding_and_somewhat_beyond(name, least, largest):
@@ -23,19 +35,17 @@ def test_a_series_is_the_support_to_rounding_and_somewhat_beyond(name, least, la
     found = support_table(support, least, largest)
     assert isinstance(found, SeriesSupport)
     more = 0.2 * (largest - least)
-    ends = at_places(support.state_of, np.array([least - more, largest + more]))
+    ends = np.asarray(states(support, np.array([least - more, largest + more])))
     assert float(found.low) < ends[0] < ends[1] < float(found.high)
     z = np.linspace(*ends, 101)
-    force = at_places(support.force, z)
+    force, stiffness, energy = (np.asarray(each) for each in readings(support, z))
+    near = readings(found, z)
     size = np.abs(force).max()
-    np.testing.assert_allclose(at_places(found.force, z), force, atol=1e-13 * size)
-    stiffness = at_places(support.stiffness_at, z)
-    np.testing.assert_allclose(at_places(found.stiffness_at, z), stiffness, rtol=1e-9)
-    energy = at_places(support.energy, z)
+    np.testing.assert_allclose(near[0], force, atol=1e-13 * size)
+    np.testing.assert_allclose(near[1], stiffness, rtol=1e-9)
     atol = 1e-14 * np.abs(energy).max() + 1e-13 * size * (ends[1] - ends[0])
-    np.testing.assert_allclose(at_places(found.energy, z), energy, atol=atol)
-    back = at_places(found.state_of, force)
-    np.testing.assert_allclose(back, z, atol=1e-12 * np.abs(z).max())
+    np.testing.assert_allclose(near[2], energy, atol=atol)
+    np.testing.assert_allclose(states(found, force), z, atol=1e-12 * np.abs(z).max())
     assert float(found.state_of(force[3])) == pytest.approx(z[3], rel=1e-11)
 
 
