@@ -38,12 +38,13 @@ def test_integrals_and_their_derivatives(order):
 
 @pytest.mark.parametrize("count", [1, 4])
 def test_derivatives_by_terms_and_scale(count):
+    @jax.jit
     def fn(terms, scale, x):
         slope = jax.grad(lambda s: power_integral(terms, scale, s))(x)
         return power_integral(terms, scale, x) + 2.0 * slope + power_sum(terms, x)
 
     numbers = [TERMS[:count], jnp.asarray(SCALE), jnp.asarray(0.3)]
-    found = jax.grad(fn, argnums=(0, 1, 2))(*numbers)
+    found = jax.jit(jax.grad(fn, argnums=(0, 1, 2)))(*numbers)
     step = 1e-6
     for at, slopes in enumerate(found):
         for place in np.ndindex(np.shape(slopes)):

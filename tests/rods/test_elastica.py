@@ -15,6 +15,7 @@ CHORDS = [0.99, 0.95, 0.9, 0.8, 0.5**0.5]
 THRUSTS = [1.00502829, 1.02572426, 1.05298688, 1.11273872, 1.17556103]
 
 
+@jax.jit
 def thrust(chord):
     return bent_between_hinges(B, L, chord).thrust
 

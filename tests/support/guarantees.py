@@ -8,8 +8,9 @@ out times inside slips, where a shift in time that is within the accuracy moves 
 import warnings
 from collections.abc import Callable
 
-import jax
+import equinox as eqx
 import numpy as np
+from at_places import part_at
 from hard_scenes import TIMES, Case, reflected, scaled
 
 import frictionjax as fx
@@ -39,7 +40,7 @@ def outside_slips(case: Case) -> np.ndarray:
 
 def found_load(case: Case, ts) -> np.ndarray:
     """The load at times, N."""
-    return np.asarray(jax.vmap(case.scene.load)(ts))
+    return np.asarray(part_at(case.scene.load, ts))
 
 
 def finite(case: Case, found) -> float:
@@ -88,11 +89,16 @@ def stays_near_the_strip(case: Case, found) -> float:
     return float(outside.max() / (outside[0] + lag(case) + 2e-3 * case.eps))
 
 
+@eqx.filter_jit
+def tip_forces(potential, tips, eps):
+    return potential.tip_force(tips, eps)[0]
+
+
 def strip_of_eps(case: Case) -> np.ndarray:
     """States in m that rest at this eps: the strip's edges at TIMES, (2, n)."""
     # 2048 missed the extremes of a steep surface by 5e-4: 0.01 eps on a soft support.
     tips = np.arange(2**15) / 2**15
-    force = np.array(case.scene.potential.tip_force(tips, case.eps)[0])
+    force = np.array(tip_forces(case.scene.potential, tips, np.asarray(case.eps)))
     return strip_between(case, force.max(), force.min())
 
 

@@ -1,8 +1,8 @@
 """Where lanes set off: below and above the tip, and near enough to it."""
 
-import jax
 import numpy as np
 import pytest
+from at_places import at_places
 from landings_unknown import without_landings
 from paths import path_of
 from reference import System, sine
@@ -69,8 +69,8 @@ def test_lanes_set_off_below_and_above_the_tip(name, gamma):
     z = np.asarray(solution.z)[which]
 
     def states(well, tip):
-        offset = jax.vmap(lambda y: tables.potential.offset(y, eps))(tip)
-        return eps * (well + tip) + np.asarray(offset)
+        offset = at_places(lambda y: tables.potential.offset(y, eps), tip)
+        return eps * (well + tip) + offset
 
     behind = states(starts.behind_well, starts.behind_tip)
     ahead = states(starts.ahead_well, starts.ahead_tip)

@@ -1,5 +1,6 @@
 """Passages of one well under steady pulls, at folds with a curvature and at flat ones."""
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -15,6 +16,11 @@ EPS, SMALLEST = 1e-5, 1e-6
 EVERY = {**SCENES, "sine": scene_of(fx.profiles.Sine(0.12), SLANTED)}
 
 
+@eqx.filter_jit
+def tip_forces(potential, places):
+    return potential.tip_force(places, EPS)
+
+
 def plain_passage(potential, folds, beyond):
     """`int_0^1 eps G dy/(beyond + fold - V_eps')` by a fine sum."""
     # Graded towards the fold: straight lines in its logarithm on either side.
@@ -26,7 +32,7 @@ def plain_passage(potential, folds, beyond):
     total = 0.0
     for side in (1, -1):
         places = float(folds.place_plus) + side * half
-        force, stretch = potential.tip_force(jnp.asarray(places), EPS)
+        force, stretch = tip_forces(potential, places)
         gaps = float(folds.force_plus) - np.asarray(force)
         total += np.sum(weight * EPS * np.asarray(stretch) / (beyond + gaps))
     return total
