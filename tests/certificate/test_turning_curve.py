@@ -5,6 +5,7 @@ from functools import cache
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from at_places import part_at
 from rods_that_turn import REACH, jumping_scene, sampled, turning_scene
 from turning_by_scipy import EPS as SCIPY_EPS
 from turning_by_scipy import GAMMA as SCIPY_GAMMA
@@ -195,7 +196,7 @@ def test_a_turn_later_by_a_hundredth_is_rejected_of_scipy_too():
 def test_a_turn_earlier_by_a_hundredth_of_the_load_is_rejected(name):
     ts, z, mode = by_library(name)
     last, _ = first_turn(mode)
-    loads = np.asarray(SCENES[name].load(ts[: last + 1]))
+    loads = np.asarray(part_at(SCENES[name].load, ts))[: last + 1]
     early = mode.copy()
     soon = loads < loads[last] + 0.01 * float(standing_rod(SCENES[name]).places.share[0])
     early[np.flatnonzero(soon & (ts[: last + 1] > 1.0))] = 0

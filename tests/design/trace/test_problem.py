@@ -3,6 +3,7 @@
 import jax
 import numpy as np
 import pytest
+from at_places import each_at_places
 
 import frictionjax as fx
 from frictionjax.design.trace.problem import in_tables
@@ -18,8 +19,7 @@ def scene_of(bristle, load=LOOP):
 
 
 def slopes(bristle, etas):
-    every = jax.vmap(jax.grad(bristle.offset)), jax.vmap(jax.grad(bristle.energy))
-    return np.stack([np.asarray(fn(etas)) for fn in every])
+    return each_at_places([jax.grad(bristle.offset), jax.grad(bristle.energy)], etas)
 
 
 def kind(tree):
