@@ -45,9 +45,14 @@ def _stack(pairs):
     return jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *pairs)
 
 
+@eqx.filter_jit
+def slopes_of(surface, places):
+    return jax.vmap(jax.grad(surface))(places)
+
+
 def _gentle(surface):
     """The same shape with slopes of at most 0.5, which every bristle here can follow."""
-    steepest = np.max(np.abs(jax.vmap(jax.grad(surface))(jnp.linspace(0, 1, 2048))))
+    steepest = np.max(np.abs(slopes_of(surface, np.linspace(0, 1, 2048))))
     return fx.profiles.Fourier(surface.cos / steepest / 2, surface.sin / steepest / 2)
 
 
@@ -182,8 +187,8 @@ def test_gradient_of_a_whole_scene():
         duration=1.0,
     )
     slopes = eqx.filter_grad(lambda s: fx.friction(s).rho_plus)(scene)
-    place = np.asarray(jnp.linspace(0, 1, 100_001))
-    w = jax.vmap(jax.grad(WAVES))(place)
+    place = np.linspace(0, 1, 100_001)
+    w = slopes_of(WAVES, place)
     top = place[np.argmax(w)]
     orders = 2 * np.pi * np.arange(1, 4)
     np.testing.assert_allclose(

@@ -46,6 +46,18 @@ def test_roots_are_where_the_sign_changes(kind):
     assert np.all(above >= 0)
 
 
+@jax.jit
+def around_the_root(at, tall, wide, wanted):
+    """Values right below and above the root of a step."""
+
+    def fn(z):
+        return z + tall * jnp.tanh((z - at) / wide) - wanted
+
+    root = find_root(fn, *_far(4000))
+    near = 4e-15 * (10 + jnp.abs(root))
+    return fn(root - near), fn(root + near)
+
+
 @pytest.mark.parametrize("wide", [1e-4, 1e-7, 1e-9])
 @pytest.mark.parametrize("inside", [False, True])
 def test_steps_far_narrower_than_the_bracket(wide, inside):
@@ -56,13 +68,9 @@ def test_steps_far_narrower_than_the_bracket(wide, inside):
     if inside:
         wanted = at + 0.9 * tall * np.tanh(rng.uniform(-2, 2, 4000))
 
-    def fn(z):
-        return z + tall * jnp.tanh((z - at) / wide) - wanted
-
-    root = np.asarray(jax.jit(find_root, static_argnums=0)(fn, *_far(4000)))
-    near = 4e-15 * (10 + np.abs(root))
-    assert np.all(fn(root - near) <= 0)
-    assert np.all(fn(root + near) >= 0)
+    below, above = map(np.asarray, around_the_root(at, tall, wide, wanted))
+    assert np.all(below <= 0)
+    assert np.all(above >= 0)
 
 
 @pytest.mark.parametrize("power", [3, 9])

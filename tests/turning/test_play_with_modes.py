@@ -1,5 +1,6 @@
 """The limit system of a rod that turns over."""
 
+import equinox as eqx
 import jax
 import numpy as np
 import pytest
@@ -28,7 +29,12 @@ def stored(mode, x, bending):
     """Energy of the rod in J, with its root x ahead of its tip."""
     rod = TurningRod(1.0, 0.3, 2**0.5, bending, 1.0)
     places = np.where(mode == 0, x, mode * REACH)
-    return np.asarray(jax.jit(jax.vmap(rod.energy))(places))
+    return np.asarray(energies(rod, places))
+
+
+@eqx.filter_jit
+def energies(rod, places):
+    return jax.vmap(rod.energy)(places)
 
 
 @pytest.mark.parametrize("bending", [0.1, 0.19])
