@@ -36,6 +36,7 @@ class TraceProblem(NamedTuple):
     """A checked fit: trace as states, and programs of the coefficients.
 
     `scene`: in tables, so that programs for it serve all scenes, its surface still flat.
+    `noise`: of which passages are known, in terms of the samples' own errors.
     """
 
     scene: Scene
@@ -50,12 +51,19 @@ class TraceProblem(NamedTuple):
     penalty: np.ndarray
     passages: Passages
     half: float
+    noise: float = 1.0
 
     def held(self, numbers: np.ndarray, rough: float | None = None):
         """Excess over what passages allow, and its derivative, in `rough` of the forces."""
         rough = SETTINGS.start_rough if rough is None else rough
         found = held(self.passages, self.scene, self.eps, numbers)
         return found.r / (rough * self.half), found.by / (rough * self.half)
+
+    def with_noise(self, noise: float) -> "TraceProblem":
+        """The same with the passages that samples `noise` times as rough still show."""
+        z, sd = self.reading.z, noise * self.reading.sd
+        parts = self.scene, self.ts[: z.size], z, sd, float(self.eps)
+        return self._replace(passages=passages_of(*parts), noise=noise)
 
     def run(self, numbers: np.ndarray) -> Flow:
         """Trajectory at the trace's times and its derivatives, as arrays of NumPy."""

@@ -41,6 +41,11 @@ class Settings(NamedTuple):
     shorter: float = 4.0  # ways are, at both ends
     most_places: int = 4096
 
+    # Where uncertainties are not known: times the noise that they were known of, from which
+    # on they are looked for again, and how often (`fit.py`).
+    louder: float = 1.5
+    again: int = 2
+
     # Problems (`problem.py`).
     # Of the force range: the start explains forces no better, or folds appear where the
     # trace does not look (at 0 the first trial without noise began with 386 of 401 samples

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.design.trace.fit import _louder
 from frictionjax.design.trace.flow import _states, bumped_flow, flow, plan_of
+from frictionjax.design.trace.gauss_newton import Descent
 from frictionjax.design.trace.problem import in_tables, trace_problem
 from frictionjax.design.trace.report import _patterned
 from frictionjax.design.trace.status import TraceStatus
@@ -44,6 +46,10 @@ def trace_of(scene, noise=NOISE, ts=TIMES, seed=0, quantity="force", numbers=NUM
         values = np.asarray(jax.vmap(scene.load)(ts) - jax.vmap(scene.support.force)(z))
     values = values + noise * np.random.default_rng(seed).normal(size=ts.size)
     return fx.Trace(ts, **{quantity: values}, uncertainty=noise or None)
+
+
+def _unstated(trace):
+    return fx.Trace(trace.ts, force=trace.values)
 
 
 def slopes(profile, phases):
@@ -127,6 +133,28 @@ def test_passages_bound_the_surface_from_the_other_side():
     still = fx.Trace(TIMES, z=np.zeros(TIMES.size))
     known = trace_problem(still, scene_of(), 0.05, 1.0, 4, 1e-3)
     assert known.held(NUMBERS)[0].size == 0
+
+
+def test_noise_that_nobody_stated_is_no_passage():
+    """The true surface would break bounds of samples as good as trajectories are."""
+    trace = _unstated(trace_of(scene_of(), 1e-3))
+    problem = trace_problem(trace, scene_of(), 0.05, 1.0, 4, 1e-3)
+    assert np.max(problem.held(NUMBERS)[0]) > 1
+    found = Descent(NUMBERS, problem.run(NUMBERS), [], True)
+    louder = _louder(problem, found)
+    assert pytest.approx(louder.noise * 0.05e-3, rel=0.15) == 1e-3
+    assert np.max(louder.held(NUMBERS)[0]) == 0
+    assert louder.passages.z.size > 100
+    assert _louder(louder, found) is None
+
+
+@pytest.mark.slow
+def test_noise_that_nobody_stated_does_not_bend_the_surface():
+    """5.1 standard errors off where noise counts as passages."""
+    fit = fx.fit_trace(_unstated(trace_of(scene_of(), 1e-3)), scene_of(), 0.05, harmonics=4)
+    assert fit.status == TraceStatus.FITTED
+    assert np.max(pulls(fit)) < 4
+    assert pytest.approx(fit.deviation[0], rel=0.15) == 1e-3
 
 
 def test_residuals_that_hang_together_are_no_noise():
