@@ -64,6 +64,11 @@ def fit_trace(
     the trace leaves open follow a weak prior (little bending); what is reported as
     determined does not depend on it: `.identifiability`.
 
+    The zeros of force and clock are taken as known, and errors hold for them: an offset is
+    for the most part a shift of the surface, which residuals hardly show. Where the
+    uncertainty is not known, residuals that hang together along the surface, or in time, as
+    of a sensor that drifts, are a misfit.
+
     Returns a `TraceFit`: `.profile .achieved .residuals` (N or m, shape (n,)) `.status` and
     more.
 
@@ -156,11 +161,13 @@ def _louder(problem: TraceProblem, found: Descent) -> TraceProblem | None:
     Noise to and fro is a passage to who does not know it: of 10 surfaces fitted so at a
     noise of 0.02 and 0.06 eps, 6 had slopes 4 to 9 standard errors off. (The scatter of
     neighbours is known before any fit, but holds slips: 0.4 eps of a loop of 160 samples
-    without noise, which would leave it none of 1193 places.)
+    without noise, which would leave it none of 1193 places.) What a fit leaves that has
+    samples in other wells is no noise: more starts are needed there, not weaker bounds.
     """
-    seen = problem.observed()
-    scale = weigh(seen, found.flow).scale
-    louder = scale > SETTINGS.louder * problem.noise
+    now = weigh(problem.observed(), found.flow)
+    scale = now.scale
+    placed = np.sum(now.disputed) <= SETTINGS.disputed * now.used.size
+    louder = placed and scale > SETTINGS.louder * problem.noise
     bound = louder and problem.held(found.numbers)[0].any()
     return problem.with_noise(scale) if bound else None
 

@@ -12,7 +12,7 @@ from frictionjax.design.trace.fit import _louder
 from frictionjax.design.trace.flow import _states, bumped_flow, flow, plan_of
 from frictionjax.design.trace.gauss_newton import Descent
 from frictionjax.design.trace.problem import in_tables, trace_problem
-from frictionjax.design.trace.report import _patterned
+from frictionjax.design.trace.report import _patterned, explains, report_trace
 from frictionjax.design.trace.status import TraceStatus
 from frictionjax.design.trace.waves import WaveProfile
 from frictionjax.design.trace.weights import bumps_of, intervals_of
@@ -164,6 +164,29 @@ def test_residuals_that_hang_together_are_no_noise():
     noise = rng.normal(size=200)
     assert not _patterned(noise, tips)
     assert _patterned(0.5 * noise + np.sin(2 * np.pi * tips), tips)
+
+
+@pytest.mark.parametrize("drift", [0.0, 3e-3])
+def test_residuals_that_drift_in_time_are_no_noise(drift):
+    """A sensor that drifts by 10 times the noise: along the surface it looks like noise."""
+    values = trace_of(scene_of()).values + drift * (TIMES / 10 - 0.5)
+    trace = fx.Trace(TIMES, force=values)
+    problem = trace_problem(trace, scene_of(), 0.05, 1.0, 4, 1e-3)
+    found = Descent(NUMBERS, problem.run(NUMBERS), [], True)
+    fit = report_trace(trace, problem, found, 0.1)
+    assert not _patterned(fit.residuals[fit.used], fit.tips[fit.used])
+    assert fit.status == (TraceStatus.MISFIT if drift else TraceStatus.FITTED)
+    assert fit.identifiability.determined.any() == (drift == 0)
+    assert explains(trace, problem, found) == (drift == 0)
+
+
+@pytest.mark.slow
+def test_a_sensor_that_drifts_is_a_misfit():
+    """The surface bends to follow: 3 mN in all beside noise of 0.3 mN."""
+    trace = fx.Trace(TIMES, force=trace_of(scene_of()).values + 3e-4 * TIMES)
+    fit = fx.fit_trace(trace, scene_of(), 0.05, harmonics=4)
+    assert fit.status == TraceStatus.MISFIT
+    assert not fit.identifiability.determined.any()
 
 
 @pytest.mark.slow
