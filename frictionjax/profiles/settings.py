@@ -28,6 +28,10 @@ class Settings(NamedTuple):
     # if that was more than this share of the heights'.
     halves: float = 0.5
     worth: float = 1e-6
+    # Chance that noise passes for waves of a longer period, and how many waves beside them
+    # say what noise has (`subharmonics.py`).
+    by_chance: float = 1e-4
+    controls: int = 16
     period_found: float = 1e-9  # of the trace
     most_deciding: int = 16  # harmonics that decide on the period
     rounding: float = 1e-12  # of the largest height: what varies less
