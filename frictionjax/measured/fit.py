@@ -46,8 +46,8 @@ def fit_profile(
 ) -> HeightsFit[Fourier]:
     """One periodic profile of a measured surface, as `Fourier.from_heights` returns it.
 
-    `row`: which row, from 0; None: the mean over all rows, each moved so that its
-    fundamental is in phase first, since grooves cross the rows of a map at an angle.
+    `row`: which row, from 0; None: the mean over all rows, each moved into phase by all of
+    its harmonics first, since grooves cross the rows of a map at an angle.
     `smoothing`: cut-off in m of a Gaussian filter along the rows; None: no filter.
 
     Warns and raises `ValueError` as `Fourier.from_heights`, and for a row that is not

@@ -95,7 +95,7 @@ class Fourier(AbstractSampled):
         """Periodic profile of a measured trace, or of a map.
 
         `x`: positions in m, increasing, shape (n,). `heights`: in m, shape (n,); of a map,
-        (rows, n): the mean over its rows, each moved so that its fundamental is in phase
+        (rows, n): the mean over its rows, each moved into phase by all harmonics
         first, since grooves cross the rows at an angle (`.explained`: their mean).
         `period`: in m; found in the data where it is None. `harmonics`: how many.
         `smoothing`: cut-off in m of a Gaussian filter, by which waves of that length are

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Complex
 
 from .._checks import is_masked, known_numbers, numbers_of, require, require_whole
+from .alignment import moved, shifts_into_phase, variance_of_shift
 from .heights import SeriesFit, find_period, fit_heights, require_left
 from .settings import SETTINGS
 from .steepest import SampledWaves
@@ -79,25 +80,30 @@ def mean_in_phase(
     series: Sequence[Complex[np.ndarray, " harmonics"]],
 ) -> Complex[np.ndarray, " harmonics"]:
     """Mean of complex coefficients of series that differ in phase."""
-    return np.mean([_in_phase(waves) for waves in series], axis=0)
+    return moved(np.array(series), shifts_into_phase(series)).mean(axis=0)
 
 
 def mean_waves(fits: Sequence[SeriesFit]) -> SampledWaves:
     """Mean of all waves that the rows tell apart, moved into phase, and its noise.
 
     The noise is what rows leave of their own, or the scatter over blocks of rows where
-    that is larger: rows may differ, and neighbours are not independent.
+    that is larger: rows may differ, and neighbours are not independent. With it what the
+    mean loses where noise moves rows out of phase.
     """
-    rows = np.array([_in_phase(fit.waves.c) for fit in fits])
+    asked = [complex_series(fit) for fit in fits]
+    rows = moved(np.array([fit.waves.c for fit in fits]), shifts_into_phase(asked))
     blocks = np.array_split(rows, min(SETTINGS.blocks, len(fits)))
     means = np.array([block.mean(axis=0) for block in blocks])
     between = np.var(means, axis=0, ddof=1) / (2 * len(blocks))
-    own = np.mean([fit.waves.noise**2 for fit in fits], axis=0) / len(fits)
-    noise = np.sqrt(np.maximum(own, between))
-    return SampledWaves(rows.mean(axis=0), noise, fits[0].waves.gain)
+    single = np.mean([fit.waves.noise**2 for fit in fits], axis=0)
+    mean = rows.mean(axis=0)
+    lost = _lost(mean, np.sqrt(single), asked[0].size)
+    noise = np.sqrt(np.maximum(single / len(fits), between) + lost**2)
+    return SampledWaves(mean, noise, fits[0].waves.gain)
 
 
-def _in_phase(waves: np.ndarray) -> np.ndarray:
-    """Moved so that `c_1` is positive."""
-    turn = np.exp(-1j * np.angle(waves[0]))
-    return waves * turn ** np.arange(1, waves.size + 1)
+def _lost(mean: np.ndarray, noise: np.ndarray, harmonics: int) -> np.ndarray:
+    """Of each wave of the mean, where the shifts of rows err by what noise leaves open."""
+    variance = variance_of_shift(mean[:harmonics], noise[:harmonics])
+    n = np.arange(1, mean.size + 1)
+    return -np.expm1(-0.5 * (2 * np.pi * n) ** 2 * variance) * np.abs(mean)

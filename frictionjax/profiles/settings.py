@@ -41,6 +41,10 @@ class Settings(NamedTuple):
     # Rows of maps (`rows.py`).
     blocks: int = 10  # of neighbouring rows, which are not independent of each other
 
+    # Rows in phase (`alignment.py`).
+    passes: int = 50
+    in_phase: float = 1e-9  # periods that no row moves by any more
+
     # The Gaussian filter (`smoothing.py`).
     least_left: float = 1e-2  # of the fundamental: less is no surface any more
 
