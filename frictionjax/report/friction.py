@@ -32,7 +32,7 @@ def friction_text(job: Job) -> str:
     table = str(coefficient_table(friction(job.scene), job.error))
     sections.append(("Friction coefficients", table))
     if job.rows is not None:
-        sections.append(("Over the rows of the map", row_table(job.rows)))
+        sections.append(("Over the rows of the map", row_table(job.rows, job.row)))
     return joined(sections)
 
 

@@ -147,7 +147,9 @@ def _read_job(
         scene = with_surface(known.scene, found.profile, chosen)
         rows = None
         if measured.heights.shape[0] > 1:
-            rows = row_coefficients(measured, chosen, harmonics, found.period, smoothing)
+            # Of all rows, whichever is chosen: the period of one is known far less well.
+            common = found.period if row is None else period
+            rows = row_coefficients(measured, chosen, harmonics, common, smoothing)
     except ValueError as error:
         raise ValueError(f"{heights}: {error}") from None
     notes = warned + _notes(heights, measured, found, row)

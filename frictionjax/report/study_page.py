@@ -182,7 +182,8 @@ def _friction(facts: StudyFacts) -> Section:
     section = coefficient_section(facts.law, facts.coefficients)
     if facts.job.rows is None:
         return section
-    rows = [paragraph("Over the rows of the map:"), preformatted(row_table(facts.job.rows))]
+    table = row_table(facts.job.rows, facts.job.row)
+    rows = [paragraph("Over the rows of the map:"), preformatted(table)]
     return section._replace(blocks=[*section.blocks, *rows])
 
 

@@ -59,7 +59,7 @@ def write_results(
     coefficients = coefficient_table(law, job.error)
     sections.append(("Friction coefficients", str(coefficients)))
     if job.rows is not None:
-        sections.append(("Friction over the rows of the map", row_table(job.rows)))
+        sections.append(("Friction over the rows of the map", row_table(job.rows, job.row)))
     if found.spread is not None:
         sections.append(
             ("Orders over the rows of the map", str(spread_table(found.spread)))

@@ -9,11 +9,18 @@ _NOISE = (
     "(std: of a single row. Noise adds to the extreme slopes of a row, so the mean over\n"
     "rows lies above the friction of the mean profile, which is the one above.)"
 )
+_NOISE_OF_ROW = (
+    "(std: of a single row. All rows with this one period; the friction above is that of\n"
+    "row {row} alone. Noise adds to the extreme slopes of each.)"
+)
 _FITTED = ("explained", "", "share of the variance that is periodic")
 
 
-def row_table(rows: RowCoefficients) -> str:
-    """Friction over the rows of a map: mean and standard deviation of a row."""
+def row_table(rows: RowCoefficients, row: int | None = None) -> str:
+    """Friction over the rows of a map: mean and standard deviation of a row.
+
+    `row`: whose friction stands above, None where it is that of the mean profile.
+    """
     mean, std = rows.mean, rows.std
     lines = [
         (
@@ -27,8 +34,9 @@ def row_table(rows: RowCoefficients) -> str:
         if name not in OF_THE_BRISTLE
     ]
     header = ("coefficient", "mean", "std", "unit", "meaning")
+    said = _NOISE if row is None else _NOISE_OF_ROW.format(row=row)
     count = f"{len(rows.used)} rows, period {rows.period:.4g} m"
-    text = [f"{count}\n{in_columns(header, lines, left=1, meanings=2)}", _NOISE]
+    text = [f"{count}\n{in_columns(header, lines, left=1, meanings=2)}", said]
     if rows.refused:
         text.append(f"{len(rows.refused)} rows left out, not admissible for the bristle:")
         text += [f"  row {index}: {why}" for index, why in rows.refused.items()]

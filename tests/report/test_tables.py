@@ -28,6 +28,23 @@ def test_rows_of_a_map():
     ]
 
 
+def test_the_rows_of_a_map_are_the_same_whichever_is_chosen(tmp_path):
+    """With the period of all of them, and the friction above is not that of the mean."""
+    rng, x = np.random.default_rng(0), np.arange(60) * 5e-7
+    heights = 1e-7 * np.array([np.sin(2 * np.pi * x / 1e-5 + t) for t in range(6)])
+    np.savetxt(tmp_path / "map.txt", heights + 2e-8 * rng.standard_normal(heights.shape))
+    known = {"pixel": 5e-7, "height_unit": "m", "harmonics": 2}
+    mean, one = (
+        read_job(None, heights=str(tmp_path / "map.txt"), row=row, **known)
+        for row in (None, 3)
+    )
+    assert one.rows.period == mean.rows.period
+    np.testing.assert_array_equal(one.rows.values["ratio"], mean.rows.values["ratio"])
+    assert "of the mean profile, which is the one above" in row_table(mean.rows, mean.row)
+    assert "the friction above is that of\nrow 3 alone" in row_table(one.rows, one.row)
+    assert "mean profile" not in row_table(one.rows, one.row)
+
+
 def test_number_lists():
     assert number_list("eps", "0.1,0.05") == [0.1, 0.05]
     assert number_list("eps", "0.1:0.001:3") == pytest.approx([0.1, 0.01, 0.001])
