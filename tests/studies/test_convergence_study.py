@@ -91,6 +91,28 @@ def test_missing_variables_are_named():
         fx.study(synthetic().drop_vars("strip_excess"))
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "needs"),
+    [
+        ("status", 99, r"one of 0 \(OK\), "),
+        ("sup_error", -1e-3, "a distance >= 0 in m where status is OK"),
+        ("sup_error", np.nan, "a distance >= 0 in m where status is OK"),
+        ("sup_error", np.inf, "a distance >= 0 in m where status is OK"),
+        ("eps", 0, "eps > 0"),
+        ("gamma", -1, "gamma > 0"),
+    ],
+)
+def test_cells_that_somebody_edited_are_named(name, value, needs):
+    """None vanishes from a fit, and no law meets it: warnings are errors here."""
+    data = synthetic()
+    if name in data.coords:
+        data = data.assign_coords({name: np.append(value, data[name].values[1:])})
+    else:
+        data[name][1, 3] = value
+    with pytest.raises(ValueError, match=rf"dataset\.{name} = {value}: needs {needs}"):
+        fx.study(data)
+
+
 def test_end_to_end_on_a_scene():
     """gamma = 2 on the vertical spring: the limit lags by just under one eps."""
     scene = fx.Scene(
