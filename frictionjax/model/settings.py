@@ -50,9 +50,15 @@ class Settings(NamedTuple):
     slack: float = 1e-10  # of the interval; rounding at |l| = 1e4 rho is 1e-12
     spacings: int = 8  # of l: two each of l, z and Phi', and of what z is solved from
 
-    # Sums of potentials (`summed_series.py`).
+    # Sums of potentials (`summed_series.py`). A series of 511 harmonics for all: a lane
+    # took more than 100 s to where it takes 1 in pieces, r = 0.02, eps = 0.01.
     sum_places: int = 1024  # samples a period of one tip's energy
     sum_negligible: float = 1e-15  # of the largest harmonic: what is left out
+    sum_harmonics: int = 64  # of a series that tables hold
+    sum_beyond: float = 1e-9  # of the largest force: the upper half of all harmonics
+    sum_far: float = 1e-6  # the same, of what no table holds
+    sum_finer: tuple[int, ...] = (4096, 16384)  # samples, where harmonics go on
+    sum_at_rest: float = 1e-30  # m, of eps -> 0, as bristles reach that far
     sum_left: float = 1e-9  # of the sum of all forces: less is rounding, times 1e6
 
     # Potentials and strips (`potentials.py`, `strip.py`).

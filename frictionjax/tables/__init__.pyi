@@ -12,7 +12,12 @@ from .pieces import unsampled as unsampled
 from .piecewise_loads import PiecewiseLoad as PiecewiseLoad
 from .piecewise_loads import load_in_pieces as load_in_pieces
 from .profiles import profile_tables as profile_tables
+from .profiles import room_of_waves as room_of_waves
+from .profiles import waves_in_pieces as waves_in_pieces
 from .settings import SETTINGS as SETTINGS
+from .summed_phases import TipStates as TipStates
+from .summed_phases import profile_kinks as profile_kinks
+from .summed_phases import summed_in_pieces as summed_in_pieces
 from .supports import SeriesSupport as SeriesSupport
 from .supports import support_table as support_table
 from .waves import SeriesProfile as SeriesProfile

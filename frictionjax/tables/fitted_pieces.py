@@ -48,15 +48,16 @@ def fitted_pieces(
     edges: Float[np.ndarray, " n"],
     degree: int = SETTINGS.degree,
     fitted: float = SETTINGS.fitted,
+    most: int = SETTINGS.pieces - SETTINGS.few,
 ) -> Pieces | None:
     """Pieces of a function on [0, 1), smooth between `edges`, which rise from 0 to 1.
 
-    None where that takes more of them than tables have room for. By way of Chebyshev
+    None where that takes more than `most`, for which tables have room. By way of Chebyshev
     series: powers of values at nodes at once would lose six digits.
     """
     fit, count = _fit(degree), degree + 1
     left, width = edges[:-1], np.diff(edges)
-    most, largest = SETTINGS.pieces - SETTINGS.few, 0.0
+    largest = 0.0
     done: list[tuple[np.ndarray, np.ndarray]] = []
     while left.size:
         if left.size + sum(begins.size for begins, _ in done) > most:

@@ -85,8 +85,10 @@ def binned(pieces: Pieces, sizes: tuple[int, ...], for_each: int) -> Binned | No
     return None
 
 
-def piecewise(pieces: Pieces, points: int) -> PiecewiseProfile | None:
+def piecewise(
+    pieces: Pieces, points: int, sizes: tuple[int, ...] = (SETTINGS.pieces,)
+) -> PiecewiseProfile | None:
     """Pieces as a profile; None as of `binned`."""
-    table = binned(pieces, (SETTINGS.pieces,), SETTINGS.bins)
+    table = binned(pieces, sizes, SETTINGS.bins)
     samples = size_for(points, SETTINGS.points_a_period) or points
     return None if table is None else PiecewiseProfile(*table, samples)

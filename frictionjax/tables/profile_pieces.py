@@ -35,18 +35,23 @@ def profile_in_pieces(profile: AbstractProfile) -> PiecewiseProfile | None:
     w'' by 1e-15 over the square of their length, and so is where friction has its folds.
     """
 
-    def bend(places: np.ndarray) -> np.ndarray:
-        return _at(profile, places)[2]
+    def at(places: np.ndarray) -> Any:
+        return _at(profile, places)
 
-    pieces = _with_kinks(bend)
-    if pieces is None:
+    bends = _with_kinks(lambda places: at(places)[2])
+    if bends is None:
         return None
-    height, slope, _ = _at(profile, pieces.left)
-    power = np.arange(2, SETTINGS.degree + 1)
-    terms = pieces.terms / (power * (power - 1))
-    found = Pieces(pieces.left, np.column_stack([height, slope, terms]))
+    found = risen_twice(bends, at)
     table = piecewise(found, profile.points)
     return table if table is not None and _say_the_same(profile, table) else None
+
+
+def risen_twice(bends: Pieces, at: Callable[[np.ndarray], Any]) -> Pieces:
+    """Pieces of w from those of w'', by `at(places)`: w and w' where they begin."""
+    height, slope, *_ = at(bends.left)
+    power = np.arange(2, bends.terms.shape[1] + 2)
+    terms = bends.terms / (power * (power - 1))
+    return Pieces(bends.left, np.column_stack([height, slope, terms]))
 
 
 def _say_the_same(profile: AbstractProfile, table: AbstractProfile) -> bool:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 
 from .._checks import ByIdentity
 from .._compile import values_at
@@ -60,6 +60,8 @@ def profile_tables(profile: AbstractProfile) -> ProfileTables:
 
 def _found(profile: AbstractProfile) -> ProfileTables:
     height = float(np.max(np.abs(values_at(profile, _places(profile.points)))))
+    if isinstance(profile, PiecewiseProfile):
+        return ProfileTables(profile, profile, height)
     shape = _shape_of(profile)
     if isinstance(shape, Series):
         return _in_series(shape, height)
@@ -85,24 +87,46 @@ def _in_series(series: Series, height: float) -> ProfileTables:
 
 
 def _pieces_of(series: Series, profile: SeriesProfile) -> PiecewiseProfile | None:
-    """Of a long series, Taylor polynomials about the middles of many pieces.
+    """Of a long series, as `waves_in_pieces`.
 
     What is left out is (pi n/pieces)^9/9! of harmonic n, 5e-18 for 64, and 1e-13 of its
     second derivative.
     """
-    size, count = profile.cos.shape[0], SETTINGS.pieces - SETTINGS.few
-    if size > SETTINGS.harmonics[-1]:
+    if profile.cos.shape[0] > SETTINGS.harmonics[-1]:
         return None
-    turn = 2j * np.pi * np.arange(1, series.cos.size + 1)
-    waves = 0.5 * (series.cos - 1j * series.sin) * np.exp(turn * 0.5 / count)
+    return waves_in_pieces(series.mean, series.cos - 1j * series.sin, profile.points)
+
+
+def waves_in_pieces(
+    mean: float,
+    waves: Complex[np.ndarray, " harmonics"],
+    points: int,
+    room: int = SETTINGS.pieces,
+) -> PiecewiseProfile | None:
+    """`mean + Re sum_n waves_n exp(2 pi i n y)`: Taylor polynomials about the middles of
+    many pieces."""
+    count = room - SETTINGS.few
+    turn = 2j * np.pi * np.arange(1, waves.size + 1)
+    waves = 0.5 * waves * np.exp(turn * 0.5 / count)
     middle = np.empty((SETTINGS.degree + 1, count))
     for power in range(SETTINGS.degree + 1):
         spectrum = np.zeros(count // 2 + 1, complex)
         spectrum[1 : turn.size + 1] = waves * turn**power / math.factorial(power)
         middle[power] = np.fft.irfft(count * spectrum, count)
-    middle[0] += series.mean
+    middle[0] += mean
     terms = _moved(middle, -0.5 / count)
-    return piecewise(Pieces(_places(count), terms.T), profile.points)
+    return piecewise(Pieces(_places(count), terms.T), points, (room,))
+
+
+def room_of_waves(waves: Complex[np.ndarray, " harmonics"], most: float) -> int | None:
+    """The smallest room in which slopes of the pieces are off by `most` at most."""
+    n, order = np.arange(1, waves.size + 1), SETTINGS.degree
+    slopes = 2 * np.pi * n * np.abs(waves)
+    for room in SETTINGS.rooms:
+        left_out = (np.pi * n / (room - SETTINGS.few)) ** order / math.factorial(order)
+        if n[-1] < room // 2 and np.sum(slopes * left_out) <= most:
+            return room
+    return None
 
 
 def _moved(

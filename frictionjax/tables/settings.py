@@ -43,6 +43,16 @@ class Settings(NamedTuple):
     apart: float = 1e-3
     newton: int = 3
     place_rounding: float = 2.0**-51  # four of a share's: what their places are moved by
+
+    # Sums of one function's copies (`summed_phases.py`).
+    summed: float = 1e-12  # of the largest w'': how well pieces meet that of a sum
+    summed_alike: float = 1e-10  # of the largest w': how far it may be off
+    jumps: float = 1e-6  # of the largest third derivative: at a kink of the second
+    alike_ends: float = 2.0**-40  # periods: ends of pieces that are one
+    newtons: int = 8
+    # Pieces. The second is programs of its own, for sums that the first has no room for.
+    rooms: tuple[int, ...] = (4096, 32768)
+
     # Samples a period, which are static: few sizes, few programs.
     points_a_period: tuple[int, ...] = (256, 1024, 4096, 8192)
 

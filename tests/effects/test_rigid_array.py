@@ -9,6 +9,8 @@ import pytest
 from scipy import integrate, optimize
 
 import frictionjax as fx
+from frictionjax.effects import Engine
+from frictionjax.model import scene_for, tabulated_scene
 
 SINE = fx.profiles.Sine(0.1)
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.5)
@@ -31,6 +33,84 @@ def test_equal_phases_add_up():
         plus, minus = rho_of([0.3] * count)
         assert plus == pytest.approx(count * float(one.rho_plus), rel=1e-12)
         assert minus == pytest.approx(count * float(one.rho_minus), rel=1e-12)
+
+
+LEAN = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0)
+RATCHET = fx.profiles.Polyline([0.0, 0.8], [0.0, 0.05], radius=0.005)
+MANY = np.arange(1, 41)
+ROUGH = {
+    "sine": (SINE, SLANTED),
+    "corners": (RATCHET, LEAN),
+    "heights": (
+        fx.profiles.Spline(0.02 * np.sin(0.3 + 2 * np.pi * np.arange(64) / 64) ** 3),
+        SLANTED,
+    ),
+    "harmonics": (fx.profiles.Fourier(0.01 / MANY**2, 0.02 / MANY**3), SLANTED),
+    "a function": (
+        fx.profiles.Custom(lambda y: 0.02 * jnp.exp(jnp.sin(2 * jnp.pi * y))),
+        SLANTED,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ROUGH)
+def test_one_tip_is_the_scene_itself(name):
+    profile, bristle = ROUGH[name]
+    plain = fx.friction(profile, bristle)
+    expected = float(plain.rho_plus), float(plain.rho_minus)
+    for offset in (0.0, 0.3):
+        found = rho_of([offset], profile=profile, bristle=bristle)
+        assert found == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.slow  # a program of its own: 12 s
+def test_traced_tips_over_corners_have_the_friction_of_known_ones():
+    @jax.jit
+    def traced(offsets):
+        array = fx.effects.RigidArray(offsets)
+        found = fx.friction(scene_of(array, profile=RATCHET, bristle=LEAN))
+        return found.rho_plus, found.rho_minus
+
+    offsets = [0.1, 0.3, 0.75]
+    known = rho_of(offsets, profile=RATCHET, bristle=LEAN)
+    assert known == pytest.approx([float(v) for v in traced(np.array(offsets))], rel=1e-9)
+
+
+@pytest.mark.slow  # the inverse of a surface of its own: 6 s
+def test_forces_of_tips_over_corners_are_those_of_each():
+    """At an eps that is not 0, between places that tables were made of."""
+    offsets, eps, z = np.array([0.0, 0.13, 0.6]), 0.05, np.linspace(0, 0.05, 977)
+    scene = scene_of(fx.effects.RigidArray(offsets), profile=RATCHET, bristle=LEAN)
+    table = tabulated_scene(scene_for(Engine.PATH, scene), eps).potential
+    alone = fx.potential(RATCHET, LEAN)
+    expected = sum(np.asarray(alone.force(z + eps * o, eps)) for o in offsets)
+    found = table.force(z, eps)
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.max(np.abs(expected)))
+
+
+@pytest.mark.slow  # loops of their own: 30 s
+@pytest.mark.parametrize("name", ["corners", "harmonics"])
+def test_one_tip_moves_as_the_scene_itself(name):
+    profile, bristle = ROUGH[name]
+    scene = scene_of(profile=profile, bristle=bristle)
+    array = scene.replace(effects=(fx.effects.RigidArray([0.0]),))
+    ts, eps = np.linspace(0, 3, 7), 0.02
+    plain, one = (fx.solve(s, eps, ts=ts, accuracy=1e-4) for s in (scene, array))
+    assert one.ok
+    np.testing.assert_allclose(one.z, plain.z, atol=2e-4 * eps)
+    limits = [fx.solve_limit(s, ts) for s in (scene, array)]
+    np.testing.assert_allclose(limits[1].z, limits[0].z, atol=1e-9)
+    slides = [
+        fx.steady_slide(profile, bristle, eps, effects=e) for e in ((), array.effects)
+    ]
+    assert slides[1].mean_plus == pytest.approx(float(slides[0].mean_plus), rel=1e-6)
+    assert slides[1].mean_minus == pytest.approx(float(slides[0].mean_minus), rel=1e-6)
+
+
+def test_more_corners_than_there_is_room_for_are_refused():
+    offsets = np.random.default_rng(3).uniform(size=9000)
+    with pytest.raises(ValueError, match=r"effects\.RigidArray: .* needs fewer tips"):
+        rho_of(offsets, profile=RATCHET, bristle=LEAN)
 
 
 def test_phases_spread_evenly_over_a_sine_leave_nothing():
