@@ -53,7 +53,8 @@ def higher_order(at: Setting) -> HigherOrder:
     slides by that over Phi'', and a tip on its way to the next slip by `fastest` times as
     much. A well that has moved holds its tip as far ahead, and until the support has been
     pulled on by as much: `fastest` times less once. (Over a rough surface, eps = 0.02,
-    gamma = 2, slips were late by 20 times what the extreme force says.) Where tips rest
+    gamma = 2, slips were late by 20 times what the extreme force says.) Where that is more
+    than a slip takes, one tip is a slip behind the other (`Setting.apart`). Where tips rest
     inside wells they move by `eps^2 Q'/W''`, and slips last longer as forces change. Where
     the load turns while a tip is on a fold that is no bound.
 
@@ -76,6 +77,8 @@ def higher_order(at: Setting) -> HigherOrder:
     force = float(np.max(forces))
     carried = max(1.0, at.fastest * at.stiffest / at.softest - 1)
     late = float(np.max(at.fastest * forces / at.softest + carried * at.eps * place))
+    shift = float(np.max(forces / at.softest + at.eps * place))
+    late = max(late, at.apart(shift))
     flat = at.eps * at.softest / at.fastest
     inside = at.eps**2 * float(np.max(np.abs(slope) / np.maximum(np.abs(steep), flat)))
     share = at.eps * largest / at.rho

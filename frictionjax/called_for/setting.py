@@ -17,6 +17,7 @@ from ..slide_laws import SlideData, slide_data
 AWAY = 0.005  # of the time that a well takes
 FASTEST = 10.0  # times a slide, 0.05 eps in that time: a tip that is faster slips
 _BOTH = 0.24  # of the geometric mean, where a tip rests and is held up by drag
+_SHARE = 0.5  # of a well, that every slip goes through
 _BESIDE = 12  # places about a fold, that tell how it bends
 
 
@@ -70,6 +71,27 @@ class Setting(NamedTuple):
         width = float(self.law.rho_plus) - float(self.law.rho_minus)
         driven = np.minimum(together, 1 + width / viscous)
         return float(min(np.max(driven), FASTEST))
+
+    def apart(self, shift: float) -> float:
+        """How far apart tips are outside of slips, in m, at most, that slip for the same
+        pull with supports `shift` (m) apart.
+
+        Where slips are no further apart than half a percent of a well on both sides and the
+        least that a slip takes, no time is outside of both and a slip between them.
+        """
+        if shift < self.eps * (2 * AWAY + _SHARE / self._driven):
+            return min(self.fastest * shift, self.eps + shift)
+        return self.eps + shift if self._driven > FASTEST else self.fastest * shift
+
+    @property
+    def _driven(self) -> float:
+        """Times as fast as their slide tips are at most: the pull against viscosity."""
+        width = float(self.law.rho_plus) - float(self.law.rho_minus)
+        speeds = np.abs(self.data.speed)
+        speeds = speeds[speeds > 0]
+        if not speeds.size:
+            return float("inf")
+        return float(1 + width / (self.eps**self.gamma * np.min(speeds)))
 
     @property
     def bend(self) -> float:

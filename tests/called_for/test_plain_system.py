@@ -144,3 +144,32 @@ def test_on_straight_flanks_forces_change_by_what_the_higher_order_is(eps):
 @pytest.mark.parametrize("name", NONE)
 def test_without_a_higher_order_nothing_is_told(name):
     assert told_of(scene_that_ships(name), 1.0, 0.1) == 0.0
+
+
+def far_apart(eps, gamma):
+    """Two harmonics on a soft spring, pulled through thousands of wells."""
+    sizes = np.array([0.0, 0.02 / np.pi]), np.array([0.05 / np.pi, 0.0])
+    parts = fx.profiles.Fourier(*sizes), fx.bristles.VerticalSpring(1.0, 1.5, 1.0)
+    amplitude = 3 * float(fx.friction(*parts).rho_plus) + 0.05 * eps * 30.37
+    return fx.Scene(*parts, fx.supports.Spring(0.05), fx.loads.Ramp(amplitude), 1.0)
+
+
+@pytest.mark.parametrize(("eps", "gamma", "seen"), [(1e-3, 1.5, 0.9915), (0.01, 2.0, 0.97)])
+def test_a_slip_that_is_late_by_more_than_it_takes_is_a_well(eps, gamma, seen):
+    """Of shares of a well that were measured, `seen` (at 0.01 by LSODA too)."""
+    assert seen * eps <= told_of(far_apart(eps, gamma), gamma, eps) <= 1.2 * eps
+
+
+@pytest.mark.slow
+def test_tips_a_well_apart_are_seen():
+    eps, gamma = 0.01, 2.0
+    scene = far_apart(eps, gamma)
+    well = 0.05 * eps / float(scene.load.rate)
+    middle = 0.7 + well * np.linspace(0, 3, 1201)
+    times = middle - 0.005 * well, middle, middle + 0.005 * well
+    (whole, calm), (without, still) = (
+        states_outside_slips(s, gamma, eps, times, 1e-5)
+        for s in (scene, scene.replace(effects=LEADING))
+    )
+    seen = np.max(np.abs(whole - without)[calm & still])
+    assert 0.9 * eps < seen <= told_of(scene, gamma, eps)
