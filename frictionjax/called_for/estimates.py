@@ -17,9 +17,13 @@ from ..effects import (
 from .activated_slips import activated_slips
 from .inertia_number import inertia_numbers
 from .setting import AWAY, FASTEST, Setting
+from .turns_on_folds import turns_on_folds
 
-# Of beta, in eps: what a mass changes below the border, 0.7 (gamma = 0.75) to 1 was seen.
+# Of beta, in eps: what a mass changes below the border, 0.7 (gamma = 0.75) to 1 was seen,
+# and 1.14 on ramps where eps^gamma times speed is 0.1 to 3 rho. (2.8 where the load turns
+# on a fold too, of which nothing is told.)
 _LIGHT = 2.0
+_ON_FOLD = "no bound: the load turns on a fold"
 # Times the delay m_eps/eps^gamma.
 _LATE = 5.0
 # Of rho and beta^2, where eps^gamma times speed is above rho: up to 0.3 was seen.
@@ -95,6 +99,8 @@ def _(effect: Inertia, at: Setting) -> Estimate:
     faster = np.clip(2 * at.rho / (viscosity * at.speed), np.e, FASTEST)
     if np.log(faster) * delay * at.speed < 2 * AWAY * at.eps:
         light = min(light, _LATE * at.fastest * at.speed * delay)
+    if light < at.eps and turns_on_folds(at, at.stiffest * light / at.fastest).size:
+        return Estimate(np.nan, np.nan, np.nan, f"{_ON_FOLD}, beta = {beta:.3g}")
     carried = min(1.0, viscosity * at.speed / at.rho) ** 2
     even = at.rho * _EVENED * min(beta, 1.0) ** 2 * carried
     run = at.rho * (1 - min(1.0, _CAUGHT / np.sqrt(beta)))
@@ -113,7 +119,10 @@ def _(effect: Noise, at: Setting) -> Estimate:
     heat = float(np.asarray(effect.temperature_at(at.eps)))
     found = activated_slips(at, heat)
     earlier = found.force / at.softest
-    felt = _SHAKEN * min(at.fastest * earlier, earlier + at.eps) + found.width * at.eps
+    # Less than a well apart is no bound where the load turns on a fold.
+    if at.fastest * earlier < at.eps and turns_on_folds(at, found.force).size:
+        return Estimate(np.nan, found.force, np.nan, _ON_FOLD)
+    felt = _SHAKEN * at.apart(earlier) + found.width * at.eps
     if found.free:  # no barrier is left that holds: the support alone does
         felt += _SPREAD * float(np.sqrt(heat / at.softest))
     barrier = f"T/(eps rho) = {heat / (at.eps * at.rho):.3g}"

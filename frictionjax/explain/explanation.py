@@ -105,7 +105,8 @@ def explain(
     over, of an array for the bristle that it changes most; "finite speed", what viscosity
     adds to dry friction; the scene's effects. Where the load turns while a tip is on a fold
     no closed form tells what the higher order changes: the scene is solved with it and
-    without, and `source` says so.
+    without, and `source` says so; what a light mass, or noise, changes is not known then,
+    and called for.
 
     `progress`: a line on standard error where it takes more than two seconds.
 
