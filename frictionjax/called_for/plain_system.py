@@ -78,7 +78,7 @@ def higher_order(at: Setting) -> HigherOrder:
     carried = max(1.0, at.fastest * at.stiffest / at.softest - 1)
     late = float(np.max(at.fastest * forces / at.softest + carried * at.eps * place))
     shift = float(np.max(forces / at.softest + at.eps * place))
-    late = max(late, at.apart(shift))
+    late = max(late, at.apart(shift)) if at.is_behind(shift) else late
     flat = at.eps * at.softest / at.fastest
     inside = at.eps**2 * float(np.max(np.abs(slope) / np.maximum(np.abs(steep), flat)))
     share = at.eps * largest / at.rho

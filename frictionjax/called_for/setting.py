@@ -74,14 +74,20 @@ class Setting(NamedTuple):
 
     def apart(self, shift: float) -> float:
         """How far apart tips are outside of slips, in m, at most, that slip for the same
-        pull with supports `shift` (m) apart.
+        pull with supports `shift` (m) apart."""
+        if self.is_behind(shift):
+            return self.eps + shift
+        return min(self.fastest * shift, self.eps + shift)
 
-        Where slips are no further apart than half a percent of a well on both sides and the
-        least that a slip takes, no time is outside of both and a slip between them.
+    def is_behind(self, shift: float) -> bool:
+        """Whether there are times outside of both slips, so apart, at which one tip is a
+        slip behind the other.
+
+        That takes half a percent of a well on both sides, and the least that a slip takes.
+        A tip that viscosity holds up all the way never slips.
         """
-        if shift < self.eps * (2 * AWAY + _SHARE / self._driven):
-            return min(self.fastest * shift, self.eps + shift)
-        return self.eps + shift if self._driven > FASTEST else self.fastest * shift
+        least = self.eps * (2 * AWAY + _SHARE / self._driven)
+        return self._driven > FASTEST and shift >= least
 
     @property
     def _driven(self) -> float:
