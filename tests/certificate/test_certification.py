@@ -328,26 +328,6 @@ def test_the_certificate_knows_no_solver():
     assert not {"wiggly", "limit", "sweeps"} & set().union(*imports.values())
 
 
-def late_by(share, scene, eps, ts, z):
-    """The curve with slips late by a share of their period, little by little."""
-    pace = np.abs(np.gradient(np.asarray(scene.load(ts)), ts)) / 1.0  # stiffness 1
-    middle = 0.5 * float(scene.duration)
-    period = eps / np.interp(middle, ts, pace)
-    return np.interp(ts - share * period * np.exp(-(((ts - middle) / 0.3) ** 2)), ts, z)
-
-
-@pytest.mark.parametrize("name", named(["few wells", "alpha < 0", "fast slips"]))
-@pytest.mark.parametrize(("share", "status"), [(0.005, "OK"), (0.3, "OFF"), (-0.3, "OFF")])
-def test_slips_come_in_time(name, share, status):
-    """No window over forces sees slips that come late or early little by little."""
-    scene, eps, gamma, ts, z = case(name)
-    late = late_by(share, scene, eps, ts, z)
-    found = fx.certify(scene, eps, gamma, ts, late)
-    assert found.status.name == status, found
-    if status == "OFF":
-        assert 0.05 < found.distance <= 1.01 * np.max(np.abs(late - z)) / eps
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("late", [0.25, -0.25, 0.5])
 def test_slips_under_another_load_are_late(late):
@@ -366,17 +346,8 @@ def test_slips_under_another_load_are_late(late):
     assert np.max(np.abs(np.asarray(right - wrong))) > 0.9 * eps
     assert fx.certify(scene, eps, 1.0, ts, right).ok
     found = fx.certify(scene, eps, 1.0, ts, wrong)
-    assert found.status == fx.CertificateStatus.OFF
+    assert found.status.name == "OFF"
     assert found.distance > 0.3
-
-
-@pytest.mark.parametrize("name", named(["few wells", "stick and slip", "fast slips"]))
-def test_a_solution_is_known_to_be_near(name):
-    scene, eps, gamma, ts, z = case(name)
-    found = fx.certify(scene, eps, gamma, ts, z)
-    assert found.distance < 1e-3
-    assert 0.01 < found.within < 0.05  # two solutions set off 0.03 aside
-    assert set(found.shares) == {"spacing", "distance"}  # nothing else is asked
 
 
 @pytest.mark.slow
@@ -390,17 +361,3 @@ def test_how_far_a_curve_is_at_most(name):
     assert 0.01 < found.within < 0.06
     shifted = fx.certify(scene, eps, gamma, ts, z + 0.1 * eps * np.minimum(1.0, 20 * ts))
     assert shifted.within > 0.1
-
-
-def test_slips_in_few_samples_are_enough():
-    """Where a solution is known to be near, no measure of viscosity is asked."""
-    scene, eps, gamma, ts, z = case("few wells")
-    keep = [0]
-    for number in range(2, ts.size):
-        far = abs(z[number] - z[keep[-1]]) > 0.24 * eps
-        if far or number % 400 == 0:
-            keep.append(number - 1)
-    found = fx.certify(scene, eps, gamma, ts[keep], z[keep])
-    assert found.ok, found
-    assert found.spacing > 0.2
-    assert found.distance < 0.005

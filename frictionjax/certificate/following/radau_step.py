@@ -25,13 +25,11 @@ class Follower(NamedTuple):
 
 
 class _Solved(NamedTuple):
-    """The tip after a step, what Newton's last round changed, growth on the way, and the
-    fastest that solutions part there, in 1/s."""
+    """The tip after a step, what Newton's last round changed, and growth on the way."""
 
     tip: Real
     left: Real
     growth: Real
-    parting: Real
 
 
 def _solved(
@@ -56,11 +54,11 @@ def _solved(
         inverse = inverse_of_three(jnp.eye(3) - weights * slopes)
         change = inverse @ (tip + weights @ rates - tips)
         tips = tips + change
-        left, parting = jnp.max(jnp.abs(change)), jnp.max(slopes)
-        return tips, _Solved(tips[-1], left, weights[-1] @ by_state, parting)
+        left = jnp.max(jnp.abs(change))
+        return tips, _Solved(tips[-1], left, weights[-1] @ by_state)
 
     none = jnp.zeros_like(tip)
-    guess = jnp.full(3, tip), _Solved(tip, none, none, none)
+    guess = jnp.full(3, tip), _Solved(tip, none, none)
     return jax.lax.fori_loop(0, SETTINGS.rounds, newton, guess)[1]
 
 
@@ -98,9 +96,8 @@ def try_step(
     rates += [_rate(force, viscosity, at.well, at.time + step, tip)]
     between = at.tip + cubic(0.5, tip - at.tip, step * rates[0], step * rates[1])
     astray = jnp.abs(between - found.tip[1])
-    near = jnp.abs(tip - at.tip) <= SETTINGS.farthest
-    near &= step * jnp.max(found.parting) <= SETTINGS.parting
-    agree = (error <= SETTINGS.error) & (astray <= SETTINGS.between) & near
+    agree = (error <= SETTINGS.error) & (astray <= SETTINGS.between)
+    agree &= jnp.abs(tip - at.tip) <= SETTINGS.farthest
     # A load that jumps is gone over in a step that no float makes shorter.
     shortest = SETTINGS.shortest * (jnp.abs(at.time) + jnp.abs(at.end))
     taken = ~done & (agree | ((step <= shortest) & jnp.isfinite(tip)))

@@ -18,10 +18,7 @@ class Settings(NamedTuple):
     # 2.4, without. They are a sixteenth of that off, by corners of a load half of it.
     between: float = 1e-3
     rounds: int = 4  # of Newton's method; with 3 a third more steps
-    farthest: float = 0.15  # that one step goes: never into another well
-    # Of a step, of what parts on the way: beyond, Newton's method finds other wells (1,857
-    # of them at eps = 2e-3, gamma = 2.4).
-    parting: float = 1.0
+    farthest: float = 0.15  # that one step goes: never into another well, as 0.5 did
     first: float = 1 / 256  # step, of a stretch
     shortest: float = 1e-13  # step, of the time: loads that jump
     # Followers side by side, and steps of one call.

@@ -1,0 +1,87 @@
+"""What a curve's own rests tell that forces over windows do not: of some fast slips."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+
+EPS, GAMMA, RATE, END = 0.02, 2.0, 2.0, 0.1
+SCENE = fx.Scene(
+    fx.profiles.Sine(0.1),
+    fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+    fx.supports.Spring(1.0),
+    fx.loads.Ramp(RATE),
+    END,
+)
+PERIOD = EPS / RATE  # of slips
+TS = np.linspace(0.0, END, 16001)
+
+
+@cache
+def solved():
+    found = fx.solve(SCENE, EPS, GAMMA, TS, accuracy=1e-6, dissipation=False)
+    return np.asarray(found.z)
+
+
+def certified(z, ts=TS):
+    return fx.certify(SCENE, EPS, GAMMA, ts, z)
+
+
+def late_by(share):
+    """Slips late by a share of their period, little by little."""
+    behind = share * PERIOD * np.exp(-(((TS - 0.5 * END) / (0.2 * END)) ** 2))
+    return np.interp(TS - behind, TS, solved())
+
+
+def test_the_solution_is_known_to_be_near():
+    found = certified(solved())
+    assert found.ok, found
+    assert found.distance < 1e-3
+    assert 0.01 < found.within < 0.05  # two solutions set off 0.03 aside
+    assert set(found.shares) == {"spacing", "distance"}  # nothing else is asked
+
+
+@pytest.mark.parametrize("share", [0.1, -0.1])
+def test_slips_that_come_late_or_early_are_seen(share):
+    found = certified(late_by(share))
+    assert found.status.name == "OFF", found
+    assert 0.1 < found.distance < 1.0
+
+
+@pytest.mark.parametrize("share", [0.005, -0.005])
+def test_in_time_a_hundredth_of_a_period_is_allowed(share):
+    """In which a slip goes on by much of a well."""
+    z = late_by(share)
+    assert np.max(np.abs(z - solved())) > 0.1 * EPS
+    found = certified(z)
+    assert found.ok, found
+    assert found.distance < 0.01
+
+
+def test_noise_is_as_far_as_it_is():
+    noise = np.random.default_rng(5).uniform(-0.01, 0.01, TS.size) * EPS
+    found = certified(solved() + noise)
+    assert found.ok, found
+    assert 0.009 < found.distance < 0.0135
+    assert found.within < 0.06
+
+
+def test_after_a_jump_no_solution_is_near():
+    """A well on, and a solution again: of another start."""
+    found = certified(solved() + EPS * (TS > 0.5 * END))
+    assert not found.ok
+    assert found.within == np.inf
+
+
+def test_few_samples_of_a_slip_are_enough():
+    """Where a solution is known to be near, the viscosity they show does not matter."""
+    z, keep = solved(), [0]
+    for number in range(2, TS.size):
+        if abs(z[number] - z[keep[-1]]) > 0.24 * EPS or number % 200 == 0:
+            keep.append(number - 1)
+    found = certified(z[keep], TS[keep])
+    assert found.ok, found
+    assert abs(found.viscosity - 1) > 0.1
+    assert found.distance < 0.01
