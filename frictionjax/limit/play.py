@@ -35,6 +35,7 @@ from ..model import (
     strips_at,
 )
 from ..supports import AbstractSupport
+from .corners import at_times_that_stay, times_that_move, with_slopes_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -117,28 +118,23 @@ def play_step(support: AbstractSupport, found: Coefficients, z: Real, load: Real
     return jnp.clip(z, lower, upper)
 
 
-def limit_on_grid(
-    load: AbstractPull,
-    support: AbstractSupport,
-    z0: Real,
-    found: Coefficients,
-    grid: Float[Array, " m"],
+def _clipped(
+    strips: tuple[Float[Array, " m"], Float[Array, " m"]], z0: Real, found: Coefficients
 ) -> tuple[Float[Array, " m"], Float[Array, " m"]]:
-    """State and cumulative dissipation on a sorted grid that holds the turning points.
+    """State and cumulative dissipation on a grid, of the strips (m) at its points.
 
-    Between grid points the load is monotone, so the solution is too, and a clip to the
-    strip at the grid point is exact: there is no time-stepping error. (An associative scan
-    of the clips has the same values, but took 7.5 s to compile for 65536 points where this
-    takes 0.04, and ran 15 times as long.)
+    The grid is sorted and holds the turning points: between grid points the load is
+    monotone, so the solution is too, and a clip to the strip at the grid point is exact:
+    there is no time-stepping error. (An associative scan of the clips has the same values,
+    but took 7.5 s to compile for 65536 points where this takes 0.04, and ran 15 times as
+    long.)
     """
-    loads = jax.vmap(load)(grid)
-    strips = jax.vmap(lambda load: strip(support, found, load))(loads)
 
     def clipped(z: Array, strip: tuple[Array, Array]) -> tuple[Array, Array]:
         z = jnp.clip(z, *strip)
         return z, z
 
-    _, z = jax.lax.scan(clipped, jnp.asarray(z0, grid.dtype), strips)
+    _, z = jax.lax.scan(clipped, jnp.asarray(z0, strips[0].dtype), strips)
     moves = jnp.diff(z, prepend=z0)
     spent = dissipation_potential(found.rho_plus, found.rho_minus, moves)
     return z, jnp.cumsum(spent)
@@ -153,14 +149,24 @@ def _limit_at(
     found: Coefficients,
     ts: Float[Array, " n"],
 ) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
+    loads_at = jax.vmap(load)
+    strips_of = jax.vmap(lambda load: strip(support, found, load))
     grid = jnp.concatenate([ts, turns])
+    times, beside = times_that_move(ts, turns)
     order = jnp.argsort(grid)
-    z, dissipation = limit_on_grid(load, support, z0, found, grid[order])
+    moving = jnp.concatenate([times, turns])[order]
+    strips = strips_of(with_slopes_of(loads_at(grid[order]), loads_at(moving)))
+    z, dissipation = _clipped(strips, z0, found)
     back = jnp.argsort(order)[: ts.shape[0]]
+    z, dissipation = z[back], dissipation[back]
+    slopes = jnp.where(beside, jax.vmap(load.slope)(times), 0.0)
+    edges = strips_of(loads_at(ts)), (strips[0][back], strips[1][back])
+    stays = at_times_that_stay(z, dissipation, slopes, *edges, found)
+    z, dissipation = map(with_slopes_of, (z, dissipation), stays)
     # Too little room for the turning points of a traced load is NaN, never a wrong number,
     # and so are derivatives: added, NaN would leave them as they are.
     poison = jnp.where(jnp.any(jnp.isnan(turns)), jnp.nan, 1.0)
-    return z[back] * poison, dissipation[back] * poison
+    return z * poison, dissipation * poison
 
 
 def play_operator(
@@ -179,7 +185,10 @@ def play_operator(
 
 def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSolution:
     if not is_concrete(scene, ts):
-        parts = scene.load, scene.support, scene.z0, scene.turning_points()
+        # Turning points do not move with the duration, and what fills their room is none.
+        until = jax.lax.stop_gradient(jnp.asarray(scene.duration))
+        corners = scene.load.turning_points(until, scene.turns)
+        parts = scene.load, scene.support, scene.z0, corners
         return LimitSolution(ts, *_limit_at(*parts, found, ts))
     # Known numbers compile nothing, whatever the parts.
     turns = known_turning_points(scene.load, scene.duration, scene.turns)

@@ -79,7 +79,9 @@ class PeriodicLoad(AbstractLoad):
         quarter = self.period / 4
         times = (2 * jnp.arange(count) + 1) * quarter
         enough = (2 * count + 1) * quarter >= duration
-        return jnp.where(enough, jnp.minimum(times, duration), jnp.nan)
+        # One at the end is the load's own: derivatives by the period go through it.
+        times = jnp.where(times <= duration, times, duration)
+        return jnp.where(enough, times, jnp.nan)
 
 
 def listed_turning_points(
@@ -87,7 +89,9 @@ def listed_turning_points(
 ) -> Float[Array, " count"]:
     """Listed times in (0, duration), as rule 2 wants them."""
     inside = (listed > 0) & (listed < duration)
-    times = jnp.sort(jnp.where(inside, listed, duration))
+    # One at the end is as large as what fills the room, and moves as it does itself.
+    kept = inside | (listed == duration)
+    times = jnp.sort(jnp.where(kept, listed, duration))
     fill = jnp.full((max(0, count - times.shape[0]),), duration)
     return jnp.where(
         jnp.sum(inside) <= count, jnp.concatenate([times, fill])[:count], jnp.nan
