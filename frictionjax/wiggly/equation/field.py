@@ -81,6 +81,11 @@ class TipField(eqx.Module):
         force, stretch = self.driving_force(t, y)
         return force / (self.viscosity * self.eps * stretch)
 
+    def dissipated_power(self, t: Real, y: Real) -> Real:
+        """`eps^gamma z'^2` in W."""
+        force, _ = self.driving_force(t, y)
+        return force**2 / self.viscosity
+
     def point(self, t: Real, y: Real) -> Point:
         """The field and its derivatives at one point."""
         one = jnp.ones_like(y)

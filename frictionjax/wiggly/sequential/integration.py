@@ -79,9 +79,12 @@ def integrate(
     fronts = jax.tree_util.tree_map(lambda leaf: leaf[wanted], fronts)
     tips, *memories = fronts.y
     # Where a turning point is the time asked for, it has been stepped to: derivatives by
-    # the turning point are those at a time that moves with it.
+    # the turning point are those at a time that moves with it. (Energies left where they
+    # were: the dissipation at a corner by its time was 1.14 J/s for -0.12.)
     speeds = jax.lax.stop_gradient(jax.vmap(field.velocity)(fronts.t, tips))
-    tips = tips + (ts - fronts.t) * speeds
+    powers = jax.lax.stop_gradient(jax.vmap(field.dissipated_power)(fronts.t, tips))
+    later, reached = ts - fronts.t, tips
+    tips = tips + later * speeds
     # As a factor: a term would leave derivatives of what failed finite.
     valid = jnp.where(fronts.code == Status.OK, 1.0, jnp.nan)
     z = jax.vmap(field.state)(tips) * valid
@@ -92,12 +95,12 @@ def integrate(
         gap = jnp.abs(final.viscous - spent)
         lost = jax.vmap(
             lambda t, y, balance: dissipated(field, balance, t, y, start_energy)
-        )(ts, tips, memories[0])
+        )(fronts.t, reached, memories[0])
         pulled = _pulled(scene, turns, until)
         size = jnp.abs(start_energy) + jnp.abs(field.energy(last.t, last.y[0]))
         errors = errors_of_sums(final.viscous, final.residual, size, plan.unit, pulled)
         lost = jnp.where(errors.sum_is_closer, memories[0].viscous, lost)
-        dissipation = lost * valid
+        dissipation = (lost + later * powers) * valid
         residual = memories[0].residual * valid
     status = _status(last.code, z, turns)
     if final is not None:

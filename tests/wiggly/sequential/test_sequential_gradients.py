@@ -35,12 +35,17 @@ POINT = jnp.array([0.1, 1.0, 0.4, 1.0, 1.0488, 0.01, EPS, 0.8, 3.0])
 @eqx.filter_jit
 def states(p, **options):
     found = fx.solve(scene_of(p), p[6], p[7], TIMES, accuracy=1e-9, **options)
-    return jnp.concatenate([found.z[SMOOTH], found.dissipation[-1:]])
+    return jnp.concatenate([found.z[SMOOTH], found.dissipation[-1:]]), found.dissipation
 
 
 @pytest.fixture(scope="module")
-def jacobian():
+def jacobians():
     return jax.jit(jax.jacrev(states))(POINT)
+
+
+@pytest.fixture(scope="module")
+def jacobian(jacobians):
+    return jacobians[0]
 
 
 @pytest.mark.slow  # two programs: 24 s; the same of `solve`: ../test_differentiable.py
@@ -53,7 +58,7 @@ def test_reverse_mode_agrees_with_central_differences(jacobian, i):
     """
     width = 3e-5 * max(0.1, abs(float(POINT[i])))
     shift = jnp.zeros_like(POINT).at[i].set(width)
-    ends = [states(POINT + share * shift) for share in (1, -1, 2, -2)]
+    ends = [states(POINT + share * shift)[0] for share in (1, -1, 2, -2)]
     # Of order 4: of order 2 their own error is 1e-4.
     differences = (8 * (ends[0] - ends[1]) - (ends[2] - ends[3])) / (12 * width)
     error = jnp.max(jnp.abs(jacobian[:, i] - differences))
@@ -61,11 +66,21 @@ def test_reverse_mode_agrees_with_central_differences(jacobian, i):
 
 
 @pytest.mark.slow
+def test_dissipation_has_one_derivative_where_the_load_turns(jacobians):
+    """Of the power that is dissipated the load's turning point is only a kink."""
+    shift = 1e-6 * np.eye(POINT.size)[NAMES.index("period")]
+    behind, here, ahead = (states(POINT + by * shift)[1] for by in (-1, 0, 1))
+    slopes = jacobians[1][:, NAMES.index("period")]
+    for side in (here - behind, ahead - here):
+        assert jnp.max(jnp.abs(slopes - side / 1e-6)) < 1e-3 * jnp.max(jnp.abs(slopes))
+
+
+@pytest.mark.slow
 def test_stretches_of_many_pieces(jacobian, monkeypatch):
     """Steps that are not kept would be made again, and would be others."""
     monkeypatch.setattr(fronts, "SETTINGS", fronts.SETTINGS._replace(piece=100))
     traced_again = {"max_steps": 2**29}
-    found = jax.jit(jax.grad(lambda p: states(p, **traced_again)[-1]))(POINT)
+    found = jax.jit(jax.grad(lambda p: states(p, **traced_again)[0][-1]))(POINT)
     assert jnp.max(jnp.abs(found - jacobian[-1])) < 1e-6 * jnp.max(jnp.abs(found))
 
 
