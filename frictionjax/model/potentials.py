@@ -125,7 +125,10 @@ class AbstractPotential(Part):
     def Q(
         self, eps: Float[ArrayLike, "*eps"], Y: Float[ArrayLike, "*Y"]
     ) -> Float[Array, "..."]:
-        """Rest `Q(eps; Y)` in N/m, bounded as eps -> 0; defined at eps = 0 too."""
+        """Rest `Q(eps; Y)` in N/m, bounded as eps -> 0; defined at eps = 0 too.
+
+        There it has first derivatives by eps.
+        """
         return _elementwise(_rest_anywhere, self, *_floats(self, eps, Y))
 
     def _energy(self, z: Real, eps: Real) -> Real:
@@ -203,13 +206,21 @@ class BristlePotential(AbstractPotential):
     def _leading(self, Y: Real) -> Real:
         return self.alpha() * self.profile(self.flat_tip(Y))
 
+    def _tip_near(self, eps: Real, flat: Real) -> Real:
+        """The tip coordinate that is `flat` at eps = 0, with its first derivative there."""
+        height, slope = _slope(self.profile, flat)
+        bend = second_remainder(self.bristle.offset, jnp.zeros_like(flat))
+        return flat - eps * height**2 * bend / (1 + self.a() * slope)
+
     def _rest(self, eps: Real, Y: Real) -> Real:
         # With eta = eps w(y), A = a eta + eta^2 C and F = F(0) + alpha eta + eta^2 B,
         # y - y_flat = -eps w^2 C/(1 + a m) and w(y) - w(y_flat) = m (y - y_flat), m the
         # mean slope of w between the two: Q = w^2 (B - alpha m C/(1 + a m)), no 1/eps.
         safe = jnp.where(eps == 0, 1e-30, eps)  # any bristle reaches that far
         flat = self.flat_tip(Y)
-        y = jnp.where(eps == 0, flat, self.well_coordinate(Y, safe))
+        # Where eps is 0 the inverse is that of another eps, with no derivative by this one.
+        at_zero = self._tip_near(eps, flat)
+        y = jnp.where(eps == 0, at_zero, self.well_coordinate(Y, safe))
         height = self.profile(y)
         curved_offset = second_remainder(self.bristle.offset, eps * height)
         curved_energy = second_remainder(self.bristle.energy, eps * height)

@@ -123,6 +123,24 @@ def test_rest_at_zero_by_extrapolation(kind):
         )
 
 
+def test_the_rest_has_a_first_derivative_by_eps_at_zero():
+    bristle = fx.bristles.Custom(lambda u: 0.3 * u + u**2, lambda u: u + u**3)
+    rest = fx.potential(fx.profiles.Sine(0.5), bristle).Q
+
+    @jax.jit
+    @jax.vmap
+    def found(eps):
+        at_places = partial(rest, Y=jnp.asarray([0.13, 0.6]))
+        return jax.jvp(at_places, (eps,), (jnp.ones(()),))
+
+    width = 1e-4
+    values, (_, slopes, _) = found(width * jnp.arange(-1.0, 2.0))
+    behind, here, ahead = values
+    for difference in (here - behind, ahead - here):
+        np.testing.assert_allclose(slopes, difference / width, rtol=1e-3)
+    np.testing.assert_allclose(slopes, (ahead - behind) / (2 * width), rtol=1e-7)
+
+
 def test_rest_of_a_vertical_spring_in_closed_form():
     surface = fx.profiles.Sine(0.2)
     potential = fx.potential(surface, fx.bristles.VerticalSpring(3.0, 1.2, 1.0))
