@@ -1,3 +1,4 @@
+from .captured import hoisted as hoisted
 from .flags import keep_compiled as keep_compiled
 from .flags import use_fast_cpu as use_fast_cpu
 from .interpreted import CALLS as CALLS

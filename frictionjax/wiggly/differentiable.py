@@ -6,7 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from .._compile import Program, once_a_scene, strong_arrays
+from .._compile import Program, hoisted, once_a_scene, strong_arrays
 from .equation import StepPlan, plan_steps
 from .problem import Problem
 from .sequential import Past, integrate
@@ -112,7 +112,7 @@ def _of_tips(past: Past) -> Past:
 
 
 def solve_one_after_the_other(problem: Problem, options: Options) -> Solution:
-    problem = strong_arrays(problem)
+    problem = strong_arrays(hoisted(problem))
     if options.adjoint is None:
         curve, (status, counts) = _differentiable(problem, options)
     else:

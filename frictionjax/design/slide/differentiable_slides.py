@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..._checks import Real
-from ..._compile import Program, strong_arrays
+from ..._compile import Program, hoisted, strong_arrays
 from ...model import AbstractPotential
 from .periodic_orbit import (
     PeriodicOrbit,
@@ -52,7 +52,7 @@ def slides_both_ways(
 
 def differentiable_sides(asked: AskedSlides) -> Sides:
     """Mean and peak forces of slides both ways, (n, 2), with first derivatives."""
-    return _sides(strong_arrays(asked))
+    return _sides(strong_arrays(hoisted(asked)))
 
 
 @Program
