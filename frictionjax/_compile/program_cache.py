@@ -182,8 +182,10 @@ class _Kept:
         self._lock = threading.Lock()  # several threads compile a program once
 
     def __call__(self, numbers: list) -> Any:
-        # Programs from the folder know no derivatives or batches.
-        if any(isinstance(x, jax.core.Tracer) for x in numbers):
+        # Programs from the folder know no derivatives or batches, and those that are
+        # compiled cannot be run without `jax.jit`, which may be off since.
+        off = jax.config.jax_disable_jit  # type: ignore[attr-defined]
+        if off or any(isinstance(x, jax.core.Tracer) for x in numbers):
             return self._jitted(numbers)
         shapes = tuple([(x.shape, x.dtype) for x in numbers])
         program = self._known.get(shapes)

@@ -98,6 +98,18 @@ def test_other_programs_are_told_apart(tmp_path, compiled):
     assert len(compiled) == len(files(tmp_path)) == 7
 
 
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_program_can_be_run_without_compilation_after_it_was(monkeypatch, compiled, kept):
+    """It was refused: executables have no function that could be gone through."""
+    if not kept:
+        monkeypatch.setattr(kept_programs, "_place", None)
+    program = Program(HEIGHTS)
+    compiled_heights = program(fx.profiles.Sine(0.1), PLACES)
+    with jax.disable_jit():
+        found = program(fx.profiles.Sine(0.1), PLACES)
+    np.testing.assert_allclose(found, compiled_heights, atol=1e-16)
+
+
 class Bump(fx.profiles.AbstractProfile):
     """A user's surface: another process may know another one by this name."""
 
