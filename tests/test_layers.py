@@ -40,7 +40,7 @@ FLOORS = {
     ],
     "wiggly": [
         {"stepping"},
-        {"equation", "rosenbrock", "solved_scene", "problem"},
+        {"equation", "rosenbrock", "solved_scene", "how_obtained", "problem"},
         {"sequential", "lanes", "limit_path", "settings", "solution", "turning"},
         {"slip_map", "inertial"},
         {"enclosure"},

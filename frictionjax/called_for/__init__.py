@@ -5,6 +5,7 @@ from .estimates import estimate_of as estimate_of
 from .inertia_number import inertia_numbers as inertia_numbers
 from .left_out import ALL as ALL
 from .left_out import Simulated as Simulated
+from .left_out import left_out_in_words as left_out_in_words
 from .left_out import simulated as simulated
 from .plain_system import HigherOrder as HigherOrder
 from .plain_system import finite_speed as finite_speed

@@ -24,8 +24,13 @@ class Simulated(NamedTuple):
     @property
     def in_words(self) -> str:
         """What was left out; empty where nothing was."""
-        told = (f"{name} (at most {most:.2g} eps)" for name, most in self.left_out.items())
-        return ", ".join(told)
+        return left_out_in_words(self.left_out)
+
+
+def left_out_in_words(left_out: dict[str, Any]) -> str:
+    """Effects that were left out, and the most that each changes, of a batch in any."""
+    most = ((name, float(np.max(changes))) for name, changes in left_out.items())
+    return ", ".join(f"{name} (at most {change:.2g} eps)" for name, change in most)
 
 
 def simulated(scene: Any, effects: Any, eps: Any, gamma: Any, accuracy: Any) -> Simulated:

@@ -39,7 +39,7 @@ def through_lanes(problem: Problem, method: str, balanced: bool) -> Solution | N
     found, apart = integrate_scene(suprema=False, **asked)
     if found is None:
         return None
-    one, sampled = rows_of(found, 0), float(found.sampled[0])
+    one = rows_of(found, 0)
     own = tabulated_scene(problem.scene, problem.eps).untabulated
     counts = {
         "steps": int(one.steps),
@@ -48,7 +48,7 @@ def through_lanes(problem: Problem, method: str, balanced: bool) -> Solution | N
         "dissipation_gap": float(one.dissipation_gap) if balanced else None,
         "how": one.how,
         "bracket": one.gap,
-        "sampled": sampled,
+        "sampled": float(found.sampled[0]),
     }
     if apart is not None:
         counts["spread"] = apart[0]
@@ -58,21 +58,8 @@ def through_lanes(problem: Problem, method: str, balanced: bool) -> Solution | N
         *_energies(balanced, one.dissipation, one.running_residual),
         jnp.asarray(one.status),
         counts,
-        _in_words(one.how, sampled) + (f"; compiled for {own}" if own else ""),
+        f"; compiled for {own}" if own else "",
     )
-
-
-def _in_words(how: np.ndarray, sampled: float) -> str:
-    if not how.any():
-        return "resolved, every slip since z0, by one lane"
-    share = f"{np.mean(how > 0):.0%} of them from brackets that closed"
-    if np.any(how == 2):
-        share += f", {np.mean(how == 2):.0%} set off from a slip map"
-    if np.isnan(sampled):
-        return f"windowed, values at the times alone; {share}"
-    if sampled:
-        return f"windowed, {share}; {sampled:.0%} of the way known from some of its slips"
-    return f"resolved, every slip, in tiles; {share}"
 
 
 def along_one_path(problem: Problem, noise: Noise, key: Any) -> Solution:

@@ -9,6 +9,7 @@ from jaxtyping import Array, Float, Int
 from .._checks import CodedResult, require
 from .._text import Named, SelfDrawn, ShownNumbers, dataset_over_time
 from .equation import Status
+from .how_obtained import how_in_words
 from .solved_scene import loads_and_forces, require_one_force
 
 if TYPE_CHECKING:
@@ -56,13 +57,21 @@ class Solution(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
     residual: Float[Array, " n"] | None
     status_code: Int[Array, ""]
     counts: dict[str, Any]
-    how: str = eqx.field(static=True)
+    words: str = eqx.field(static=True)
     velocity: Float[Array, " n"] | None = None
     root: Float[Array, " n"] | None = None
     mode: Int[Array, " n"] | None = None
     tip: Float[Array, " n"] | None = None
     _outcomes = Status
     _picture = "draw_solution"
+
+    @property
+    def how(self) -> str:
+        """How values were obtained, in words; of a batch, those of all together.
+
+        Made when it is read: solutions of one scene are trees of one structure.
+        """
+        return how_in_words(self.words, self.counts)
 
     @property
     def stats(self) -> dict[str, Any]:

@@ -82,8 +82,7 @@ def _called_for(found: Simulated, *numbers: Any, **options: Any) -> Solution:
         options |= {"accuracy": _ACCURACY}  # what a path with noise does not read
     solution = _solve(found.scene, *numbers, **options)
     counts = solution.counts | {"left_out": found.left_out}
-    how = solution.how + (f"; without {found.in_words}" if found.left_out else "")
-    return dataclasses.replace(solution, counts=counts, how=how)
+    return dataclasses.replace(solution, counts=counts)
 
 
 @noting_the_scene
