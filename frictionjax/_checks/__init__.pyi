@@ -2,6 +2,7 @@ from .arguments import Real as Real
 from .arguments import as_plain as as_plain
 from .arguments import as_real as as_real
 from .arguments import as_text as as_text
+from .arguments import has_numbers as has_numbers
 from .arguments import in_64_bits as in_64_bits
 from .arguments import is_concrete as is_concrete
 from .arguments import is_known as is_known
@@ -14,6 +15,7 @@ from .arguments import require as require
 from .arguments import require_flags as require_flags
 from .arguments import require_function as require_function
 from .arguments import require_numbers as require_numbers
+from .arguments import require_outside as require_outside
 from .arguments import require_real as require_real
 from .arguments import require_whole as require_whole
 from .arguments import require_x64 as require_x64

@@ -185,6 +185,23 @@ def is_known(*trees: Any) -> bool:
     return True
 
 
+def has_numbers(tree: Any) -> bool:
+    """Whether the numbers of a result are there: no traces, no shapes alone, not none."""
+    leaves = jax.tree_util.tree_leaves(tree)
+    shapes = any(isinstance(leaf, jax.ShapeDtypeStruct) for leaf in leaves)
+    return bool(leaves) and not shapes and is_known(tree)
+
+
+def require_outside(who: str, instead: str, **arguments: Any) -> None:
+    """Raise where `who` is part of a program: an argument is traced, or all around it is.
+
+    `instead`: what to do.
+    """
+    for name, value in arguments.items():
+        require(is_known(value), name, "a traced one", f"a known one: {instead}")
+    require(is_concrete(), who, "part of jax.jit", f"a call outside: {instead}")
+
+
 def _captured(fn: Any) -> list[Any]:
     """What a function holds beside its arguments: `lambda y: slope * sin(y)`.
 

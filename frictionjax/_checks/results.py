@@ -4,7 +4,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from .arguments import is_known
+from .arguments import has_numbers, is_known
 from .status_enums import Outcome, counted, flags, outcomes
 
 
@@ -69,4 +69,5 @@ class CodedResult(Result):
         raise NotImplementedError
 
     def __repr__(self) -> str:
-        return self._in_words() if is_known(self) else super().__repr__()
+        told = has_numbers(self) and self._codes is not None
+        return self._in_words() if told else super().__repr__()

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._checks import as_text, is_known, notebook_text
+from .._checks import as_text, has_numbers, notebook_text
 from .result_table import ResultTable
 
 _MOST = 40  # lines of a batch that are shown
@@ -42,7 +42,7 @@ class ShownNumbers:
         z            -0.120394  m     the state then
         dissipation   0.379616  J     into friction
         """
-        if not is_known(self):
+        if not has_numbers(self):
             raise ValueError(f"{type(self).__name__}: needs known numbers, not a trace")
         told = [number for number in self._numbers() if number.value is not None]
         status: Any = getattr(self, "status", None)

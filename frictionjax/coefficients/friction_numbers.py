@@ -8,7 +8,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from .._checks import Real, as_text, is_known, require
+from .._checks import Real, as_text, has_numbers, require
 from .._text import ResultTable, SelfDrawn
 from ..bristles import pulling_text
 from .named_numbers import coefficient_table
@@ -57,7 +57,7 @@ class Coefficients(SelfDrawn, eqx.Module):
     _picture = "draw_coefficients"
 
     def __repr__(self) -> str:
-        if not is_known(self):
+        if not has_numbers(self):
             return super().__repr__()
         known = [(k, v) for k, v in vars(self).items() if v is not None]
         numbers = ", ".join(f"{k}={as_text(v)}" for k, v in known)
@@ -85,13 +85,14 @@ class Coefficients(SelfDrawn, eqx.Module):
         omega_plus           0.1        largest slope of the surface, friction/normal force
         omega_minus         -0.1        smallest slope of the surface, friction/normal force
         """
-        require(is_known(self), "coefficients", self, "known numbers: none under a trace")
+        told = "known numbers: none under a trace"
+        require(has_numbers(self), "coefficients", self, told)
         shape = np.shape(self.rho_plus)
         require(not shape, "coefficients", self, "those of one scene, not of a batch")
         return coefficient_table(self)
 
     def _repr_html_(self) -> str:
-        if is_known(self) and not np.shape(self.rho_plus):
+        if has_numbers(self) and not np.shape(self.rho_plus):
             return self.table()._repr_html_()
         return f"<pre>{html.escape(repr(self))}</pre>"
 

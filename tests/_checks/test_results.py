@@ -1,11 +1,13 @@
 """All results tell by the same three names whether they can be trusted, how, and why."""
 
+import jax
 import numpy as np
 import pytest
 
 from frictionjax._checks.results import CodedResult, Result
 from frictionjax._checks.status_enums import Outcome
 from frictionjax.certificate.certification import Certificate, CertificateStatus
+from frictionjax.coefficients import Coefficients
 from frictionjax.design.bristle.result import AngleFit
 from frictionjax.design.slide.bristle_fit import SlideFit
 from frictionjax.design.slide.check import DesignCheck
@@ -79,3 +81,18 @@ def test_a_certificate_is_still_a_tuple():
     assert repr(found).endswith(f", status=OFF: {CertificateStatus.OFF.message})")
     assert "residual=0.333333, " in repr(found._replace(residual=1 / 3))
     assert not hasattr(found, "__dict__")
+
+
+@pytest.mark.parametrize("result", ["limit", "coefficients", "solution"])
+def test_results_without_numbers_show_what_stands_for_them(result):
+    zeros, counts = np.zeros(3), {"steps": 0, "rejected": 0, "tolerance": 0.1}
+    made = {
+        "limit": LimitSolution(zeros, zeros, zeros),
+        "coefficients": Coefficients(np.ones(()), -np.ones(())),
+        "solution": Solution(zeros, zeros, None, None, np.asarray(0), counts, "by hand"),
+    }[result]
+    shapes = jax.eval_shape(lambda: jax.tree.map(jax.numpy.asarray, made))
+    assert "ShapeDtypeStruct(shape=(" in repr(shapes)
+    assert "=None" in repr(jax.tree.map(lambda _: None, made))
+    with pytest.raises(ValueError, match="known numbers"):
+        shapes.table()
