@@ -5,7 +5,15 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from .._checks import as_real, known_numbers, require, require_flags, require_real, with_nan
+from .._checks import (
+    as_real,
+    known_numbers,
+    require,
+    require_flags,
+    require_outside,
+    require_real,
+    with_nan,
+)
 from .._compile import waiting
 from ..effects import (
     AbstractEffect,
@@ -102,6 +110,9 @@ def certify(
     'a well was crossed without the force that this takes'
     """
     require_flags(progress=progress)
+    curve = {"scene": scene, "eps": eps, "gamma": gamma, "ts": ts, "z": z}
+    after = "certify what the program returns"
+    require_outside("certify(...)", after, **curve, velocity=velocity, root=root, mode=mode)
     with waiting("certify", progress):
         return _certificate(
             *(scene, eps, gamma, ts, z), velocity=velocity, root=root, mode=mode

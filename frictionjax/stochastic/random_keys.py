@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float, UInt32
 
-from .._checks import require, require_whole
+from .._checks import require, require_outside, require_whole
 
 _WORDS = 2**32
 
@@ -16,8 +16,10 @@ def key_words(key: Any) -> UInt32[np.ndarray, " words"]:
     """The two words of a seed (a whole number >= 0, below 2^32) or of any JAX key.
 
     Of a key of another generator than JAX's own (threefry), two words drawn with it.
-    Raises `ValueError` for anything else, and for an array of keys.
+    Raises `ValueError` for anything else, for an array of keys, and inside `jax.jit`.
     """
+    several = "`fx.ensemble` makes many paths at once"
+    require_outside("a path with noise", several, key=key)
     allowed = "a seed, a whole number >= 0, or one key of jax.random"
     if isinstance(key, int | np.integer) and not isinstance(key, bool):
         require_whole("key", key, 0)

@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from jaxtyping import UInt32
 
-from .._checks import as_real, grid_of, require, require_flags, with_nan
+from .._checks import (
+    as_real,
+    grid_of,
+    is_known,
+    known_numbers,
+    require,
+    require_flags,
+    require_outside,
+    with_nan,
+)
 from .._compile import progress_bar
 from ..called_for import ALL, Simulated, simulated
 from ..effects import Engine, engine_of, noise_among
@@ -96,6 +105,7 @@ def sweep(
     >>> print(data.sup_error.sel(gamma=1.0).values.round(3), data.sup_error.units)
     [0.156 0.03  0.008 0.003 0.001] m
     """
+    _require_outside(scene, eps=eps, gamma=gamma, ts=ts, accuracy=accuracy)
     eps, gamma = grid_of("eps", eps), grid_of("gamma", gamma)
     require_accuracy(accuracy)
     require_flags(progress=progress, dissipation=dissipation, suprema=suprema)
@@ -149,6 +159,14 @@ def sweep(
     return data
 
 
+def _require_outside(scene: Any, **grid: Any) -> None:
+    """A sweep is no part of a program; what is no scene is named where scenes are."""
+    several = list(scene.values()) if isinstance(scene, Mapping) else scene
+    row = several if isinstance(several, Sequence) else [scene]
+    scenes = [one for one in row if isinstance(one, Scene)]
+    require_outside("sweep(...)", "`fx.solve` can be traced", scene=scenes, **grid)
+
+
 def _path_words(
     key: Any, accuracy: Any, some: bool, all_of_them: bool
 ) -> UInt32[np.ndarray, " 2"] | None:
@@ -160,7 +178,8 @@ def _path_words(
 
     if all_of_them:
         told = "its default: steps of a path with noise are fixed"
-        require(as_real(accuracy) == _ACCURACY, "accuracy", accuracy, told)
+        unasked = is_known(accuracy) and known_numbers(accuracy) == _ACCURACY
+        require(unasked, "accuracy", accuracy, told)
     return key_words(key)
 
 

@@ -8,6 +8,8 @@ import jax.numpy as jnp
 from .._checks import (
     as_real,
     is_concrete,
+    is_known,
+    known_numbers,
     noting_the_scene,
     require,
     require_flags,
@@ -62,7 +64,8 @@ def _require_method(method: Any) -> None:
 def _require_unasked(accuracy: Any, max_steps: int, adjoint: Any) -> None:
     """What steps of a path with noise do not read has to be as it is by default."""
     told = "its default: steps of a path with noise are fixed"
-    require(as_real(accuracy) == _ACCURACY, "accuracy", accuracy, told)
+    unasked = is_known(accuracy) and known_numbers(accuracy) == _ACCURACY
+    require(unasked, "accuracy", accuracy, told)
     require(max_steps == MAX_STEPS, "max_steps", max_steps, told)
     require(adjoint is None, "adjoint", adjoint, told)
 

@@ -70,3 +70,27 @@ def test_the_limit_of_a_known_scene():
 def test_numbers_known_inside_are_still_checked():
     with pytest.raises(ValueError, match=r"eps = -0\.05"):
         jax.jit(lambda x: x * _end(eps=-0.05))(1.0)
+
+
+_NOISY = _SCENE.replace(effects=(fx.effects.Noise(1e-6),))
+_KEY, _CURVE = jax.random.PRNGKey(0), np.linspace(0.0, 0.01, 3)
+
+
+@pytest.mark.parametrize(
+    ("call", "given", "said"),
+    [
+        (lambda key: fx.solve(_NOISY, 0.05, key=key).z, _KEY, "key = .*fx.ensemble"),
+        (lambda x: x * fx.solve(_NOISY, 0.05, key=0).z, 1.0, "noise = .*fx.ensemble"),
+        (lambda eps: fx.sweep(_SCENE, eps, 1.0).z.values, 0.05, "eps = .*fx.solve"),
+        (lambda x: x * fx.sweep(_SCENE, 0.05, 1.0).z.values, 1.0, r"sweep\(...\) = "),
+        (lambda z: fx.certify(_SCENE, 0.05, 1.0, _TIMES, z).distance, _CURVE, "z = "),
+        (
+            lambda x: x * fx.certify(_SCENE, 0.05, 1.0, _TIMES, _CURVE).distance,
+            1.0,
+            r"certify\(...\) = 'part of jax.jit'",
+        ),
+    ],
+)
+def test_what_is_no_part_of_programs_says_so_by_name(call, given, said):
+    with pytest.raises(ValueError, match=said):
+        jax.jit(call)(given)
