@@ -13,7 +13,9 @@ class Settings(NamedTuple):
     slowest: float = 0.01  # of the fastest slide, to say which time that is
 
     # Steps.
-    error: float = 1e-8  # of a step; slips make a million times that of it
+    # Of a step; slips make up to a million times that of it, which is less than a moment
+    # (`late`). 1e-8: twice the steps, and nothing else.
+    error: float = 1e-6
     # Between its ends, where cubics tell where a tip is: 3,471 eps at eps = 2e-3, gamma =
     # 2.4, without. They are a sixteenth of that off, by corners of a load half of it.
     between: float = 1e-3
