@@ -22,6 +22,7 @@ class Settings(NamedTuple):
     missing_force: float = 0.02
     # Relative: noise 0.02; a gamma off by 0.1 is 0.13 at eps = 0.3 and grows below.
     viscosity: float = 0.1
+    coarser: float = 0.1  # of what it is off by: from half the samples as far from that
 
     # Passages.
     around_fold: float = 0.015  # noise of eps/100 makes no passage

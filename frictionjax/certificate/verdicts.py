@@ -70,19 +70,19 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
     def shares(self) -> dict[str, float]:
         """Numbers that decide, over the most of each that is accepted: above 1 is refused.
 
-        Forces and viscosities decide where `within` does not, `viscosity` by its distance
-        from 1. NaN: of a curve that has none, without slips. What else decides of tips with
-        mass and rods that turn over, `status` tells.
+        Forces decide where `within` does not; `viscosity` by its distance from 1, and where
+        `within` decides only if samples are close enough to tell it. NaN: of a curve that
+        has none, without slips. What else decides of tips with mass and rods that turn
+        over, `status` tells.
         """
         apart = {"spacing": self.spacing / SETTINGS.coarsest}
         near = {"distance": self.distance / SETTINGS.farthest}
-        if self.within <= SETTINGS.surely:
-            return {**apart, **near}
-        slips = {
-            "missing_force": self.missing_force / SETTINGS.missing_force,
-            "viscosity": abs(self.viscosity - 1) / SETTINGS.viscosity,
-        }
-        return {**apart, **slips, **near}
+        force = {"missing_force": self.missing_force / SETTINGS.missing_force}
+        viscosity = {"viscosity": abs(self.viscosity - 1) / SETTINGS.viscosity}
+        if self.within > SETTINGS.surely:
+            return {**apart, **force, **viscosity, **near}
+        seen = self.status == CertificateStatus.VISCOSITY
+        return {**apart, **(viscosity if seen else {}), **near}
 
     def __repr__(self) -> str:
         numbers = zip(self._fields[:-1], self[:-1], strict=True)

@@ -85,3 +85,25 @@ def test_few_samples_of_a_slip_are_enough():
     assert found.ok, found
     assert abs(found.viscosity - 1) > 0.1
     assert found.distance < 0.01
+
+
+def sampled(scene, eps, gamma):
+    """Until slips are in steps of 0.03 eps."""
+    ts = np.linspace(0.0, float(scene.duration), 301)
+    while True:
+        z = np.asarray(fx.solve(scene, eps, gamma, ts, 1e-6, dissipation=False).z)
+        fast = np.flatnonzero(np.abs(np.diff(z)) > 0.03 * eps)
+        if not fast.size:
+            return ts, z
+        ts = np.sort(np.append(ts, 0.5 * (ts[fast] + ts[fast + 1])))
+
+
+def test_a_slip_shorter_than_a_moment_shows_its_viscosity():
+    """The curve is near a solution at about any time: slips take 1e-4 of their period."""
+    scene, eps, gamma = SCENE.replace(duration=0.06), 0.01, 3.0
+    ts, z = sampled(scene, eps, gamma)
+    assert fx.certify(scene, eps, gamma, ts, z).ok
+    other = fx.certify(scene, eps, gamma + 0.1, ts, z)
+    assert other.status.name == "VISCOSITY", other
+    assert other.within < 0.06
+    assert other.shares["viscosity"] > 1
