@@ -38,7 +38,8 @@ def times_that_move(
     the period of 0.14 J/s for -0.21, and of a `Sine` a second one of -0.57 J/s^2 for 0.22.
     A clip at the moving corner is made twice, which changes nothing.
     """
-    after, last = jnp.searchsorted(turns, ts), turns.shape[0] - 1
+    last = turns.shape[0] - 1
+    after = jnp.searchsorted(turns, ts, method="sort")  # no loop beside that of the clips
     times, beside = ts, jnp.zeros(ts.shape, bool)
     # The first of several wins: what fills the room comes last, and does not move.
     for index in (jnp.minimum(after, last), jnp.maximum(after - 1, 0)):

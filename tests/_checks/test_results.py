@@ -72,10 +72,10 @@ def test_several_outcomes_may_be_good(codes, ok, message):
 
 
 def test_a_certificate_is_still_a_tuple():
-    found = Certificate(*range(9), CertificateStatus.OFF)
+    found = Certificate(*range(10), CertificateStatus.OFF)
     assert (found.ok, found.message) == (False, CertificateStatus.OFF.message)
     *numbers, status = found._replace(status=CertificateStatus.OK)
-    assert numbers == list(range(9))
+    assert numbers == list(range(10))
     assert status == CertificateStatus.OK
     assert repr(found).startswith("Certificate(residual=0, residual_error=1, ")
     assert repr(found).endswith(f", status=OFF: {CertificateStatus.OFF.message})")
