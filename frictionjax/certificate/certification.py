@@ -47,7 +47,9 @@ def certify(
 
     `eps` in m, `gamma` > 0; `ts` in s, increasing, in [0, duration]; `z` in m; shapes
     (n,), n >= 2, NumPy or JAX. The curve's start is not compared with the scene's `z0`.
-    Needs slips sampled at eps/4 or finer; a tenth of eps is comfortable.
+    Needs slips sampled at eps/4 or finer; a tenth of eps is comfortable, and as much finer
+    as the wells have flanks narrower than a sine's: eps/50 of a rod that lies flat, of
+    whose true curves `VISCOSITY` may be told before.
 
     `ok` accepts a curve within eps/100 of a solution, whatever the deviation, and rejects
     one that skips a well, is shifted by eps/10, has another gamma, or slips late or early,

@@ -220,7 +220,8 @@ def test_any_number_of_slips(name):
 
 @pytest.mark.slow
 def test_a_skip_is_seen_by_the_force_it_lacked():
-    """eps small: a jump within the noise makes the skip, only the force tells."""
+    """eps small: a jump within the noise makes the skip. The force tells, and the solution
+    from the rest before it."""
     scene = ramp(1, 0.09)
     ts, z = solved(scene, 0.002, 1.0, 64001)
     times, states = skipping(scene, 0.002, 1.0, ts, z, 1, barrier_only=True)
@@ -228,7 +229,7 @@ def test_a_skip_is_seen_by_the_force_it_lacked():
     assert found.status.name == "SKIPPED"
     assert found.skipped == 1
     assert found.missing_force > 0.1
-    assert found.distance < 0.03
+    assert found.distance > 0.5
 
 
 def test_residual_and_scale():
