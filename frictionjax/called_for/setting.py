@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 
 from ..coefficients import Coefficients
 from ..model import (
@@ -61,15 +62,12 @@ class Setting(NamedTuple):
         if not bend > 0:
             return FASTEST
         resting = np.sqrt(self.eps * self.stiffest / (2 * AWAY * bend))
-        speeds = np.abs(self.data.speed)
-        speeds = speeds[speeds > 0]
-        if not speeds.size:
+        viscous = self._drag
+        if not viscous.size:
             return float(min(resting, FASTEST))
-        viscous = self.eps**self.gamma * speeds
         held_up = 2 * viscous / (AWAY**2 * bend)
         together = resting + held_up + _BOTH * np.sqrt(resting * held_up)
-        width = float(self.law.rho_plus) - float(self.law.rho_minus)
-        driven = np.minimum(together, 1 + width / viscous)
+        driven = np.minimum(together, 1 + self._width / viscous)
         return float(min(np.max(driven), FASTEST))
 
     def apart(self, shift: float) -> float:
@@ -92,12 +90,19 @@ class Setting(NamedTuple):
     @property
     def _driven(self) -> float:
         """Times as fast as their slide tips are at most: the pull against viscosity."""
-        width = float(self.law.rho_plus) - float(self.law.rho_minus)
+        drag = self._drag
+        return float(1 + self._width / np.min(drag)) if drag.size else float("inf")
+
+    @property
+    def _drag(self) -> Float[np.ndarray, " n"]:
+        """`eps^gamma v` in N, where the limit slides."""
         speeds = np.abs(self.data.speed)
-        speeds = speeds[speeds > 0]
-        if not speeds.size:
-            return float("inf")
-        return float(1 + width / (self.eps**self.gamma * np.min(speeds)))
+        return self.eps**self.gamma * speeds[speeds > 0]
+
+    @property
+    def _width(self) -> float:
+        """`rho_plus - rho_minus` in N."""
+        return float(self.law.rho_plus) - float(self.law.rho_minus)
 
     @property
     def bend(self) -> float:

@@ -45,13 +45,13 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
     `residual` of the energy-dissipation balance in J, `int (eps^gamma z' + D E)^2 /
     (2 eps^gamma)`, with its quadrature error `residual_error`; `scale = eps (rho_plus -
     rho_minus)`, the energy of one slip, in J. `slips`: wells crossed. `distance`: the
-    curve is at least so far, in units of eps, from every solution; `within`: at most so
-    far from one, inf where that cannot be said. `missing_force`: the
-    most that was missing when a well was left, in units of `Phi'' eps`, the force of one
-    well. `viscosity`: measured in slips, relative to `eps^gamma`; NaN without slips.
-    `skipped`: wells crossed without the force. `status`: a `CertificateStatus`; `ok`:
-    whether the curve is within about eps/100 of a solution; `message`: the verdict. What
-    some of these are for arrays, tips with mass and rods that turn over, `certify` tells.
+    curve is at least so far, in units of eps, from every solution; `within`: at most so far
+    from one, inf where that cannot be said. `missing_force`: the most that was missing when
+    a well was left, in units of `Phi'' eps`, the force of one well. `viscosity`: measured
+    in slips, relative to `eps^gamma`; NaN without slips. `skipped`: wells crossed without
+    the force. `status`: a `CertificateStatus`; `ok`: whether the curve is within about
+    eps/100 of a solution; `message`: the verdict. What some of these are for arrays, tips
+    with mass and rods that turn over, `certify` tells.
     """
 
     __slots__ = ()

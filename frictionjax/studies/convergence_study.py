@@ -22,6 +22,7 @@ from ..slide_laws import NO_LAW, Prediction, SlideData, predict_errors
 from ..sweeps import one_scene, whole_grid
 from ..wiggly import Status, warn_of_failed
 from .scene_spread import spread_over_scenes
+from .sound_cells import require_sound_cells
 from .study_result import Study
 
 _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
@@ -90,7 +91,7 @@ def study(dataset: xr.Dataset, *, progress: bool = False) -> Study:
     allowed = "one that `sweep` has made, with suprema=True"
     require(not missing, "dataset", f"one without {missing}", allowed)
     dataset = whole_grid(dataset)
-    _require_cells(dataset)
+    require_sound_cells(dataset)
     codes = dataset.status.transpose(..., "gamma", "eps").values
     require_flags(progress=progress)
     several = "scene" in dataset.dims
@@ -101,28 +102,6 @@ def study(dataset: xr.Dataset, *, progress: bool = False) -> Study:
             return _study_of_scenes(dataset, tell)
         tell("laws and orders")
         return _study_of_one(dataset)
-
-
-def _require_cells(dataset: xr.Dataset) -> None:
-    """Check numbers that somebody may have edited, before laws and fits meet them."""
-    for name in ("eps", "gamma"):
-        _require_all(f"dataset.{name}", dataset[name], dataset[name] > 0, f"{name} > 0")
-    known = {int(one): one.name for one in Status}
-    allowed = "one of " + ", ".join(f"{code} ({name})" for code, name in known.items())
-    _require_all(
-        "dataset.status", dataset.status, dataset.status.isin(list(known)), allowed
-    )
-    error, ok = dataset.sup_error, dataset.status == int(Status.OK)
-    good = ~ok | ((error >= 0) & np.isfinite(error))
-    allowed = "a distance >= 0 in m where status is OK; another status for what failed"
-    _require_all("dataset.sup_error", error, good, allowed)
-
-
-def _require_all(name: str, values: xr.DataArray, good: xr.DataArray, allowed: str) -> None:
-    """Raise for the first value that is not good."""
-    if not bool(good.all()):
-        values, good = xr.broadcast(values, good)
-        require(False, name, values.values[~good.values][0].item(), allowed)
 
 
 def _study_of_scenes(dataset: xr.Dataset, tell: Callable[[str], None]) -> Study:

@@ -84,7 +84,7 @@ def distances_from_rests(
     were those two are soon one. Here slips show that come late or early, which no window
     over forces sees: at a fold the force that is missing is of second order. (By one
     solution and what a small change becomes, in place of two: next to folds that tips
-    hardly pass, noise of eps/100 became 0.6 eps where it was to become 0.004.)
+    hardly pass, noise of eps/100 became 0.6 eps where it was to be 0.004, by hand.)
 
     A sample may be that of a moment earlier or later, in which the limit slides by eps/100
     at most: slips may take less than that, and no code knows how far they are just then.
