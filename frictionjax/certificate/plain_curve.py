@@ -11,7 +11,13 @@ from .curve import Intervals, along_curve, every_second
 from .following import FollowedCurve, distances_from_rests
 from .forces import Force, force_in_tables, force_of
 from .settings import SETTINGS
-from .transits import folds_of, missing_forces, most_forgetful, viscosity_ratio
+from .transits import (
+    fast_parts,
+    folds_of,
+    missing_forces,
+    most_forgetful,
+    viscosity_ratio,
+)
 from .tube import distance
 from .verdicts import Certificate, CertificateStatus
 
@@ -52,12 +58,14 @@ def certificate_under(
     surely = rests.most <= SETTINGS.surely
     thinned = every_second(ts.size)
     at_half, on_half = along_curve(force, viscosity, ts[thinned], z[thinned])
-    coarse = viscosity_ratio(folds, z[thinned], at_half, on_half) / viscosity
+    fast = fast_parts(folds, ts, z, at, on)
+    fast_half = fast_parts(folds, ts[thinned], z[thinned], at_half, on_half)
+    ratio, coarse = (viscosity_ratio(f, viscosity, eps) for f in (fast, fast_half))
     measured = CurveMeasures(
         distance=rests.least if surely else max(by_windows, rests.least),
         within=rests.most,
         missing_force=float(np.max(missing, initial=-np.inf)),
-        viscosity=viscosity_ratio(folds, z, at, on) / viscosity,
+        viscosity=ratio,
         spacing=float(np.max(np.abs(np.diff(z)))) / eps,
     )
     return Certificate(
@@ -66,7 +74,7 @@ def certificate_under(
         scale=scale,
         slips=missing.size,
         skipped=int(np.sum(missing > SETTINGS.missing_force)),
-        status=verdict(measured, abs(coarse - measured.viscosity)),
+        status=verdict(measured, abs(coarse - ratio)),
         **measured._asdict(),
     )
 
@@ -113,7 +121,8 @@ def verdict(measured: CurveMeasures, coarser: float = 0.0) -> CertificateStatus:
     """The first test that fails. NaN is no slip: nothing to measure the viscosity by.
 
     `coarser`: by how much the viscosity is another one from every second sample. Slips in
-    few samples tell little of it; where a solution is known to be near, they are let pass.
+    few samples tell little of it: where a solution is known to be near they are let pass,
+    and elsewhere what is off by no more than that is undecided.
     """
     if measured.spacing > SETTINGS.coarsest:
         return CertificateStatus.UNRESOLVED
@@ -122,6 +131,8 @@ def verdict(measured: CurveMeasures, coarser: float = 0.0) -> CertificateStatus:
     if not surely and measured.missing_force > SETTINGS.missing_force:
         return CertificateStatus.SKIPPED
     off = abs(measured.viscosity - 1)
-    if off > SETTINGS.viscosity and not (surely and coarser > SETTINGS.coarser * off):
-        return CertificateStatus.VISCOSITY
+    least = SETTINGS.coarser * off if surely else off - SETTINGS.viscosity
+    told = coarser <= least  # not, too, where half the samples tell nothing, NaN
+    if off > SETTINGS.viscosity and (told or not surely):
+        return CertificateStatus.VISCOSITY if told else CertificateStatus.UNRESOLVED
     return CertificateStatus.OK if near else CertificateStatus.OFF

@@ -27,6 +27,9 @@ class Settings(NamedTuple):
     # Passages.
     around_fold: float = 0.015  # noise of eps/100 makes no passage
     around_fastest: float = 0.25  # of the fastest place of a slip: what counts as the slip
+    # Noise of one eps at all samples inside a slip may change its viscosity by so much of
+    # it: 5 to 15 in slips, 30 to 1e6 where a tip lingers.
+    swayed: float = 20.0
 
     # Distance.
     second_order: float = 0.015  # perturbation up to which the second order is allowed for

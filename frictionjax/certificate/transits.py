@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Int
 
 from .._compile import Program, once_a_scene
-from ..numerics import Extrema, periodic_extrema, rows_of
+from ..numerics import Extrema, concatenated, periodic_extrema, rows_of
 from .curve import CurveSamples, Intervals
 from .forces import Force
 from .settings import SETTINGS
@@ -122,21 +122,41 @@ def most_forgetful(folds: CurveFolds, at: CurveSamples) -> Int[np.ndarray, " k"]
     return numbers[numbers < size - 1]
 
 
-def viscosity_ratio(
-    folds: CurveFolds, z: np.ndarray, at: CurveSamples, on: Intervals
-) -> float:
-    """`int f dt / (z_j - z_i)` over the fast parts of all slips, in N s/m; NaN without.
+class FastParts(NamedTuple):
+    """Of slips, (k,): `int f dt` in N s, the way in m, and between samples inside, by which
+    noise changes the first, `int |f_z| dt` in N s/m."""
 
-    The fast part of an upward slip is around the fold of the downward ones. An impulse
-    over half a period, not a squared velocity: noise enters at its two ends only.
-    """
+    impulse: np.ndarray
+    way: np.ndarray
+    swayed: np.ndarray
+
+
+def fast_parts(
+    folds: CurveFolds, ts: np.ndarray, z: np.ndarray, at: CurveSamples, on: Intervals
+) -> FastParts:
+    """The fast part of an upward slip is around the fold of the downward ones."""
     gap = (folds.places[1] - folds.places[-1]) % 1
     band = min(SETTINGS.around_fastest, 0.5 * gap, 0.5 - 0.5 * gap)
-    impulse, moved = 0.0, 0.0
+    sway = np.diff(ts) * np.maximum(np.abs(at.slope[:-1]), np.abs(at.slope[1:]))
+    found = []
     for sign in (1, -1):
         crossed = transits(at.well, at.inside, folds.places[-sign], band)
         slip = along(crossed, sign)
-        given = over_windows(np.add, on.impulse, slip.before, slip.after)
-        impulse += sign * float(np.sum(given))
-        moved += sign * float(np.sum(z[slip.after] - z[slip.before]))
-    return impulse / moved if moved else np.nan
+        impulse = sign * over_windows(np.add, on.impulse, slip.before, slip.after)
+        way = sign * (z[slip.after] - z[slip.before])
+        first, last = slip.before + 1, slip.after - 1
+        swayed = over_windows(np.add, sway, first, np.maximum(first, last))
+        swayed = np.where(last > first, swayed, 0.0)
+        found.append(FastParts(impulse, way, swayed))
+    return concatenated(found)
+
+
+def viscosity_ratio(parts: FastParts, viscosity: float, eps: float) -> float:
+    """`int f dt / (z_j - z_i)` over fast parts, over the viscosity in N s/m; NaN without.
+
+    An impulse over half a period, not a squared velocity: noise enters at its two ends
+    only, but where a tip lingers, which tells nothing.
+    """
+    told = eps * parts.swayed < SETTINGS.swayed * viscosity * parts.way
+    impulse, way = np.sum(parts.impulse[told]), np.sum(parts.way[told])
+    return float(impulse / way) / viscosity if way else np.nan

@@ -15,8 +15,8 @@ class CertificateStatus(Outcome):
     NOT_FINITE = 1, "the curve holds values that are not finite"
     UNRESOLVED = (
         2,
-        "samples are more than eps/4 apart, or far apart where a rod turns over, or steps "
-        "between them do not agree: undecided",
+        "samples are more than eps/4 apart, or too few to tell the viscosity of slips, or "
+        "far apart where a rod turns over, or steps between them do not agree: undecided",
     )
     SKIPPED = 3, "a well was crossed without the force that this takes"
     OFF = 4, "the curve is too far from every solution"
@@ -48,10 +48,10 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
     curve is at least so far, in units of eps, from every solution; `within`: at most so far
     from one, inf where that cannot be said. `missing_force`: the most that was missing when
     a well was left, in units of `Phi'' eps`, the force of one well. `viscosity`: measured
-    in slips, relative to `eps^gamma`; NaN without slips. `skipped`: wells crossed without
-    the force. `status`: a `CertificateStatus`; `ok`: whether the curve is within about
-    eps/100 of a solution; `message`: the verdict. What some of these are for arrays, tips
-    with mass and rods that turn over, `certify` tells.
+    in slips, relative to `eps^gamma`; NaN without slips that tell it. `skipped`: wells
+    crossed without the force. `status`: a `CertificateStatus`; `ok`: whether the curve is
+    within about eps/100 of a solution; `message`: the verdict. What some of these are for
+    arrays, tips with mass and rods that turn over, `certify` tells.
     """
 
     __slots__ = ()

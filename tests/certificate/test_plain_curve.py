@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.certificate.plain_curve import CurveMeasures, verdict
 
 EPS, GAMMA, RATE, END = 0.02, 2.0, 2.0, 0.1
 SCENE = fx.Scene(
@@ -107,3 +108,45 @@ def test_a_slip_shorter_than_a_moment_shows_its_viscosity():
     assert other.status.name == "VISCOSITY", other
     assert other.within < 0.06
     assert other.shares["viscosity"] > 1
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_where_a_tip_lingers_no_viscosity_is_told(side):
+    """Forces that cancel tell noise: 22.8 and -18.2 times what it is."""
+    spring, load = fx.supports.Spring(10.0), fx.loads.Sine(0.15, 3.0)
+    scene = SCENE.replace(support=spring, load=load, duration=3.0)
+    ts = np.linspace(0.0, 3.0, 1501)
+    z = np.asarray(fx.solve(scene, 0.05, 1.4, ts, 1e-6, dissipation=False).z)
+    found = fx.certify(scene, 0.05, 1.4, ts, z + side * 0.01 * 0.05)
+    assert found.ok, found
+    assert found.slips == 1
+    assert np.isnan(found.viscosity)
+
+
+@pytest.mark.parametrize(
+    ("within", "viscosity", "coarser", "status"),
+    [
+        (np.inf, 1.3, 0.0, "VISCOSITY"),
+        (np.inf, 1.3, 0.15, "VISCOSITY"),  # too little for what it is off
+        (np.inf, 1.3, 0.25, "UNRESOLVED"),
+        (np.inf, 0.7, 0.25, "UNRESOLVED"),
+        (np.inf, 1.3, np.nan, "UNRESOLVED"),  # half the samples tell nothing
+        (np.inf, 1.05, 0.0, "OK"),
+        (np.inf, np.nan, np.nan, "OK"),  # no slips
+        (0.05, 1.3, 0.0, "VISCOSITY"),
+        (0.05, 1.3, 0.02, "VISCOSITY"),
+        (0.05, 1.3, 0.04, "OK"),
+        (0.05, 1.3, np.nan, "OK"),
+    ],
+)
+def test_few_samples_of_slips_leave_their_viscosity_open(
+    within, viscosity, coarser, status
+):
+    measured = CurveMeasures(
+        distance=0.01,
+        within=within,
+        missing_force=-0.1,
+        viscosity=viscosity,
+        spacing=0.2,
+    )
+    assert verdict(measured, coarser).name == status
