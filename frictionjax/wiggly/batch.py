@@ -20,7 +20,7 @@ from .equation import Status
 from .lanes import LaneCells, LaneScene, Room, prepare
 from .limit_path import SETTINGS as PATH_SETTINGS
 from .limit_path import known_path
-from .plan import Planned, in_phases, lane_scene, planned
+from .plan import Planned, at_turns, in_phases, lane_scene, planned
 from .rosenbrock import Tableau
 from .settings import SETTINGS
 from .slip_map import none_known
@@ -114,7 +114,7 @@ def _integrated(
     )
     if phase is not None:
         plan = in_phases(tables, path, rows_of(plan, whose), phase)
-    every = _cells_of(plan, eps, gamma)
+    every = _cells_of(at_turns(path, plan, gamma), eps, gamma)
     rounds = BracketContext(
         scene=tables,
         lanes=lanes,

@@ -19,12 +19,13 @@ from .enclosure import (
     wells_a_leg,
     wells_of,
 )
+from .equation import SETTINGS as STEP_SETTINGS
 from .equation import PullRange, SteppedParts, plan_steps
 from .equation import StepPlan as StepPlan
 from .lane_steps import affordable_wells
 from .lanes import LaneScene
 from .limit_path import SETTINGS as PATH_SETTINGS
-from .limit_path import Path, slow_ends
+from .limit_path import Path, nearness_at_turns, slow_ends
 from .settings import SETTINGS
 from .slip_map import (
     SteadyLags,
@@ -91,6 +92,7 @@ def ground_of(
         affordable=affordable_wells(path, control, lag, eps, gamma),
         phase=np.zeros(eps.size),
         fast_slides=none_known(eps.size),
+        at_turns=np.full((eps.size, path.edges.size - 2), np.inf),
     )
 
 
@@ -261,6 +263,16 @@ def in_phases(scene: TabulatedScene, path: Path, plan: Planned, phase: np.ndarra
         ),
         needs=plan.needs._replace(lattice_offset=np.mod(offset, 1.0)),
     )
+
+
+def at_turns(path: Path, plan: Planned, gamma: np.ndarray) -> Planned:
+    """Plans in which lanes err by less than they come near a slip where the load turns."""
+    ground, steps = plan.ground, np.asarray(plan.control.tolerance)
+    viscosity, near = viscosity_of(ground.eps, gamma), steps / STEP_SETTINGS.fold
+    found = nearness_at_turns(path, ground.folds, ground.eps, viscosity, near)
+    # In octaves: lanes alike share a row of their loop.
+    most = np.exp2(np.floor(np.log2(STEP_SETTINGS.fold * found)))
+    return plan._replace(ground=ground._replace(at_turns=most))
 
 
 def planned(

@@ -203,7 +203,7 @@ class BracketContext(NamedTuple):
         jobs, segments = plan.jobs, plan.segments
         work = self._wells(plan) + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
         work = np.where(plan.brief, SETTINGS.fast, 1.0) * work
-        jobs, cells = self._steered(jobs, plan.brief | plan.forgetful)
+        jobs, cells = self._steered(plan)
         some = np.flatnonzero(able)
         # Where a narrow loop ends little later than its longest lane, one thread is enough.
         soon = work[some].max(initial=0.0) + LANE_SETTINGS.handed_over
@@ -220,14 +220,37 @@ class BracketContext(NamedTuple):
             self.report(work[some[block]].sum() / total)
         return SegmentEnds._make(ends)
 
-    def _steered(self, jobs: Lanes, brief: np.ndarray) -> tuple[Lanes, LaneCells]:
-        """Jobs that are `brief` in cells of their own, with their tolerance."""
-        if self.brief is None or not brief.any():
-            return jobs, self.cells
-        loosest = np.maximum(self.brief, self.cells.loosest)
-        others = self.cells._replace(tolerance=self.brief, loosest=loosest)
-        moved = jobs.cell + brief * self.brief.size
-        return jobs._replace(cell=moved), concatenated([self.cells, others])
+    def _steered(self, plan: BracketPlan) -> tuple[Lanes, LaneCells]:
+        """Jobs with tolerances of their own, in cells of their own."""
+        jobs, cells, brief = plan.jobs, self.cells, plan.brief | plan.forgetful
+        if self.brief is not None and brief.any():
+            loosest = np.maximum(self.brief, cells.loosest)
+            others = cells._replace(tolerance=self.brief, loosest=loosest)
+            jobs = jobs._replace(cell=jobs.cell + brief * self.brief.size)
+            cells = concatenated([cells, others])
+        most = self._at_turns(plan)
+        finer = most < cells.tolerance[jobs.cell]
+        if not finer.any():
+            return jobs, cells
+        kinds = np.stack([jobs.cell[finer], most[finer]])
+        (like, tolerance), which = np.unique(kinds, axis=1, return_inverse=True)
+        own = rows_of(cells, like.astype(int))._replace(tolerance=tolerance)
+        moved = jobs.cell.copy()
+        moved[finer] = cells.eps.size + which.ravel()
+        return jobs._replace(cell=moved), concatenated([cells, own])
+
+    def _at_turns(self, plan: BracketPlan) -> np.ndarray:
+        """What steps of jobs may err by where the load turns on their way, (jobs,)."""
+        found = np.full(plan.jobs.cell.size, np.inf)
+        kinks, allowed = self.path.edges[1:-1], self.ground.at_turns
+        if not np.isfinite(allowed).any():
+            return found
+        owner = np.repeat(np.arange(found.size), plan.jobs.past_leg - plan.jobs.first_leg)
+        place = np.minimum(np.searchsorted(kinks, plan.segments.end), kinks.size - 1)
+        there = kinks[place] == plan.segments.end
+        owner, place = owner[there], place[there]
+        np.minimum.at(found, owner, allowed[plan.jobs.cell[owner], place])
+        return found
 
     def _through(
         self, cells: LaneCells, jobs: Lanes, segments: Segments, queues: list, work

@@ -24,6 +24,8 @@ class CellBounds(NamedTuple):
     `relaxed`: time in s from which on a start outside the strip is forgotten, by Lemma 7.
     `affordable`: wells that one lane alone may go through.
     `fast_slides`: tuples of `FastSlide`, in time.
+    `at_turns`: what steps of lanes may err by that go over a kink of the path, in periods,
+    (cells, kinks).
     """
 
     eps: np.ndarray
@@ -39,6 +41,7 @@ class CellBounds(NamedTuple):
     affordable: np.ndarray
     phase: np.ndarray
     fast_slides: np.ndarray
+    at_turns: np.ndarray
 
     def power(self, cell: np.ndarray, direction: np.ndarray) -> np.ndarray:
         """Of slides of cells in a direction."""

@@ -16,7 +16,7 @@ class WiggleFolds(NamedTuple):
     """Extreme folds in the tip coordinate of well 0, where slides hang before a slip.
 
     `place_*`: periods, `state_*`: z in m, `force_*`: V_eps' in N, at its maximum (plus)
-    and minimum (minus).
+    and minimum (minus). `bend_*`: half its curvature there, N; `stretch_*`: G.
     """
 
     place_plus: Real
@@ -25,6 +25,10 @@ class WiggleFolds(NamedTuple):
     place_minus: Real
     state_minus: Real
     force_minus: Real
+    bend_plus: Real
+    bend_minus: Real
+    stretch_plus: Real
+    stretch_minus: Real
 
 
 class Landscape(eqx.Module):
@@ -60,15 +64,28 @@ def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
     top, bottom = extrema.argmax, extrema.argmin
     ends = jnp.stack([top, bottom])
     states = eps * ends + jax.vmap(lambda y: potential.offset(y, eps))(ends)
+    _, stretch = every(ends)
     # Forward twice: reverse mode takes twice as long to trace.
     curvatures = jnp.abs(slope_of(slope_of(jax.vmap(force)))(ends))
+    folds = WiggleFolds(
+        place_plus=top,
+        state_plus=states[0],
+        force_plus=extrema.max,
+        place_minus=bottom,
+        state_minus=states[1],
+        force_minus=extrema.min,
+        bend_plus=0.5 * curvatures[0],
+        bend_minus=0.5 * curvatures[1],
+        stretch_plus=stretch[0],
+        stretch_minus=stretch[1],
+    )
     return Landscape(
         fold_curvature=jnp.max(curvatures),
         flat_curvature=jnp.min(curvatures),
         steepest=jnp.max(jnp.abs(slopes)),
         branch=jnp.minimum(_narrowest_run(slopes) / points, 0.5),
         stretch=jnp.max(stretches),
-        folds=WiggleFolds(top, states[0], extrema.max, bottom, states[1], extrema.min),
+        folds=folds,
     )
 
 

@@ -17,3 +17,4 @@ from .sampled_slide import SampledSlide as SampledSlide
 from .sampled_slide import nodes_of as nodes_of
 from .sampled_slide import sampled_slides_of as sampled_slides_of
 from .settings import SETTINGS as SETTINGS
+from .turns_at_folds import nearness_at_turns as nearness_at_turns

@@ -67,6 +67,7 @@ def path_of(scene: TabulatedScene) -> Path | None:
         load=scene.load,
         support=scene.support,
         edges=edges,
+        loads=loads,
         states=states,
         direction=direction,
         touch=np.where(direction == 0, edges[1:], edges[:-1]),

@@ -35,19 +35,20 @@ NO_PROBES = Probes(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0))
 class Path(NamedTuple):
     """Pieces between turning points of the load, P of them, as NumPy arrays.
 
-    `load`, `support`: as tables. `edges` (P+1,): times in s. `states` (P+1,): of the path,
-    in m. `direction` (P,): 1, -1 or 0 where the path rests. `touch` (P,): time at which a
-    slide begins, the piece's end where none does. `travel` (P+1,): way so far, in m. `rho`
-    (P,): force of friction in N on the slide. `rho_plus`, `rho_minus`: in N. `speed`:
-    largest of slides in m/s. `stiffness`, `stiffest`: smallest and largest Phi'' there.
-    `pulled`: what the load goes up and down in all, N. `pull`: how hard the load pulls.
-    `probes`: speeds on the way. `rows` (room, 7): the pieces for compiled programs.
-    `outside`: how far z0 is from the strip, in m.
+    `load`, `support`: as tables. `edges` (P+1,): times in s. `loads` (P+1,): there, in N.
+    `states` (P+1,): of the path, in m. `direction` (P,): 1, -1 or 0 where the path rests.
+    `touch` (P,): time at which a slide begins, the piece's end where none does. `travel`
+    (P+1,): way so far, in m. `rho` (P,): force of friction in N on the slide. `rho_plus`,
+    `rho_minus`: in N. `speed`: largest of slides in m/s. `stiffness`, `stiffest`: smallest
+    and largest Phi'' there. `pulled`: what the load goes up and down in all, N. `pull`: how
+    hard the load pulls. `probes`: speeds on the way. `rows` (room, 7): the pieces for
+    compiled programs. `outside`: how far z0 is from the strip, in m.
     """
 
     load: AbstractPull
     support: AbstractSupport
     edges: Float[np.ndarray, " edges"]
+    loads: Float[np.ndarray, " edges"]
     states: Float[np.ndarray, " edges"]
     direction: Shaped[np.ndarray, " pieces"]
     touch: Float[np.ndarray, " pieces"]

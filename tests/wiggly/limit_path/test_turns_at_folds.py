@@ -1,0 +1,84 @@
+"""Loads that turn while a tip is at a fold: a slip there hangs on very little."""
+
+import numpy as np
+import pytest
+
+import frictionjax as fx
+
+PERIOD = 3.0
+SLOPE, HELD = 0.1, 1.0
+BEND = 0.5 * SLOPE * (2 * np.pi) ** 2
+VERTICAL = fx.Scene(
+    fx.profiles.Sine(SLOPE),
+    fx.bristles.VerticalSpring(1.0, 2.0, 1.0),
+    fx.supports.Spring(HELD),
+    fx.loads.Sine(SLOPE, PERIOD),
+    duration=PERIOD,
+)
+SLANTED = VERTICAL.replace(bristle=fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0))
+
+
+def needed(eps: float, gamma: float) -> float:
+    """By how much in N a sine has to pass the fold of a vertical spring for a slip.
+
+    `eps^(gamma+1) y' = b y^2 + excess - c t^2` from the branch y = t sqrt(c/b), t < 0: it
+    goes on along y = t sqrt(c/b) where the excess is eps^(gamma+1) sqrt(c/b).
+    """
+    return eps ** (1 + gamma) * np.sqrt(0.5 * SLOPE / BEND) * 2 * np.pi / PERIOD
+
+
+def fold(eps: float) -> float:
+    """In N, of `Phi' + V'` of a vertical spring: slopes at the top of W' lift it."""
+    return SLOPE + (eps * (HELD + SLOPE**2)) ** 2 / (4 * BEND)
+
+
+def after_a_peak(excess: float, eps: float, gamma: float, **options):
+    """Of a vertical spring, 0.1 s after it."""
+    scene = VERTICAL.replace(load=fx.loads.Sine(fold(eps) + excess, PERIOD))
+    return fx.solve(scene, eps, gamma, [0.85], **options)
+
+
+@pytest.mark.parametrize(
+    ("eps", "gamma"),
+    [(1e-3, 1.0), (1e-5, 1.0), (1e-6, 0.75), (1e-5, 1.5), (1e-4, 2.0), (1e-7, 1.0)],
+)
+@pytest.mark.parametrize(("share", "slips"), [(0.0, 0), (0.9, 0), (1.1, 1), (5.0, 1)])
+def test_a_slip_takes_what_a_parabola_takes(eps, gamma, share, slips):
+    found = after_a_peak(share * needed(eps, gamma), eps, gamma)
+    assert found.ok
+    assert np.round(found.z[0] / eps) == slips
+
+
+@pytest.mark.parametrize("method", ["auto", "resolved"])
+def test_a_load_that_only_touches_the_fold_makes_no_slip(method):
+    """The first fold of a slanted spring is within 1e-12 N of its limit's."""
+    touch = float(fx.friction(SLANTED).rho_plus)
+    scene = SLANTED.replace(load=fx.loads.Sine(touch, PERIOD))
+    rough, fine = (
+        fx.solve(scene, 4e-5, ts=[0.8, 1.2], accuracy=accuracy, method=method)
+        for accuracy in (1e-3, 1e-6)
+    )
+    assert rough.ok
+    np.testing.assert_allclose(rough.z, fine.z, atol=1e-3 * 4e-5)
+    assert np.all(np.abs(rough.z) < 0.2 * 4e-5)
+
+
+def test_errors_of_a_load_that_touches_the_fold_converge():
+    """Of a tip that slipped at small eps, losses there were 4.5 times as large."""
+    touch = float(fx.friction(SLANTED).rho_plus)
+    scene = SLANTED.replace(load=fx.loads.Sine(touch, PERIOD))
+    data = fx.sweep(scene, np.geomspace(1e-5, 1e-3, 5), [1.0])
+    share = (data.dissipation_error / data.eps).values.ravel()
+    assert np.ptp(share) < 0.3 * share.min()
+
+
+def test_a_plateau_at_the_fold_is_as_long_as_it_takes():
+    """The tip leaves the fold behind in time E pi/sqrt(b excess), or is let go before."""
+    eps, gamma, held = 1e-4, 1.0, 0.5
+    most = (np.pi * eps ** (1 + gamma) / held) ** 2 / BEND
+    for share, slips in ((0.5, 0), (2.0, 1)):
+        peak = fold(eps) + share * most
+        load = fx.loads.PiecewiseLinear([0, 1, 1 + held, 2], [0, peak, peak, 0])
+        scene = VERTICAL.replace(load=load, duration=2.0)
+        found = fx.solve(scene, eps, gamma, [1.9])
+        assert np.round(found.z[0] / eps) == slips, share
