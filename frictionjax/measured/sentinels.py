@@ -103,12 +103,12 @@ def _bulk(values: np.ndarray) -> tuple[float, float]:
     everything = -np.inf, np.inf
     if values.size <= SETTINGS.fewest:
         return everything
-    gaps = np.diff(values)
     for value in (values[0], values[-1]):  # more than half may be one mark
         others = values[values != value]
         away = np.min(np.abs(others - value)) if others.size > SETTINGS.fewest else 0.0
         if others.size > SETTINGS.fewest and away > SETTINGS.far * np.ptp(others) > 0:
-            return float(others[0]), float(others[-1])
+            return _bulk(others)  # one farther out hides those on the other side
+    gaps = np.diff(values)
     for share in SETTINGS.bulks:
         count = max(SETTINGS.fewest, int(share * values.size)) - 1
         widths = values[count:] - values[:-count]

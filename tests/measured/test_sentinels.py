@@ -83,3 +83,32 @@ def test_what_lies_alone_on_both_sides():
     values[[7, 90]] = -1e4, 1e4
     with pytest.raises(ValueError, match=r"sample 7 = .*2 in all lie alone, all others in"):
         sorted_out(values)
+
+
+OPPOSITE = (
+    {400: 25, 650: -30},
+    {400: 25, 650: -25},
+    {400: 1e4, 650: -30, 120: 40},
+    {400: 1e4, 650: -30, 120: 40, 800: -2e3, 30: 7},
+)
+
+
+@pytest.mark.parametrize("spikes", OPPOSITE)
+def test_spikes_on_opposite_sides_do_not_hide_each_other(spikes):
+    values = 0.66 * np.sin(np.arange(1000) / 12)
+    least, greatest = values.min(), values.max()
+    for place, height in spikes.items():
+        values[place] = height
+    with pytest.raises(ValueError, match=f"{len(spikes)} in all lie alone") as told:
+        sorted_out(values)
+    assert str(told.value).endswith(f"all others in [{least:.6g}, {greatest:.6g}]")
+    found = sorted_out(values, "missing").heights
+    assert np.flatnonzero(np.isnan(found)).tolist() == sorted(spikes)
+
+
+def test_a_scratch_stays_where_a_spike_on_the_other_side_goes():
+    values = 0.66 * np.sin(np.arange(1000) / 12)
+    values[650:653] = -2, -30, -3  # a flank on a scale that the spike must not set
+    values[400] = 25
+    found = sorted_out(values, "missing").heights
+    assert np.flatnonzero(np.isnan(found)).tolist() == [400]
