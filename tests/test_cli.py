@@ -17,6 +17,7 @@ from frictionjax.cli import command_group
 from frictionjax.cost.machine_cost import MachineCost
 from frictionjax.io.scene_files import default_study, scene_document
 from frictionjax.report import filled
+from frictionjax.report.place import WRITTEN
 from frictionjax.wiggly.equation.status import warn_of_failed
 
 SMALL = ["--eps", "0.097:0.031:4", "--gamma", "1,2", "--no-progress"]
@@ -75,6 +76,7 @@ def test_study_writes_a_folder(study):
     names = {path.name for path in folder.iterdir()}
     pictures = {"convergence.png", "trajectories.png", "loop.png", "dissipation.png"}
     assert names == pictures | {"study.nc", "orders.nc", "tables.txt", "scene.toml"}
+    assert names <= WRITTEN
     for picture in pictures:
         assert (folder / picture).read_bytes().startswith(b"\x89PNG")
     assert (folder / "tables.txt").read_text() in result.stdout
@@ -270,6 +272,17 @@ def test_figures(tmp_path):
     assert result.exit_code == 0, result.stderr
     names = {path.name for path in (tmp_path / "figures").iterdir()}
     assert names == {"mu_slanted.png", "mu_angular.png", "nap.png"}
+    assert names <= WRITTEN
+
+
+def test_what_an_earlier_run_has_left_is_named(tmp_path):
+    """A report or a picture of another bristle would be taken for this run's."""
+    for name in ("report.html", "dissipation.png", "nap.png", "notes of mine.txt"):
+        (tmp_path / name).write_text("old")
+    result = run("figures", "--out", tmp_path)
+    said = f"Written to {tmp_path}\nNot of this run, there before: "
+    assert result.stdout.endswith(f"{said}dissipation.png, report.html\n")
+    assert (tmp_path / "report.html").read_text() == "old"
 
 
 def test_help_without_a_command():
@@ -404,6 +417,7 @@ def test_cost_measures_methods(tmp_path):
     assert "eps = 0.09 m" in result.stdout
     names = {path.name for path in folder.iterdir()}
     assert names == {"cost.nc", "tables.txt", "scene.toml", "work_precision.png"}
+    assert names <= WRITTEN
     with xr.open_dataset(folder / "cost.nc", engine="h5netcdf") as data:
         assert list(data.solver.values) == ["auto", "LSODA"]
         assert float(data.error.sel(solver="auto").squeeze()) < 1e-2

@@ -52,13 +52,19 @@ def report_asked(report: bool, started: float, expected: str = "") -> Any:
 
 
 def write_folder(folder: Path, work: Callable[[Path], str]) -> None:
-    """Run `work` on a place for its files, and print the tables that it returns."""
-    from ..report import filled
+    """Run `work` on a place for its files, and print the tables that it returns.
+
+    Also which files of the folder are not of this run, though they look it.
+    """
+    from ..report import filled, left_before
 
     with filled(folder) as place:
         text = interruptible(lambda: work(place))
+        made = {path.name for path in place.iterdir()}
     click.echo(text)
     click.echo(f"\nWritten to {folder}")
+    if old := left_before(folder, made):
+        click.echo(f"Not of this run, there before: {', '.join(old)}")
 
 
 def interruptible(work: Callable[[], Any]) -> Any:

@@ -17,6 +17,7 @@ from .movie import require_gif as require_gif
 from .movie import write_movie as write_movie
 from .order_cost import run_order_cost as run_order_cost
 from .place import filled as filled
+from .place import left_before as left_before
 from .place import require_folder as require_folder
 from .study import expectation as expectation
 from .study import prepare_study as prepare_study

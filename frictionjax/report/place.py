@@ -10,6 +10,17 @@ from typing import Any
 
 from .._checks import FULL, require
 
+# Names of what commands write into folders.
+_TEXTS = "report.html", "tables.txt", "scene.toml", "design.toml", "heights.csv", "fit.json"
+_DATA = "study", "orders", "spread", "cost"
+_PICTURES = (
+    *("convergence", "trajectories", "loop", "dissipation", "turning", "nap_loops"),
+    *("nap", "mu_slanted", "mu_angular", "work_precision", "design", "map"),
+)
+WRITTEN = frozenset(
+    [*_TEXTS, *(f"{name}.nc" for name in _DATA), *(f"{name}.png" for name in _PICTURES)]
+)
+
 
 def require_folder(path: Any) -> Path:
     """Check that a folder is there or can be made; nothing is made yet.
@@ -61,3 +72,11 @@ def filled(folder: Path) -> Iterator[Path]:
     finally:
         if place is not None:
             shutil.rmtree(place, ignore_errors=True)
+
+
+def left_before(folder: Path, made: set[str]) -> list[str]:
+    """Files beside those `made` now that commands write too: of an earlier run, perhaps.
+
+    They stay, as they may be a user's own, and would be taken for this run's unnamed.
+    """
+    return sorted(name for name in WRITTEN - made if (folder / name).exists())

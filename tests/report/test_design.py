@@ -10,6 +10,7 @@ from frictionjax.design.bristle.result import AngleFit
 from frictionjax.design.common.heights import surface_heights
 from frictionjax.design.surface.result import ProfileFit
 from frictionjax.io.scene_files import default_study
+from frictionjax.report.place import WRITTEN
 
 WAVES = fx.profiles.Fourier(cos=[0.01, 0.004], sin=[0.02, 0.0])
 
@@ -47,6 +48,7 @@ def test_a_bristle_for_a_ratio(tmp_path):
         "heights.csv",
         "tables.txt",
     }
+    assert names <= WRITTEN
     fit = AngleFit.from_json(folder / "fit.json")
     assert float(fit.achieved) == pytest.approx(1.5, rel=1e-12)
     scene = fx.load_scene(folder / "design.toml")
