@@ -81,6 +81,13 @@ def test_benchmarks_that_pages_name_are_there(page):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(HOME)))
+def test_files_and_folders_that_pages_name_are_there(page):
+    """Those of Python, by the end of their path."""
+    for name in re.findall(r"`((?:\w+/)+(?:\w+\.py)?)`", page.read_text()):
+        assert any(HOME.glob(f"**/{name}")), name
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(HOME)))
 def test_python_in_pages_can_be_read(page):
     for code in blocks(page, "python"):
         compile(code, str(page), "exec")
