@@ -65,8 +65,9 @@ _WORDS = (
 _ABOUT = (
     "To follow a bristle through all slips over a surface costs computing time, and the "
     "more accurate, the more. Here methods compute the same motion at several accuracies, "
-    "are timed side by side, and are judged by a reference that is more accurate than all "
-    "of them: their own word that they have succeeded is not taken for it."
+    "are timed side by side, and are judged by a reference, the same motion computed in "
+    "two ways, which is known as well as these agree: their own word that they have "
+    "succeeded is not taken for it."
 )
 _PYTHON = """\
 import frictionjax as fx
@@ -241,9 +242,9 @@ def _judged(facts: CostFacts) -> Section:
 
 _REFERENCE = (
     "Every run is held against the same motion computed in two ways that do not share "
-    "their errors, much more accurately; where these differ by more than a run's error, "
-    "nothing is said about it. The residual of the energy balance, in energies of one "
-    "slip, is a second judge, which needs no reference."
+    "their errors, at tighter tolerances. The error of a run that differs by less than "
+    "these two do cannot be told: their difference is printed (`<`). The residual of the "
+    "energy balance, in energies of one slip, is a second judge, which needs no reference."
 )
 
 

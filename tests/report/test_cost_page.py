@@ -87,6 +87,13 @@ def test_the_first_sentence_is_what_the_shell_prints_and_there_is_no_other(page)
     assert verdict_of_cost(data).startswith(f"{told} 2 cells in 0.8 s, the next method")
 
 
+def test_the_reference_is_said_to_be_known_as_well_as_its_two_ways_agree(page):
+    """Its own difference may be as large as the error of a run."""
+    assert "computed in two ways, which is known as well as these agree" in page.text
+    assert "more accurate than" not in page.text
+    assert "much more accurately" not in page.text
+
+
 def test_where_nothing_is_accurate_enough_it_says_so():
     data = measured()
     data["error"] = data.error + 1.0

@@ -62,7 +62,7 @@ _WORDS = {
     ),
     "accuracy": "The error that was asked for, of z in units of eps.",
     "reference": (
-        "What runs are judged by: the same motion computed much more accurately in two "
+        "What runs are judged by: the same motion computed at tighter tolerances in two "
         "ways that do not share their errors. Below their difference nothing is known."
     ),
     "alpha": "The force that presses the tip onto the surface without friction, in N.",
