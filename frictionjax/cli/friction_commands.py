@@ -52,7 +52,9 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
     "--movie", metavar="FILE.gif", help="Also the bristle sliding, its force beside it."
 )
 @click.option(
-    "--eps", type=POSITIVE, help="Of the movie, in m. [of the scene's, slips seen best]"
+    "--eps",
+    type=POSITIVE,
+    help="Of the movie, in m. [of the scene's: slips seen, forces near the limit's]",
 )
 def nap(
     scene: str | None,

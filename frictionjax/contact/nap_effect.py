@@ -107,7 +107,11 @@ class Nap(SelfDrawn, _NapNumbers):
             rows.append(("turned over", self.rho_flipped, self.axial_flipped))
         cells = tuple((name, f"{rho:.6g}", f"{axial:.6g}") for name, rho, axial in rows)
         which = "against/with" if self.knows_nap else "left/right"
-        note = f"{which} = {self.ratio:.6g}\n{self.message}"
+        ratio = f"{which} = {self.ratio:.6g}"
+        if self.turns_over:
+            turned = self.rho_flipped / self.rho_with
+            ratio += f" if it kept its nap, turned over/with = {turned:.6g}"
+        note = f"{ratio}\n{self.message}"
         return ResultTable(("moved", "friction, N", "axial force, N"), cells, 1, note)
 
     def __repr__(self) -> str:
@@ -239,4 +243,5 @@ def _of_load(slides: NapSlides, flipped: NapSlides, critical: float | None) -> s
         return f"{told} it buckles against the nap, and again once turned over"
     if critical > -flipped.axial_against:
         return f"{told} it turns over against the nap, and never back"
-    return f"{told} it turns over, and friction is rho_with and rho_flipped"
+    both = "rho_with and rho_flipped (with the nap, and turned over)"
+    return f"{told} it turns over, and friction is {both}"

@@ -11,7 +11,7 @@ from .. import plot
 from .._checks import naming, write_whole
 from ..coefficients import Coefficients
 from ..effects import NapFlip, nap_flip_among
-from ..model import Scene
+from ..model import Scene, friction
 from ..studies import Study
 from ..turning import flipping_rod
 from ..wiggly import solve
@@ -36,7 +36,7 @@ def study_figures(
     if bool((data.status == 0).any()):
         yield "trajectories", plot.draw_trajectories(data)
         turning = nap_flip_among(scene.effects)
-        loop_law = law if turning is None else _both_ways(scene, turning)
+        loop_law = law if turning is None else slide_friction(scene)
         yield "loop", plot.draw_loop(data, scene.support, loop_law)
         if "dissipation" in data:
             yield "dissipation", plot.draw_dissipation(data)
@@ -44,8 +44,11 @@ def study_figures(
             yield from _turning_figures(data, scene, turning)
 
 
-def _both_ways(scene: Scene, effect: NapFlip) -> Coefficients:
-    """Friction of a rod that turns over: with its nap both ways."""
+def slide_friction(scene: Scene) -> Coefficients:
+    """Of slides in the limit: a rod that turns over goes with its nap both ways."""
+    effect = nap_flip_among(scene.effects)
+    if effect is None:
+        return friction(scene)
     found = flipping_rod(scene, effect)
     return Coefficients(
         jnp.asarray(found.standing.rho_with), jnp.asarray(-found.turned.rho_with)

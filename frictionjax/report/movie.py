@@ -9,15 +9,19 @@ import numpy as np
 
 from .. import plot
 from .._checks import require, write_whole
+from ..contact import mechanics
 from ..limit import solve_limit
 from ..model import Scene
 from ..wiggly import solve
+from .folder import slide_friction
 from .friction import turning_scene
 from .job import Job
 
 _TIMES = 4001  # of the solution, of which frames are chosen
 _FRAMES = 80
 _SLIPS = 25  # about so many on the way there and back: they can be told apart
+_APART = 2.0  # times as many, or as few, still can
+_FAR = 0.2  # of friction in the limit: forces that are less beyond it are near it
 
 
 def require_gif(path: Any, made: Path | None = None) -> Path:
@@ -41,31 +45,56 @@ def write_movie(
 ) -> str:
     """A GIF of the bristle of a job as it slides; what it shows, in a line.
 
-    `eps` in m; None: that of the scene's list whose slips can be told apart best; gamma is
-    the largest of its list. The rod turns over where `bending_stiffness` (N m^2), or that
-    of the scene, makes it.
+    `eps` in m; None: of the scene's list one whose slips can be told apart, and whose
+    forces are within 20% of friction in the limit where there is one; gamma is the largest
+    of its list. The line says where forces are farther off. The rod turns over where
+    `bending_stiffness` (N m^2), or that of the scene, makes it.
 
     Raises `ValueError` as `plot.animate` does.
     """
     scene = turning_scene(job, bending_stiffness)
-    if eps is None:
-        eps = _seen_best(scene, job.study["eps"])
+    known = [eps] if eps is not None else _seen_best(scene, job.study["eps"])
     gamma = float(np.max(job.study["gamma"]))  # least drag: slips look like slips
-    ts = np.linspace(0.0, float(scene.duration), _TIMES)
-    found = solve(scene, eps, gamma, ts)
+    eps, found, beyond = _nearest(scene, known, gamma)
     film = plot.animate(scene, found, eps, frames=_FRAMES)
     with tempfile.TemporaryDirectory() as place:
         whole = Path(place) / "film.gif"
         film.save(whole, writer="pillow")
         write_whole(path, whole.read_bytes())
     told = f"{path}: {_FRAMES} frames, eps = {eps:.4g} m, gamma = {gamma:.4g}"
+    if beyond > _FAR:
+        told += f"; forces go up to {beyond:.0%} beyond friction as eps -> 0"
     return told if found.ok else f"{told}; not to be trusted: {found.message}"
 
 
-def _seen_best(scene: Scene, known: Any) -> float:
-    """Of a list of eps the one with about `_SLIPS` on the way that the limit goes."""
+def _nearest(scene: Scene, known: list[float], gamma: float) -> tuple[float, Any, float]:
+    """The first eps whose forces are near friction in the limit, else the first at all.
+
+    With its solution, and by how much of that friction its forces go beyond it.
+    """
+    ts = np.linspace(0.0, float(scene.duration), _TIMES)
+    law = slide_friction(scene)
+    tried: list[tuple[float, Any, float]] = []
+    for eps in known:
+        found = solve(scene, eps, gamma, ts)
+        force = mechanics(scene, found, eps).support_force.values
+        ways = np.max(force / float(law.rho_plus)), np.max(force / float(law.rho_minus))
+        tried.append((eps, found, float(max(ways)) - 1.0))
+        if tried[-1][2] <= _FAR:
+            return tried[-1]
+    return tried[0]
+
+
+def _seen_best(scene: Scene, known: Any) -> list[float]:
+    """Of a list of eps those with about `_SLIPS` on the limit's way, best first.
+
+    One at least, though its slips be too many or too few.
+    """
     values = np.asarray(known, dtype=float)
     way = float(np.ptp(np.asarray(solve_limit(scene).z)))
     if way == 0:
-        return float(np.max(values))
-    return float(values[np.argmin(np.abs(np.log(values * _SLIPS / way)))])
+        return [float(np.max(values))]
+    apart = np.abs(np.log(values * _SLIPS / way))
+    order = np.argsort(apart)
+    seen = order[apart[order] <= np.log(_APART)]
+    return values[seen if seen.size else order[:1]].tolist()

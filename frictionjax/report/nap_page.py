@@ -129,7 +129,8 @@ def verdict_of_nap(found: Nap) -> str:
     if found.turns_over:
         told += (
             " But it does not stay as it stands: pushed against its nap it turns over, and "
-            f"then holds against {found.rho_flipped:.4g} N."
+            f"then holds against {found.rho_flipped:.4g} N: "
+            f"{found.rho_flipped / found.rho_with:.4g} times as much as with it."
         )
     return f"{told} In detail: {found.message}." if found.message else told
 

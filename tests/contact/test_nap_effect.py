@@ -92,6 +92,16 @@ def test_loads_of_the_window_turn_it_over_and_others_do_not():
     assert "buckles with the nap too" in told(-inside.axial_with).message
 
 
+def test_the_ratio_of_a_rod_that_turns_over_is_that_it_has():
+    """Against its nap it never slides; rows of the table are named where friction is."""
+    surface = fx.profiles.Sine(0.5)
+    rod = fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, 0.3)
+    turns = repr(fx.nap(surface, rod, 0.1))
+    assert "against/with = 3 if it kept its nap, turned over/with = 2.2361\n" in turns
+    assert turns.endswith("rho_with and rho_flipped (with the nap, and turned over)")
+    assert "against/with = 3\n" in repr(fx.nap(surface, rod, 0.5))
+
+
 def test_a_rod_that_leans_back_at_rest_turns_over_and_never_back():
     """Its spring is slack once turned over: pressed less than before."""
     rod = fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, -0.3)

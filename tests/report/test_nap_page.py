@@ -30,7 +30,7 @@ def test_a_rod_that_turns_over_is_told_in_words():
     surface, rod = fx.profiles.Sine(0.5), fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, 0.3)
     turned = verdict_of_nap(nap(surface, rod, 0.1))
     assert "0.4854 N: 3 times as much" in turned
-    assert "it turns over, and then holds against 0.3618 N" in turned
+    assert "it turns over, and then holds against 0.3618 N: 2.236 times as much" in turned
     assert "then holds against" not in verdict_of_nap(nap(surface, rod, 0.5))
 
 

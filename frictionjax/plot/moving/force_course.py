@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from ...effects import nap_flip_among
 from ...model import Scene, friction
 from ...turning import flipping_rod
@@ -9,6 +11,7 @@ from ..style import LIMIT, colour, draw_level
 from .places import Places
 
 AGAINST = ("time", "tip")
+_FAR = 0.2  # of a level: what forces beyond it are told from
 
 
 class ForceCourse:
@@ -20,17 +23,25 @@ class ForceCourse:
         axes.plot(across, places.force, color=LIMIT, linewidth=0.9, alpha=0.35)
         self.gone = axes.plot([], [], color=colour(0), linewidth=1.4)[0]
         self.now = axes.plot([], [], "o", color=colour(1), markersize=5.5, zorder=4)[0]
-        for value, name in friction_levels(scene):
+        levels = friction_levels(scene)
+        for value, name in levels:
             draw_level(axes, value, name)
         axes.margins(x=0.02, y=0.12)
         axes.set(xlabel="t (s)" if against == "time" else "tip p (m)")
         axes.set_ylabel("force $\\ell - \\Phi'$ (N)")
-        axes.set_title("Force on the root")
+        far = places.eps is not None and _beyond(places.force, levels) > _FAR
+        lines = "; lines: as $\\varepsilon \\to 0$, without drag" if far else ""
+        axes.set_title(f"Force on the root{lines}")
 
     def move_to(self, row: int) -> None:
         """Mark a time, and what the force was until then."""
         self.gone.set_data(self._across[: row + 1], self._force[: row + 1])
         self.now.set_data([self._across[row]], [self._force[row]])
+
+
+def _beyond(force: np.ndarray, levels: list[tuple[float, str]]) -> float:
+    """How far forces go beyond the levels at most, as a share of these."""
+    return max(float(np.max(force / value)) for value, _ in levels) - 1.0
 
 
 def friction_levels(scene: Scene) -> list[tuple[float, str]]:

@@ -36,7 +36,10 @@ def draw_strokes(found: Nap, ax: Any = None) -> Any:
     axes.set(xlabel="way of the root (strokes)", ylabel="friction force (N)")
     ways = "With and against the nap", "To the right and to the left"
     title = ways[not found.knows_nap]
-    axes.set_title(f"{title}: {back}/{forth} = {found.ratio:.4g}")
+    ratio = f"{back}/{forth} = {found.ratio:.4g}"
+    if found.turns_over:
+        ratio = f"turned over/with = {found.rho_flipped / found.rho_with:.4g}"
+    axes.set_title(f"{title}: {ratio}")
     axes.margins(x=0.02, y=0.16)
     axes.legend(loc="best")
     return drawn

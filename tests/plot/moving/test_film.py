@@ -1,15 +1,18 @@
 """A moving picture shows as many times as asked for, each as `mechanics` has it."""
 
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from drawn_bristles import line, pulled_scene
 from matplotlib.animation import FuncAnimation
+from matplotlib.figure import Figure
 from PIL import Image, ImageChops
 from rods_that_turn import ROD, SURFACE, turning_scene
 
 import frictionjax as fx
+from frictionjax.plot.moving.force_course import ForceCourse
 
 T = np.linspace(0, 4, 401)
 
@@ -79,6 +82,20 @@ def test_a_rod_that_turns_over_has_its_own_levels():
         film._draw_frame(frame)
         bent += "chord" in film._fig.axes[0].get_title(loc="left")
     assert bent >= 2
+
+
+@pytest.mark.parametrize(
+    ("eps", "drag", "told"), [(0.1, 1.25, True), (0.1, 1.15, False), (None, 1.25, False)]
+)
+def test_levels_are_said_to_be_the_limits_where_drag_goes_beyond_them(eps, drag, told):
+    scene = pulled_scene("rod")
+    force = drag * np.array([0.0, 1.0, 0.0]) * float(fx.friction(scene).rho_plus)
+    places = SimpleNamespace(
+        eps=eps, time=np.arange(3.0), tip=np.zeros((3, 1)), force=force
+    )
+    axes = Figure().add_subplot()
+    ForceCourse(axes, scene, places, "time")
+    assert ("without drag" in axes.get_title(loc="left") + axes.get_title()) == told
 
 
 @pytest.mark.slow  # rods that turn over, at an eps

@@ -33,7 +33,10 @@ def test_a_critical_load_in_the_window_turns_it_over():
     found = fx.nap(SURFACE, ROD)
     load = 0.5 * sum(found.window)
     stiffness = load * float(ROD.length) ** 2 / np.pi**2
-    assert "it turns over" in loops(fx.nap(SURFACE, ROD, stiffness))
+    turns = fx.nap(SURFACE, ROD, stiffness)
+    assert "it turns over" in loops(turns)
+    title = turns.plot().axes[0].get_title(loc="left")
+    assert title.endswith(f"turned over/with = {turns.rho_flipped / turns.rho_with:.4g}")
 
 
 def test_a_bristle_that_cannot_turn_has_one_loop():
