@@ -254,6 +254,7 @@ def test_study_of_every_row_of_a_map(tmp_path):
     result = run("study", *SMALL, *options, "--report", "--out", folder)
     assert result.exit_code == 0, result.stderr
     assert result.stderr.startswith("Expected: 3 rows, each about ")
+    assert "; then 0.6 to 1.5 s for laws and orders" in result.stderr
     assert "Orders over the rows of the map" in result.stdout
     with xr.open_dataset(folder / "study.nc", engine="h5netcdf") as data:
         assert data.scene.values.tolist() == [0, 1, 2]

@@ -30,7 +30,7 @@ def averaged_motion(
     viscosity = eps**gamma
     force = np.full(eps.size, _first_force(data, wells))
     held = float(force[0]) if force.size else 0.0
-    lag, steady_lag = np.zeros(eps.size), np.zeros(eps.size)
+    lag = np.zeros(eps.size)
     spent = np.zeros((eps.size, data.length.size))
     for index, pull in enumerate(data.pull):
         stiffness = data.stiffness[index]
@@ -38,20 +38,43 @@ def averaged_motion(
         force, held = pulled, limit
         for sign, well in wells.items():
             beyond = sign * pulled - well.rho
-            share = stiffness * data.length[index] / viscosity
-            excess = np.where(beyond > 0, _relaxed(well, beyond, share), 0.0)
-            travel = np.maximum(beyond - excess, 0.0)
-            if sign * pull < 0:
-                stopped = _stopped(well, beyond - sign * pull, -sign * pull, share)
-                travel = np.maximum(travel, np.where(beyond > 0, 0.0, stopped))
-            force = force - sign * travel
-            lag = np.maximum(lag, excess / stiffness)
+            # Most moments are of the other direction: none moves, and nothing is sought.
+            if np.any(beyond > min(sign * pull, 0.0)):
+                share = stiffness * data.length[index] / viscosity
+                excess, travel = _moved(well, beyond, share, sign * pull)
+                force = force - sign * travel
+                lag = np.maximum(lag, excess / stiffness)
+                spent[:, index] += travel * (well.rho + excess) / stiffness
             ahead = max(sign * limit - well.rho, 0.0)
             held -= sign * ahead
-            spent[:, index] += (travel * (well.rho + excess) - ahead * well.rho) / stiffness
-            drag = max(sign * data.speed[index], 0.0) * viscosity
-            steady_lag = np.maximum(steady_lag, steady_force(well, drag) / stiffness)
+            spent[:, index] -= ahead * well.rho / stiffness
+    steady_lag = _steady_lag(data, wells, viscosity)
     return AveragedMotion(lag - steady_lag, np.cumsum(spent, axis=1))
+
+
+def _moved(
+    well: WellForce, beyond: np.ndarray, share: np.ndarray, pull: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Excess of the force at the end of a moment, and k times the way, both in N."""
+    excess = np.where(beyond > 0, _relaxed(well, beyond, share), 0.0)
+    travel = np.maximum(beyond - excess, 0.0)
+    stops = (beyond <= 0) & (beyond - pull > 0)
+    if np.any(stops):
+        stopped = _stopped(well, beyond - pull, -pull, share)
+        travel = np.where(stops, np.maximum(travel, stopped), travel)
+    return excess, travel
+
+
+def _steady_lag(
+    data: SlideData, wells: dict[int, WellForce], viscosity: np.ndarray
+) -> np.ndarray:
+    """Largest z - z_eps of steady slides at the speeds of all moments, in m, (cells,)."""
+    found = np.zeros(viscosity.size)
+    for sign, well in wells.items():
+        speed = np.maximum(sign * data.speed, 0.0)
+        lags = steady_force(well, speed * viscosity[:, None]) / data.stiffness
+        found = np.maximum(found, lags.max(axis=1, initial=0.0))
+    return found
 
 
 def steady_force(well: WellForce, drag: np.ndarray) -> np.ndarray:
