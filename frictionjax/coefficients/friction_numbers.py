@@ -56,6 +56,16 @@ class Coefficients(SelfDrawn, eqx.Module):
     omega_minus_taken: OfBristle = None
     _picture = "draw_coefficients"
 
+    @property
+    def ratio(self) -> Real:
+        """`-rho_plus/rho_minus`: how much harder it is to go right than left; NaN where
+        there is no friction.
+
+        >>> print(f"{fx.friction(scene).ratio:.4f}")
+        1.3689
+        """
+        return jnp.divide(-self.rho_plus, self.rho_minus)
+
     def __repr__(self) -> str:
         if not has_numbers(self):
             return super().__repr__()

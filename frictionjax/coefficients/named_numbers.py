@@ -33,7 +33,7 @@ def coefficients_by_name(found: Any) -> dict[str, float]:
     left = float(found.rho_minus)
     numbers = {"ratio": -float(found.rho_plus) / left} if left else {}
     for name, _, _ in COEFFICIENTS:
-        value = getattr(found, name, None)
+        value = None if name == "ratio" else getattr(found, name, None)
         if value is not None:
             numbers[name] = float(value)
     return {name: numbers[name] for name, _, _ in COEFFICIENTS if name in numbers}

@@ -30,6 +30,17 @@ def test_coefficients():
     assert len(lines) == 12
 
 
+def test_the_ratio_of_the_table_is_an_attribute_too():
+    assert float(LAW.ratio) == coefficients_by_name(LAW)["ratio"]
+    many = jax.vmap(lambda s: fx.friction(fx.profiles.Sine(s), BRISTLE))(
+        np.array([0.1, 0.2])
+    )
+    np.testing.assert_allclose(many.ratio, -many.rho_plus / many.rho_minus)
+    none = type(LAW)(rho_plus=np.zeros(()), rho_minus=np.zeros(()))
+    assert np.isnan(none.ratio)
+    assert "ratio" not in coefficients_by_name(none)
+
+
 def test_coefficients_with_errors():
     text = str(coefficient_table(LAW, dict.fromkeys(coefficients_by_name(LAW), 0.0123)))
     lines = {line.split()[0]: line.split()[1:] for line in text.splitlines()}
