@@ -7,7 +7,7 @@ from matplotlib.patches import Polygon
 
 from ..style import GUIDE, LIMIT, STRIP, colour
 from .places import Drawn, Places
-from .shapes import coil, rod_between
+from .shapes import coil, rod_between, turns_within
 
 _PERIODS = 400  # of the surface that are drawn, at most: more would be a grey bar
 _POINTS = 24  # a period
@@ -37,6 +37,8 @@ class BristleArtist:
         self._width = min(self._high - self._low, most)
         draw_ground(axes, places, self._low, self._high, deep)
         self._angle_artists()
+        self._coil = 0.1 * places.size
+        self._turns = self._support_turns()
         self.spring = axes.plot([], [], color=LIMIT, linewidth=0.9, label="spring")[0]
         thick = {Drawn.ROD: 2.6, Drawn.SPRING: 1.4, Drawn.UNKNOWN: 1.0}[places.kind]
         style = "--" if places.kind is Drawn.UNKNOWN else "-"
@@ -72,6 +74,13 @@ class BristleArtist:
         if self.places.rest_angle is not None:
             self.rest.set_label("$\\theta$ at rest")
 
+    def _support_turns(self) -> int:
+        """As many as fit at the spring's longest, so that they stay the same all along."""
+        if self.places.far is None:
+            return 1
+        lengths = np.abs(self.places.far - self.places.root[:, 0])
+        return turns_within(float(np.max(lengths)), self._coil)
+
     def move_to(self, row: int) -> None:
         """Draw everything where it is at a time."""
         places = self.places
@@ -82,7 +91,7 @@ class BristleArtist:
         ends = [tip, root]
         if places.far is not None:
             far = np.array([places.far[row], root[1]])
-            self.spring.set_data(*coil(root, far, 0.1 * places.size))
+            self.spring.set_data(*coil(root, far, self._coil, self._turns))
             self.far.set_data([far[0]], [far[1]])
             ends.append(far)
         for letter, end in zip(self._letters, ends, strict=False):
@@ -102,7 +111,7 @@ class BristleArtist:
 
     def _bristle(self, root: np.ndarray, tip: np.ndarray, side: int) -> np.ndarray:
         if self.places.kind is Drawn.SPRING:
-            return coil(tip, root, 0.1 * self.places.size)
+            return coil(tip, root, self._coil)
         return rod_between(root, tip, self.places.length, side)
 
     def _turn_angle(self, root: np.ndarray, angle: float) -> None:
