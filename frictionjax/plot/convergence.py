@@ -51,6 +51,7 @@ _MANY_DECADES = 3
 _LINE = 0.17  # inches
 _DIFFERS = 0.05  # of orders: what the points show is said too
 _GREY = "#666666"
+_NAME = 15.0  # points from the name of a guide to that of the next, with its exponent
 _ENTRY = 2.6  # inches, of the key
 
 
@@ -65,9 +66,10 @@ def draw_convergence(
 
     `orders`, `curves`: those of `study(dataset)`; without the latter what was fitted is
     drawn as a power, and no law. Filled points are in the window that the fitted
-    line rests on, hollow ones are outside; a cross on the axis is a failed cell. Dotted
-    guides have the slope `eps^beta` of the lemmas. A second panel shows the dissipation,
-    where the data set has it; of a rod that turns over others show distances of graphs.
+    line rests on, hollow ones are outside; a cross on the axis is a failed cell, a triangle
+    there an error of 0. Dotted guides have the slope `eps^beta` of the lemmas, which say
+    nothing of scenes with noise. A second panel shows the dissipation, where the data set
+    has it; of a rod that turns over others show distances of graphs.
     `figure`: a matplotlib Figure or SubFigure to draw into, which is returned.
 
     >>> data = fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0)
@@ -87,11 +89,12 @@ def draw_convergence(
             if curves is not None:
                 _curves(axes, curves.sel(gamma=gamma), fit, name, index)
             _failures(axes, cells, index)
+            _zeros(axes, cells, name, index)
         if not any(_good(dataset.sel(gamma=g), name)[0].size for g in dataset.gamma):
             axes.set_ylim(0.1, 1.0)  # a log axis without data has no range of its own
         axes.set(xscale="log", yscale="log", ylabel=label, title=title)
         axes.set_xlabel("$\\epsilon$ (m)")
-        if not prefix:
+        if not prefix and "noise_order" not in orders:  # of which the lemmas are not
             _guides(axes, dataset)
         _fewer_ticks(axes)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
@@ -221,22 +224,52 @@ def _failures(axes: Any, cells: xr.Dataset, index: int) -> None:
         )
 
 
+def _zeros(axes: Any, cells: xr.Dataset, name: str, index: int) -> None:
+    """Triangles on the axis where there is no error at all, which no log axis shows."""
+    none = cells.eps.values[(cells.status.values == 0) & (cells[name].values == 0)]
+    if none.size:
+        axes.plot(
+            none,
+            np.full(none.size, 0.025 * index),
+            "v",
+            color=colour(index),
+            markersize=7,
+            clip_on=False,
+            transform=axes.get_xaxis_transform(),
+            label=f"0, below the axis, $\\gamma$ = {float(cells.gamma):.3g}",
+        )
+
+
 def _guides(axes: Any, dataset: xr.Dataset) -> None:
     """Slopes of the lemmas below the data, one for each different beta."""
     betas = np.minimum(1.0, dataset.gamma.values)
+    ends = np.array([dataset.eps.values.min(), dataset.eps.values.max()])
+    names: list[tuple[float, str]] = []
     for beta in np.unique(betas):
         group = dataset.isel(gamma=betas == beta)
         points = [_good(group.isel(gamma=i), "sup_error") for i in range(group.gamma.size)]
         points = [(eps, errors) for eps, errors in points if eps.size]
         if not points:
             continue
-        ends = np.array([dataset.eps.values.min(), dataset.eps.values.max()])
         below = 0.6 * min(float(np.min(errors / eps**beta)) for eps, errors in points)
         axes.plot(ends, below * ends**beta, ":", color=GUIDE, linewidth=1, zorder=1)
+        name = "$\\epsilon$" if beta == 1 else f"$\\epsilon^{{{beta:.3g}}}$"
+        names.append((float(below * ends[1] ** beta), name))
+    _name_guides(axes, float(ends[1]), names)
+
+
+def _name_guides(axes: Any, eps: float, names: list[tuple[float, str]]) -> None:
+    """Beside the ends of the guides, moved up where one would touch the next below."""
+    free = -np.inf
+    axes.autoscale_view()  # or places below are of other limits
+    for value, name in sorted(names):
+        here = axes.transData.transform((eps, value))[1] * 72 / axes.figure.dpi
+        up = max(0.0, free - here)
+        free = here + up + _NAME
         axes.annotate(
-            "$\\epsilon$" if beta == 1 else f"$\\epsilon^{{{beta:.3g}}}$",
-            (ends[1], below * ends[1] ** beta),
-            xytext=(4, 0),
+            name,
+            (eps, value),
+            xytext=(4, up),
             textcoords="offset points",
             va="center",
             color="#666666",

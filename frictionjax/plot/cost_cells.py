@@ -11,6 +11,7 @@ from .cost_runs import (
     UNKNOWN,
     WRONG,
     apart,
+    beside_each_other,
     floor_of,
     look,
     mark_failed,
@@ -66,7 +67,7 @@ def _row(panels: Any, groups: list, along: str, draw: Callable, title: str) -> N
         if values.size <= _FEW:
             axes.set_xticks(values, [f"{value:.3g}" for value in values])
             axes.minorticks_off()
-        axes.set_xlabel(_NAMES[along])
+        axes.set_xlabel(_NAMES[along] + beside_each_other(group))
         axes.set_title(f"{title}  ({_cell(group, along)})")
     limits = _limits(np.array([axes.dataLim.intervaly for axes in panels]))
     for axes, group in zip(panels, groups, strict=True):

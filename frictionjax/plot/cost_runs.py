@@ -79,6 +79,11 @@ def apart(values: np.ndarray, count: int, scale: str = "log") -> list[np.ndarray
     return [back(places + room * step) for step in steps]
 
 
+def beside_each_other(dataset: xr.Dataset) -> str:
+    """For the label of an axis on which methods have been moved `apart`."""
+    return ", methods side by side" if dataset.solver.size > 1 else ""
+
+
 def set_places(axes: Any, values: np.ndarray, scale: str = "log") -> None:
     """An x axis with as much room beside the outer places as between the nearest."""
     places, back, room = _room(values, scale)

@@ -12,20 +12,20 @@ from ..coefficients import Coefficients
 from ..supports import AbstractSupport
 from ..sweeps import whole_grid
 from .style import (
+    DOTS,
     LIMIT,
+    TOLD_OF_DOTS,
     choose_eps,
     choose_gamma,
     draw_level,
+    follows_slips,
     label_eps,
     new_figure,
     shades,
     styled,
 )
 
-_RESOLVED = 6  # times a well: joined, fewer would draw a sawtooth with slips left out
-_FEW = 0.25  # of the wells that may hold fewer
 _JOINED: Any = {"linewidth": 1}
-_DOTS: Any = {"linestyle": "", "marker": ".", "markersize": 2.5}
 
 
 @styled
@@ -58,9 +58,9 @@ def draw_loop(
     load, finer = dataset["load"].values, False
     for value, shade in zip(chosen, shades(chosen.size), strict=True):
         z = dataset.z.sel(gamma=gamma, eps=value).values
-        joined = _follows_slips(z, float(value))
+        joined = follows_slips(z, float(value))
         finer |= not joined
-        look = _JOINED if joined else _DOTS
+        look = _JOINED if joined else DOTS
         force = friction_force(support, load, z)
         axes.plot(z, force, color=shade, label=label_eps(value), **look)
     z = dataset.z_limit.values
@@ -71,22 +71,11 @@ def draw_loop(
     axes.margins(y=0.12)
     axes.set(xlabel="z (m)", ylabel="friction force $\\ell - \\Phi'(z)$ (N)")
     several = "s" if chosen.size > 1 else ""
-    dots = "; dots: too few times to follow slips" if finer else ""
+    dots = TOLD_OF_DOTS if finer else ""
     axes.set_title(f"Friction loop{several} and limit, $\\gamma$ = {gamma:.3g}{dots}")
     below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13)}  # names stand beside
     axes.legend(**below, ncols=min(chosen.size + 1, 4), markerscale=3)
     return figure
-
-
-def _follows_slips(z: np.ndarray, eps: float) -> bool:
-    """Whether most wells that `z` (m), shape (time,), passes hold enough of its times."""
-    passed = np.abs(np.diff(np.floor(z[np.isfinite(z)] / eps)))
-    last = np.flatnonzero(passed)
-    if not last.size:
-        return True
-    times = np.diff(last, prepend=-1)
-    leapt = int(passed[last].sum()) - last.size  # wells without a time of their own
-    return leapt + int(np.sum(times < _RESOLVED)) <= _FEW * (leapt + last.size)
 
 
 @Program

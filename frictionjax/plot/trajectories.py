@@ -1,5 +1,6 @@
 """Trajectories and dissipation of the wiggly system over those of the limit."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,16 +11,20 @@ from matplotlib.patches import Rectangle
 from .._checks import require
 from ..sweeps import whole_grid
 from .style import (
+    DOTS,
     LIMIT,
     STRIP,
+    TOLD_OF_DOTS,
     choose_eps,
     choose_gamma,
+    follows_slips,
     label_eps,
     new_figure,
     shades,
     styled,
 )
 
+_DOTS = DOTS | {"markersize": 5}  # few of them are in the close-up
 _SLIPS = 5  # in the inset
 _RESOLVED = 8  # samples a slip, or the inset would show the sampling
 
@@ -32,7 +37,8 @@ def draw_trajectories(
 
     `dataset`: of `sweep`. `gamma`: the nearest to 1 where None; `eps`: largest, smallest
     and one between where None. A panel beside it follows a few slips of the largest eps
-    whose slips the times resolve.
+    whose slips the times resolve; an eps whose slips are finer than the times is drawn as
+    dots there.
 
     Raises `ValueError` for a gamma or an eps that the data set does not hold.
 
@@ -55,7 +61,13 @@ def draw_trajectories(
     return figure
 
 
-def _panel(axes: Any, dataset: xr.Dataset, gamma: float, lines: dict[float, Any]) -> None:
+def _panel(
+    axes: Any,
+    dataset: xr.Dataset,
+    gamma: float,
+    lines: dict[float, Any],
+    dotted: Sequence[float] = (),
+) -> None:
     t = dataset.time.values
     axes.fill_between(
         t,
@@ -66,7 +78,8 @@ def _panel(axes: Any, dataset: xr.Dataset, gamma: float, lines: dict[float, Any]
         label="strip [z$_-$, z$_+$]",
     )
     for eps, shade in lines.items():
-        axes.plot(t, dataset.z.sel(gamma=gamma, eps=eps), color=shade, label=label_eps(eps))
+        z, look = dataset.z.sel(gamma=gamma, eps=eps), _DOTS if eps in dotted else {}
+        axes.plot(t, z, color=shade, label=label_eps(eps), **look)
     axes.plot(t, dataset.z_limit, "--", color=LIMIT, linewidth=1.2, label="limit z")
     axes.set(xlabel="t (s)", ylabel="z (m)")
     axes.margins(x=0)
@@ -101,11 +114,14 @@ def window_of_slips(t: np.ndarray, z: np.ndarray, eps: float) -> tuple[float, fl
 
 
 def _zoom(main: Any, axes: Any, dataset: xr.Dataset, gamma: float, lines, window) -> None:
-    inside = dataset.sel(time=slice(*window))
-    _panel(axes, inside, gamma, lines)
+    inside, states = dataset.sel(time=slice(*window)), dataset.z.sel(gamma=gamma)
+    dotted = [eps for eps in lines if not follows_slips(states.sel(eps=eps).values, eps)]
+    _panel(axes, inside, gamma, lines, dotted)
     shown = [inside.z.sel(gamma=gamma, eps=eps).values for eps in lines]
     values = np.concatenate([*shown, inside.z_limit.values])
     frame_window(main, axes, window, values)
+    if dotted:
+        axes.set_title(f"A few slips, in the frame{TOLD_OF_DOTS}")
 
 
 def frame_window(main: Any, axes: Any, window: Any, values: np.ndarray) -> None:

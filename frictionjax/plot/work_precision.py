@@ -19,6 +19,7 @@ from .cost_runs import (
     WRONG,
     DrawnRuns,
     apart,
+    beside_each_other,
     failed_runs,
     floor_of,
     look,
@@ -44,10 +45,11 @@ def draw_work_precision(
 
     Above, of one cell: error against seconds, one line a method, thin from the fastest to
     the slowest of its warm runs, and below it in yellow the Pareto front of the runs that
-    are not wrong; accuracy reached against accuracy asked for. The cell: of `eps` (m) and
-    `gamma`; the smallest eps and gamma = 1 where none is named. Below, with more than one
-    cell: seconds, and error over accuracy, at the accuracy in the middle: against eps, one
-    panel for each gamma, or with one eps against gamma.
+    are not wrong; accuracy reached against accuracy asked for, several methods side by
+    side around it. The cell: of `eps` (m) and `gamma`; the smallest eps and gamma = 1 where
+    none is named. Below, with more than one cell: seconds, and error over accuracy, at the
+    accuracy in the middle: against eps, one panel for each gamma, or with one eps against
+    gamma.
 
     Runs that are not done stand above the upper edge of each panel. Errors below what the
     reference can judge are drawn there, those beyond 1000 eps there.
@@ -164,7 +166,8 @@ def _calibration(axes: Any, cell: xr.Dataset) -> None:
     _floor(axes, float(floor_of(cell)))
     low, high = axes.get_ylim()
     axes.fill_between(*stairs, high, color=TOO_LITTLE, zorder=0)
-    axes.set(ylim=(low, high), xlabel="accuracy asked for ($\\epsilon$)")
+    axes.set_ylim(low, high)
+    axes.set_xlabel("accuracy asked for ($\\epsilon$)" + beside_each_other(cell))
     axes.set_ylabel("error reached ($\\epsilon$)")
     axes.set_title("Is the accuracy kept?  (above the line: no)")
     mark_failed([axes], [failed])

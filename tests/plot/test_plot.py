@@ -85,6 +85,36 @@ def test_every_kind_of_line_that_is_drawn_is_named_and_no_other():
             assert 0 <= key.get_window_extent().y0 < key.get_window_extent().y1 <= bottom
 
 
+def test_names_of_slopes_that_end_together_do_not_touch():
+    found = sweep_like(failed=False)
+    found["sup_error"] = found.sup_error * [[0.3], [1.0]]
+    state = drawn(fx.plot.draw_convergence(found, fx.study(found).orders))[0]
+    low, high = sorted((t.get_window_extent() for t in state.texts), key=lambda b: b.y0)
+    assert low.y1 <= high.y0
+
+
+def test_lemmas_are_not_shown_for_noise_of_which_they_are_not():
+    found = sweep_like(failed=False)
+    orders = fx.study(found).orders.assign(noise_order=("gamma", [0.5, 0.5]))
+    figure = fx.plot.draw_convergence(found, orders)
+    for axes in drawn(figure):
+        assert not axes.texts
+        assert all(line.get_linestyle() != ":" for line in axes.lines)
+    (key,) = figure.legends
+    assert not any("lemmas" in text.get_text() for text in key.get_texts())
+
+
+def test_an_error_of_nothing_is_a_triangle_on_the_axis():
+    found = sweep_like(failed=False)
+    found["strip_excess"] = found.strip_excess.where(found.eps > 0.02, 0.0)
+    axes = drawn(fx.plot.draw_convergence(found, fx.study(found).orders))
+    for index, gamma in enumerate(found.gamma.values):
+        none = labelled(axes[-1], f"0, below the axis, $\\gamma$ = {gamma:.3g}")
+        assert data(none)[0] == pytest.approx(EPS[EPS <= 0.02])
+        assert data(none)[1] == pytest.approx(np.full(2, 0.025 * index))
+    assert not any("below the axis" in one for one in labels(axes[0]))
+
+
 def test_points_outside_the_window_are_hollow():
     found = sweep_like(failed=False)
     orders = fx.study(found).orders
@@ -176,6 +206,19 @@ def test_slips_are_shown_where_the_times_resolve_them():
     frame = main.patches[0]
     assert frame.get_x() == pytest.approx(low)
     assert frame.get_height() == pytest.approx(np.ptp(zoom.get_ylim()))
+
+
+def test_the_close_up_joins_no_states_between_which_slips_are_left_out():
+    fine = sweep_like(failed=False).interp(time=np.linspace(0, 3, 601))
+    fine["status"] = fine.status.astype(np.int8)
+    fine = fine.assign_coords(eps=np.geomspace(0.1, 1e-4, 6))
+    main, zoom = drawn(fx.plot.draw_trajectories(fine, gamma=1.0))
+    assert {line.get_marker() for line in main.lines} == {"None"}
+    looks = [(one.get_linestyle(), one.get_marker()) for one in zoom.lines]
+    assert looks == [("-", "None"), ("None", "."), ("None", "."), ("--", "None")]
+    assert zoom.get_title(loc="left").endswith("dots: too few times to follow slips")
+    seen = fx.plot.draw_trajectories(fine, gamma=1.0, eps=0.1)
+    assert drawn(seen)[1].get_title(loc="left").endswith("in the frame on the left")
 
 
 def test_unknown_gamma_or_eps_is_an_error():

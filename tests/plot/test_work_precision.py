@@ -68,6 +68,16 @@ def test_a_picture_shades_what_the_reference_cannot_judge(unsure):
         assert said == np.isinf(unsure)
 
 
+def test_axes_say_where_methods_are_moved_aside():
+    data = cells_like([0.1, 0.05], [1.0])
+    of_all = [one.get_xlabel() for one in fx.plot.draw_work_precision(data).axes]
+    assert [one.endswith(", methods side by side") for one in of_all] == [False] + 3 * [
+        True
+    ]
+    one = data.isel(solver=[0])
+    assert not any("side" in a.get_xlabel() for a in fx.plot.draw_work_precision(one).axes)
+
+
 @pytest.mark.parametrize(
     ("eps", "gamma", "panels", "along"),
     [

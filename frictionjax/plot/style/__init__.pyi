@@ -1,3 +1,6 @@
+from .followed_slips import DOTS as DOTS
+from .followed_slips import TOLD_OF_DOTS as TOLD_OF_DOTS
+from .followed_slips import follows_slips as follows_slips
 from .levels import draw_level as draw_level
 from .look import COLOURS as COLOURS
 from .look import GUIDE as GUIDE
