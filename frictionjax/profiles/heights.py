@@ -113,6 +113,28 @@ def find_period(
     return period
 
 
+def require_repeated(
+    x: np.ndarray, heights: np.ndarray, period: float, harmonics: int
+) -> None:
+    """Raise where heights do not repeat, and what was found is too short for a fit."""
+    most = _most_harmonics(x, period)
+    if harmonics <= most:
+        return
+    rows = heights.reshape(-1, x.size)
+    varies = float(np.mean([_detrended_variance(x, row) for row in rows]))
+    explained = 1 - _misfit(x, heights, period, most) / varies if varies else 0.0
+    needs = (
+        f"heights that repeat, or its value: the best, {period:.3g} m, explains "
+        f"{max(explained, 0.0):.0%} of their variance"
+    )
+    require(explained >= SETTINGS.repeats, "period", "none was found", needs)
+
+
+def _most_harmonics(x: np.ndarray, period: float) -> int:
+    """As many as the samples of a period tell apart, 1 at least."""
+    return max(1, int(0.5 * period * (x.size - 1) / float(np.ptp(x))) - 1)
+
+
 def _refine(
     x: np.ndarray, heights: np.ndarray, frequency: float, harmonics: int
 ) -> tuple[float, float]:
@@ -168,9 +190,10 @@ def fit_heights(
     span, spacing = float(np.ptp(x)), float(np.ptp(x)) / (x.size - 1)
     if period is None:
         period = find_period(x, heights, harmonics)
+        require_repeated(x, heights, period, harmonics)
     needs = f"0 < period <= {no_more(span / 1.5)} (1.5 periods in the trace)"
     require_real("period", period, needs, lambda p: 0 < p <= span / 1.5)
-    most = max(1, int(0.5 * period / spacing) - 1)
+    most = _most_harmonics(x, period)
     needs = f"harmonics <= {most} at {period / spacing:.3g} samples a period"
     require(harmonics <= most, "harmonics", harmonics, needs)
     if masked:

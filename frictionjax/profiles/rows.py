@@ -8,7 +8,7 @@ from jaxtyping import Complex
 
 from .._checks import is_masked, known_numbers, numbers_of, require, require_whole
 from .alignment import moved, shifts_into_phase, variance_of_shift
-from .heights import SeriesFit, find_period, fit_heights, require_left
+from .heights import SeriesFit, find_period, fit_heights, require_left, require_repeated
 from .settings import SETTINGS
 from .steepest import SampledWaves
 
@@ -68,7 +68,9 @@ def _common_period(x: np.ndarray, rows: np.ndarray, harmonics: int) -> float | N
         return None
     require_whole("harmonics", harmonics)
     require(np.all(np.isfinite(rows)), "heights", rows, "finite heights")
-    return find_period(x.astype(float), rows, harmonics)
+    period = find_period(x.astype(float), rows, harmonics)
+    require_repeated(x, rows, period, harmonics)
+    return period
 
 
 def complex_series(fit: SeriesFit) -> Complex[np.ndarray, " harmonics"]:

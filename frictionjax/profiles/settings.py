@@ -27,6 +27,7 @@ class Settings(NamedTuple):
     # Of the variance of what is left: less by that, a multiple of the period is the period,
     # if that was more than this share of the heights'.
     halves: float = 0.5
+    repeats: float = 0.5  # of the variance: heights of which less is periodic do not repeat
     worth: float = 1e-6
     # Chance that noise passes for waves of a longer period, and how many waves beside them
     # say what noise has (`subharmonics.py`).

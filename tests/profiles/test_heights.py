@@ -79,6 +79,18 @@ def test_pure_noise_is_not_explained():
     assert fit.explained < 0.2
 
 
+@pytest.mark.parametrize("rows", [1, 3])
+def test_where_noise_has_no_period_of_use_that_is_what_is_said(rows):
+    x = np.linspace(0, 1e-3, 400)
+    heights = np.random.default_rng(1).normal(size=(rows, 400))
+    said = r"period = 'none was found': needs heights that repeat, or its value: the best, "
+    with pytest.raises(ValueError, match=said + r"\S+ m, explains \d% of their variance"):
+        from_heights(x, heights if rows > 1 else heights[0], harmonics=40)
+    # A wave of few samples is there all the same.
+    with pytest.raises(ValueError, match="harmonics = 40: needs harmonics <= "):
+        from_heights(x, np.sin(2 * np.pi * 60 * x / 1e-3), harmonics=40)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
