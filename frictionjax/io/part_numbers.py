@@ -141,4 +141,6 @@ def _value(value: Any) -> str:
         return f"{float(numbers):.6g}"
     if numbers.size <= _FEW:
         return ", ".join(f"{v:.6g}" for v in numbers.ravel())
+    if not numbers.any():
+        return f"{numbers.size} values, all 0"
     return f"{numbers.size} values, {numbers.min():.3g} to {numbers.max():.3g}"

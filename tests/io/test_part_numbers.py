@@ -52,6 +52,7 @@ def test_a_load_read_as_a_place_is_in_metres():
     rows = {(row[0], row[2]): row[3:5] for row in part_rows(scene).rows}
     assert rows["load, position", "rate"] == ("2", "m/s")
     assert rows["profile", "cos"] == ("9 values, 0.001 to 0.001", "periods")
+    assert rows["profile", "sin"] == ("9 values, all 0", "periods")
 
 
 def test_a_scene_tells_its_numbers_and_shows_them_in_a_notebook():

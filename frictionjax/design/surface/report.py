@@ -4,6 +4,7 @@ import dataclasses
 from functools import partial
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 
 from ..._checks import as_text
@@ -89,7 +90,12 @@ def report_fit(problem: Any, found: RoomLeft) -> ProfileFit:
 def _series(waves: Any, slope: Any) -> tuple[Any, Any]:
     """Compiled: NumPy arrays become JAX arrays in 30 us so, by `asarray` in 70."""
     cos, sin = heights_of_waves(waves)
-    return slope * cos, slope * sin
+    return _unsigned(slope * cos), _unsigned(slope * sin)
+
+
+def _unsigned(values: Any) -> Any:
+    """Zeros without a sign: -0.0 in a file looks as if it meant something."""
+    return jnp.where(values == 0, 0.0, values)
 
 
 def _bristles(problem: Any, free: Any) -> tuple:

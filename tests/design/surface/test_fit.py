@@ -16,6 +16,7 @@ from frictionjax.design.surface.barrier.bending import free_energy, kernel_ratio
 from frictionjax.design.surface.barrier.constraints import heights_of_waves
 from frictionjax.design.surface.fit import surface_problem
 from frictionjax.design.surface.multistart import multistart
+from frictionjax.design.surface.report import _series
 from frictionjax.design.surface.settings import SETTINGS
 from frictionjax.design.surface.status import ProfileStatus
 
@@ -308,6 +309,15 @@ def test_uncertainties_decide_what_contradicts(gap, success):
     fit = fx.fit_profile(targets, starts=2)
     assert fit.success == success
     assert abs(fit.chi2 / (2 * (gap / 2 / 0.01) ** 2) - 1) < 1e-6
+
+
+def test_waves_that_are_nothing_have_no_sign():
+    waves = np.array([0.1, -0.0, 0.0, -0.0])  # of sines, then of cosines
+    cos, sin = map(np.asarray, _series(waves, np.array(2.0)))
+    assert not cos.any()
+    assert not np.signbit(cos).any()
+    assert sin[0] > 0
+    assert not np.signbit(sin).any()
 
 
 @pytest.mark.slow
