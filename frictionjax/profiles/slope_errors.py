@@ -36,6 +36,8 @@ class SlopesUndetermined(UserWarning):
     the samples leave the steepest slopes open: omega_plus = 0.12 +- 0.063, ...
     """
 
+    advice = ADVICE  # that its messages give, in terms of Python
+
 
 class SlopeErrors(NamedTuple):
     """Steepest slopes of a profile made of samples, and how far off they may be.

@@ -16,6 +16,10 @@ from ..model import Scene
 from ..profiles import SlopesUndetermined
 
 _FEW_PERIODS = 2.0
+_SHELL_ADVICE = (  # what theirs says, for whoever writes no Python
+    'Straight flanks with corners are kind = "Polyline" in [profile] of a scene file; '
+    "noise asks for smoothing of a stated length: --smoothing LENGTH beside --heights"
+)
 _BRISTLES: dict[str, tuple[Any, dict[str, float]]] = {  # as the command line names them
     "slanted": (
         SlantedSpring,
@@ -106,7 +110,8 @@ def _said_of(caught: list[warnings.WarningMessage]) -> list[str]:
     notes: dict[str, None] = {}
     for warning in caught:
         if issubclass(warning.category, SlopesUndetermined):
-            notes[f"Note: {warning.message}"] = None
+            text = str(warning.message).replace(SlopesUndetermined.advice, _SHELL_ADVICE)
+            notes[f"Note: {text}"] = None
         else:
             warnings.warn_explicit(
                 warning.message, warning.category, warning.filename, warning.lineno

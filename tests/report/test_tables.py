@@ -113,6 +113,8 @@ def test_a_sawtooth_in_a_file_is_told_what_its_samples_leave_open(tmp_path):
     job = read_job(None, **fit)
     (note,) = [line for line in job.notes if "steepest slopes open" in line]
     assert note.startswith("Note: the samples leave")
+    assert note.endswith("--smoothing LENGTH beside --heights")  # no call of Python
+    assert "profiles." not in note
     errors = errors_by_name(fx.friction(job.scene))
     assert errors["omega_plus"] > 0.02
     assert set(errors) == set(coefficients_by_name(LAW)) - {"alpha", "a"}
