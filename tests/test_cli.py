@@ -192,6 +192,44 @@ def test_nap_of_a_rod_that_turns_over(tmp_path):
         assert (tmp_path / name).stat().st_size > 10_000
 
 
+def test_a_scene_that_was_worked_on_is_not_written_over(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.touch()
+    for name in ("nap", "noise", "noise"):  # over nothing, over another, over itself
+        assert run("scenes", name, "--out", file).exit_code == 0
+    mine = file.read_text() + "# mine\n"
+    file.write_text(mine)
+    line = error_line(run("scenes", "noise", "--out", file))
+    assert "out = " in line
+    assert "needs a new name: a file is there, and it is no scene that ships" in line
+    assert file.read_text() == mine
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (("scenes", "--out", "x.toml"), "--out: needs NAME beside it"),
+        (("scenes", "--schema", "--out", "x.toml"), "--out: not with --schema"),
+        (("scenes", "nap", "--out", ""), "out = '': needs the name of a file"),
+        (("study", "--out", ""), "out = '': needs the name of a folder"),
+        (("figures", "--out", ""), "out = '': needs the name of a folder"),
+    ],
+)
+def test_a_place_for_nothing_and_a_place_without_a_name_are_refused(
+    command, said, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    assert said in error_line(run(*command))
+    assert not list(tmp_path.iterdir())
+
+
+def test_help_of_costs_says_which_of_its_options_writes_nothing():
+    (line,) = [
+        line for line in run("cost", "--help").stdout.splitlines() if "--out DIR" in line
+    ]
+    assert "Not with --order-within" in line
+
+
 def test_scenes(tmp_path):
     assert "nap-flip " in run("scenes").stdout
     text = run("scenes", "noise").stdout

@@ -53,7 +53,7 @@ _LEAST = 1e-3  # seconds: what is left of the total where loading took all of it
     type=POSITIVE,
     help="Instead: which eps give the order of convergence to +- this, and in which time.",
 )
-@out_option("cost")
+@out_option("cost", "Not with --order-within, which writes no files.")
 @report_option
 @progress_option
 def cost(

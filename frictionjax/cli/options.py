@@ -23,9 +23,12 @@ def bristle_option(which: str) -> Callable:
     )
 
 
-def out_option(command: str) -> Callable:
+def out_option(command: str, told: str | None = None) -> Callable:
+    """`told`: help, where the name does not say it all."""
     default = f"frictionjax-{command}"
-    return click.option("--out", default=default, show_default=True, metavar="DIR")
+    return click.option(
+        "--out", default=default, show_default=True, metavar="DIR", help=told
+    )
 
 
 report_option = click.option(

@@ -11,9 +11,14 @@ from .running import start, write_folder
 @click.command()
 @click.argument("name", required=False, metavar="[NAME]")
 @click.option("--schema", is_flag=True, help="Every field of a scene file instead.")
-@click.option("--out", metavar="FILE", help="Write the scene there instead.")
+@click.option(
+    "--out", metavar="FILE", help="Write the scene there instead, over no other file."
+)
 def scenes(name: str | None, schema: bool, out: str | None) -> None:
     """Scenes that ship: all of them, a line each, or the file of one to start from."""
+    if out is not None and (schema or name is None):
+        needs = "not with --schema" if schema else "needs NAME beside it"
+        raise click.UsageError(f"--out: {needs}")
     start()
     from ..io import example_lines, example_text, schema_text
 
@@ -30,7 +35,9 @@ def scenes(name: str | None, schema: bool, out: str | None) -> None:
         click.echo(text, nl=False)
         return
     from .._checks import write_whole
+    from ..report import require_no_work_lost
 
+    require_no_work_lost(out, map(example_text, example_lines()))
     write_whole(out, text)
     click.echo(f"Written to {out}")
 

@@ -19,6 +19,7 @@ from .order_cost import run_order_cost as run_order_cost
 from .place import filled as filled
 from .place import left_before as left_before
 from .place import require_folder as require_folder
+from .place import require_no_work_lost as require_no_work_lost
 from .study import expectation as expectation
 from .study import prepare_study as prepare_study
 from .study import run_study as run_study

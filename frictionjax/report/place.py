@@ -3,7 +3,7 @@
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -27,11 +27,27 @@ def require_folder(path: Any) -> Path:
 
     Raises `ValueError` where a file is in the way or its parent cannot be written to.
     """
+    require(str(path) != "", "out", str(path), "the name of a folder")
     folder = Path(path)
     parent = _standing(folder)
     require(parent.is_dir(), "out", str(folder), f"a folder, but {parent} is a file")
     require(os.access(parent, os.W_OK), "out", str(folder), f"leave to write in {parent}")
     return folder
+
+
+def require_no_work_lost(path: Any, ours: Iterable[str]) -> None:
+    """Check that no file stands at `path`, or an empty one, or one of ours as written.
+
+    Raises `ValueError` where somebody may have worked on it.
+    """
+    require(str(path) != "", "out", str(path), "the name of a file")
+    file = Path(path)
+    if not file.is_file():
+        return
+    found = file.read_bytes().replace(b"\r\n", b"\n")
+    unchanged = not found or any(found == text.encode() for text in ours)
+    needs = "a new name: a file is there, and it is no scene that ships"
+    require(unchanged, "out", str(path), needs)
 
 
 def _standing(folder: Path) -> Path:
