@@ -343,8 +343,8 @@ _MEANING = {
     "inertia_order": ("1", "power of eps with which m_eps max|W''|/eps^(1+2 gamma) falls"),
     "overdamped": (None, "1 where mass does not matter for eps -> 0"),
     "noise_order": ("1", "power of eps with which T_eps/eps falls"),
-    "C0": (None, "smallest C0 of Lemma 7 in these cells, in m^(1-beta)"),
-    "C": (None, "smallest C of Lemma 9 in these cells"),
+    "C0": ("m^(1-beta)", "smallest C0 of Lemma 7 in these cells"),
+    "C": ("m/s, m^(1-beta)", "smallest C of Lemma 9 in these cells"),
     "constant": (None, "error over eps^order for eps -> 0"),
     "constant_low": (None, "lower end of its 95% interval, jointly with the order's"),
     "constant_high": (None, "upper end of its 95% interval, jointly with the order's"),
@@ -355,6 +355,8 @@ _MEANING = {
     "verdict": (None, "what the interval says"),
 }
 _COMMENTS = {
+    "C0": "Its unit is that of an error over eps^beta: 1 for gamma >= 1.",
+    "C": "In m/s before |t - s|, in m^(1-beta) before eps^beta: one C for both.",
     "constant": (
         "Of the leading power, by the law where one is used. Errors of the data set are "
         "those of .curves, not constant eps^order, where the verdict is not_yet_seen."

@@ -136,9 +136,12 @@ def lemma_table(orders: xr.Dataset) -> ResultTable:
     for gamma in orders.gamma.values:
         line = orders.sel(gamma=gamma)
         constants = formatted(float(line.C0)), formatted(float(line.C))
-        rows.append((f"{gamma:.4g}", f"{float(line.beta):.3g}", *constants))
-    header = ("gamma", "beta", "C0 of Lemma 7", "C of Lemma 9")
-    return ResultTable(header, tuple(rows), left=0)
+        beta = float(line.beta)
+        unit = "" if beta == 1 else f"m^{1 - beta:.3g}"
+        rows.append((f"{gamma:.4g}", f"{beta:.3g}", constants[0], unit, constants[1]))
+    header = ("gamma", "beta", "C0 of Lemma 7", "unit", "C of Lemma 9")
+    note = "(C: in m/s before |t - s|, in the unit of C0 before eps^beta)"
+    return ResultTable(header, tuple(rows), note=note, left=0)
 
 
 def failed_table(failed: Sequence[dict[str, Any]]) -> str:

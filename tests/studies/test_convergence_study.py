@@ -35,6 +35,8 @@ def test_orders_constants_and_exponents():
     assert orders.dissipation_order.values == pytest.approx([1.0, 2.0], abs=1e-9)
     assert orders.beta.values == pytest.approx([0.5, 1.0])
     assert orders.C0.values == pytest.approx([0.3, 0.2])
+    assert orders.C0.attrs["units"] == "m^(1-beta)"
+    assert orders.C.attrs["units"] == "m/s, m^(1-beta)"
     # |z(t) - z(s)| = 2 |t - s|: largest over |t - s| + eps^beta at the ends, smallest eps.
     assert orders.C.values == pytest.approx([2 / (1 + 1e-3**0.5), 2 / (1 + 1e-3)])
     assert np.all(orders.order_low <= orders.order)

@@ -41,7 +41,9 @@ def test_order_table():
 
 def test_lemma_table():
     lines = str(lemma_table(fx.study(sweep_like(failed=False)).orders)).splitlines()
-    assert [line.split()[:2] for line in lines[1:]] == [["0.5", "0.5"], ["1", "1"]]
+    assert [line.split()[:2] for line in lines[1:3]] == [["0.5", "0.5"], ["1", "1"]]
+    assert [line.split()[3:-1] for line in lines[1:3]] == [["m^0.5"], []]
+    assert lines[3].startswith("(C: in m/s before")
 
 
 def test_an_order_from_too_few_points_is_a_dash():

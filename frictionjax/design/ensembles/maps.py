@@ -21,6 +21,7 @@ from ..._checks import (
 from ..._compile import once_a_scene, waiting
 from ...bristles import AbstractBristle
 from ...effects import AbstractEffect, Engine
+from ...io import MEANINGS, unit_of
 from ...model import BristlePotential, coefficients_jit, potential
 from ...profiles import AbstractProfile, Fourier
 from ...supports import Spring
@@ -56,7 +57,11 @@ _MEANING = {
     "pulls": (None, "whether alpha < 0: the bristle pulls on the surface"),
 }
 
-
+_AXES = {  # that are no number of a bristle as its constructor has it
+    "asymmetry": ("1", "omega_plus/|omega_minus| of the surface"),
+    "steepness": ("1", "(omega_plus - omega_minus)/2 of the surface"),
+    "limit": ("rad", "angle of the rod from the vertical, theta_lim"),
+}
 _PULLING = (
     "no: bristles that would pull (alpha < 0) are not admissible; design_map(pulling=True)",
     "yes: bristles that pull (alpha < 0) are shown too",
@@ -168,6 +173,8 @@ def design_map(
             tell(f"slides of {sum(good.ravel())} designs")
             columns |= slides_of_designs(designs, asked, scene.effects).columns(dims, shape)
     data = xr.Dataset(columns, {names[0]: across, names[1]: up})
+    for name, free in zip(names, frees, strict=True):
+        data[name].attrs = _told(bristle, name, free)
     for name, (units, meaning) in _MEANING.items():
         data[name].attrs = {"long_name": meaning} | ({"units": units} if units else {})
     data.attrs = {
@@ -177,6 +184,16 @@ def design_map(
         **({} if asked is None else asked.attributes()),
     }
     return data
+
+
+def _told(
+    bristle: AbstractBristle, name: str, free: FreeParameter | None
+) -> dict[str, str]:
+    """Unit and meaning of an axis, as far as they are known of a bristle of one's own."""
+    key = name if free is None else free.kind
+    known = MEANINGS.get(type(bristle).__name__, {}).get(name, name)
+    units, meaning = _AXES.get(key, (unit_of(bristle, name), known))
+    return {"long_name": meaning} | ({"units": units} if units else {})
 
 
 def _of_all(scene: SceneEffects, name: str, values: Any) -> Any:

@@ -52,6 +52,25 @@ def test_cells_are_scalar_calls():
     assert data["ratio"].dims == ("asymmetry", "angle")
 
 
+@pytest.mark.parametrize(
+    ("bristle", "axis", "units", "meaning"),
+    [
+        (SLANTED, "angle", "rad", "from the vertical, positive where the tip is left"),
+        (SLANTED, "stiffness", "N/m", "of the spring"),
+        (ANGULAR, "angle", "rad", "angle of the rod from the vertical, theta_lim"),
+        (ANGULAR, "length", "m", "of the rod"),
+        (SLANTED, "steepness", "1", "(omega_plus - omega_minus)/2 of the surface"),
+    ],
+)
+def test_axes_have_units_and_meanings(bristle, axis, units, meaning):
+    values, beside = (axis, [0.9, 1.1]), ("asymmetry", [0.8, 1.25])
+    data = fx.design_map(bristle, x=values, y=beside)
+    assert data[axis].attrs["units"] == units
+    assert data[axis].attrs["long_name"].startswith(meaning)
+    assert data.asymmetry.attrs["units"] == "1"
+    assert data.asymmetry.attrs["long_name"] == "omega_plus/|omega_minus| of the surface"
+
+
 def test_two_numbers_of_a_bristle_on_a_surface():
     lengths, rests = [0.9, 1.05, 1.3, 40.0], [-1.0, 0.2, 0.9]
     data = fx.design_map(ANGULAR, ("length", lengths), ("rest_angle", rests), WAVES)
