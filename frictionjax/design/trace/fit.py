@@ -65,7 +65,8 @@ def fit_trace(
     determined does not depend on it: `.identifiability`.
 
     The zeros of force and clock are taken as known, and errors hold for them: an offset is
-    for the most part a shift of the surface, which residuals hardly show. Where the
+    for the most part a shift of the surface, which residuals hardly show. So is the
+    bristle: another one may explain the trace as well, with other slopes. Where the
     uncertainty is not known, residuals that hang together along the surface, or in time, as
     of a sensor that drifts, are a misfit.
 

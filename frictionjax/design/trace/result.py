@@ -46,6 +46,9 @@ _SEEN = record(
 )
 
 
+_BY_RESIDUALS = "1 at most by construction: no uncertainty was given"
+
+
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class TraceFit(ShownNumbers, DesignResult):
     """Result of `fit_trace`.
@@ -58,7 +61,9 @@ class TraceFit(ShownNumbers, DesignResult):
     `disputed`: how many others are in another well. `tips`: phases of the tip, (n,).
     `chi2`: of samples used, in units of `deviation`, where they outnumber the coefficients,
     else of all outside slips, else of all; `degrees_of_freedom` of them, samples less
-    coefficients, at least 1. `identifiability`: what the trace determines of the surface.
+    coefficients, at least 1. Of a trace without uncertainties, which are taken from the
+    residuals, they are equal by construction, or chi2 is less. `identifiability`: what the
+    trace determines of the surface, seen by the bristle given.
     `odd`: what is odd about the trace, or was left undone, in words; empty where nothing.
     """
 
@@ -104,7 +109,10 @@ class TraceFit(ShownNumbers, DesignResult):
         if not seen.determined.any():
             return f"{why}; no slope is determined"
         parts = ", ".join(f"[{a:.3f}, {b:.3f}]" for a, b in seen.intervals)
-        return f"{why}; slopes determined at y in {parts} ({seen.share:.0%})"
+        return (
+            f"{why}; slopes determined at y in {parts} ({seen.share:.0%}), for the bristle "
+            "given: it is taken as known, and another one would see other slopes"
+        )
 
     @property
     def reduced_chi2(self) -> float:
@@ -144,18 +152,29 @@ class TraceFit(ShownNumbers, DesignResult):
             Named("used", int(np.sum(self.used)), "", "of them"),
             Named("slipping", int(np.sum(self.slipping)), "", "in slips, left out"),
             Named("disputed", self.disputed, "", "in other wells"),
-            Named("reduced_chi2", self.reduced_chi2, "", "about 1 where errors explain it"),
+            Named("reduced_chi2", self.reduced_chi2, "", self._about_chi2()),
             Named("determined", self.identifiability.share, "", "share of the surface"),
             Named("steps", self.history.chi2.size, "", "of the fit"),
         ]
 
+    def _about_chi2(self) -> str:
+        if self._by_residuals:
+            return _BY_RESIDUALS
+        return "about 1 where errors explain it"
+
+    @property
+    def _by_residuals(self) -> bool:
+        """Whether a fit has taken uncertainties from what it leaves."""
+        return self.trace.uncertainty is None and self.history.chi2.size > 0
+
     def __repr__(self) -> str:
+        told = f" ({_BY_RESIDUALS})" if self._by_residuals else ""
         used = f"{int(np.sum(self.used))} of {self.used.size} samples used"
         left = f"{int(np.sum(self.slipping))} in slips, {self.disputed} in other wells"
         return "\n".join(
             [
                 f"TraceFit({self.status.name}: {self.message})",
-                f"  {used}, {left}; reduced chi2 = {self.reduced_chi2:.4g}, "
+                f"  {used}, {left}; reduced chi2 = {self.reduced_chi2:.4g}{told}, "
                 f"{self.history.chi2.size} steps",
             ]
         )

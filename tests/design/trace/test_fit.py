@@ -1,5 +1,6 @@
 """Surfaces from measured friction traces, and what of them a trace determines."""
 
+import dataclasses
 import io
 
 import jax
@@ -81,6 +82,18 @@ def test_a_loop_with_noise_covers_the_truth(noisy):
     )
     assert noisy.history.chi2[-1] < 0.1 * noisy.history.chi2[0] + 1.5
     assert "slopes determined at y in [" in noisy.message
+
+
+def test_what_a_fit_takes_as_known_is_said(noisy):
+    assert "for the bristle given: it is taken as known" in noisy.message
+    assert "by construction" not in repr(noisy)
+    unsure = fx.Trace(noisy.trace.ts, force=noisy.trace.values)
+    told = dataclasses.replace(noisy, trace=unsure)
+    said = "1 at most by construction: no uncertainty was given"
+    assert f"({said})" in repr(told)
+    assert said in str(told.table())
+    untried = told.history._replace(chi2=np.zeros(0))
+    assert said not in repr(dataclasses.replace(told, history=untried))
 
 
 @pytest.mark.slow
