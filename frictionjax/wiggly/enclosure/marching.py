@@ -161,6 +161,7 @@ class BracketContext(NamedTuple):
         jobs, segments = plan.jobs, plan.segments
         left = SETTINGS.patience - self.effort.waited[jobs.cell]
         left[self._alone(plan)] = np.inf
+        left[self._known(plan) & self.ground.is_far(self.path)[jobs.cell]] = 0.0
         owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
         cell = jobs.cell[owner]
         wells = np.abs(segments.guide1 - segments.guide0) / self.ground.eps[cell]
@@ -186,9 +187,13 @@ class BracketContext(NamedTuple):
 
     def _alone(self, plan: BracketPlan) -> np.ndarray:
         """Jobs from a known start, in cells that one lane can go through, (jobs,)."""
+        return self._known(plan) & self.ground.is_affordable(self.path)[plan.jobs.cell]
+
+    def _known(self, plan: BracketPlan) -> np.ndarray:
+        """Jobs from a known start, (jobs,)."""
         known = np.zeros(plan.jobs.cell.size, dtype=bool)
         known[: plan.known_start.size] = plan.known_start
-        return known & self.ground.is_affordable(self.path)[plan.jobs.cell]
+        return known
 
     def _wells(self, plan: BracketPlan) -> np.ndarray:
         """Wells of the path that jobs go through, (jobs,)."""

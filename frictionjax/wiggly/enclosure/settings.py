@@ -65,6 +65,7 @@ class Settings(NamedTuple):
     lane: float = 2.0
     settled_lane: float = 0.6
     affordable: float = 2e5  # for one lane alone, at most: a minute or two
+    farthest: float = 2e6  # from z0 to the strip, at most: half a minute
     # Beside fast slides, in many lanes: more are laid out no more. (3.7e9 took minutes to
     # lay out, and would have taken days; 4e6 at turns of a triangle, eps = 1e-8, gamma =
     # 0.15, take 7 s.) And in cells that remember more than there is, where each lane has to

@@ -53,7 +53,11 @@ class CellBounds(NamedTuple):
 
     def is_affordable(self, path: Path) -> np.ndarray:
         """Whether one lane alone may go through all of the path, (cells,)."""
-        return path.travel[-1] / self.eps <= self.affordable
+        return (path.travel[-1] / self.eps <= self.affordable) & ~self.is_far(path)
+
+    def is_far(self, path: Path) -> np.ndarray:
+        """Whether z0 is too far from the strip for a lane to come from there, (cells,)."""
+        return path.outside / self.eps > SETTINGS.farthest
 
     def has_few_wells(self, path: Path) -> np.ndarray:
         """Whether the path has no more wells than one lane usually goes through."""
