@@ -1,9 +1,14 @@
 """Loads that turn while a tip is at a fold: a slip there hangs on very little."""
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax.model import tabulated_scene
+from frictionjax.wiggly.equation.landscape import landscape
+from frictionjax.wiggly.limit_path import known_path, nearness_at_turns
 
 PERIOD = 3.0
 SLOPE, HELD = 0.1, 1.0
@@ -40,7 +45,7 @@ def after_a_peak(excess: float, eps: float, gamma: float, **options):
 
 @pytest.mark.parametrize(
     ("eps", "gamma"),
-    [(1e-3, 1.0), (1e-5, 1.0), (1e-6, 0.75), (1e-5, 1.5), (1e-4, 2.0), (1e-7, 1.0)],
+    [(1e-3, 1.0), (1e-5, 1.0), (1e-6, 0.75), (1e-5, 1.5), (1e-4, 2.25), (1e-7, 1.0)],
 )
 @pytest.mark.parametrize(("share", "slips"), [(0.0, 0), (0.9, 0), (1.1, 1), (5.0, 1)])
 def test_a_slip_takes_what_a_parabola_takes(eps, gamma, share, slips):
@@ -82,3 +87,40 @@ def test_a_plateau_at_the_fold_is_as_long_as_it_takes():
         scene = VERTICAL.replace(load=load, duration=2.0)
         found = fx.solve(scene, eps, gamma, [1.9])
         assert np.round(found.z[0] / eps) == slips, share
+
+
+def nearness(load: fx.loads.AbstractPull, eps: float, gamma: float) -> np.ndarray:
+    scene = VERTICAL.replace(load=load)
+    path = known_path(scene, tabulated_scene(scene, eps))
+    folds = jax.tree_util.tree_map(
+        lambda number: np.asarray(number)[None],
+        landscape(scene.potential, jnp.asarray(eps)).folds,
+    )
+    one = np.ones(1)
+    return nearness_at_turns(path, folds, eps * one, eps**gamma * one, 0.01 * one)[0]
+
+
+@pytest.mark.parametrize(("eps", "gamma"), [(1e-2, 1.0), (1e-3, 0.75)])
+def test_branches_are_as_far_apart_as_closed_forms_say(eps, gamma):
+    """Where the load turns at the fold itself; within a factor of two, as times go by."""
+    drag, held = eps ** (1 + gamma), 0.5
+    peak = fold(eps)
+    plateau = fx.loads.PiecewiseLinear([0, 1, 1 + held, PERIOD], [0, peak, peak, -1])
+    fall = peak + 1
+    kink = fx.loads.PiecewiseLinear([0, 1.5, PERIOD], [0, peak, -1])
+    rise = peak / 1.5
+    for load, width in (
+        (fx.loads.Sine(peak, PERIOD), np.sqrt(needed(eps, gamma) / BEND)),
+        (plateau, drag / (BEND * held)),
+        (kink, np.cbrt(drag * min(rise, fall / 1.5) / BEND**2)),
+    ):
+        first = nearness(load, eps, gamma)[0]
+        assert 0.5 * width < first < 2 * width
+    assert np.all(nearness(fx.loads.Sine(1.03225 * peak, PERIOD), eps, gamma) == np.inf)
+
+
+def test_a_load_that_misses_the_fold_is_as_near_as_it_misses():
+    eps, gamma, missed = 1e-5, 2.0, 1e-9
+    for side in (1, -1):
+        first = nearness(fx.loads.Sine(fold(eps) + side * missed, PERIOD), eps, gamma)[0]
+        assert first == pytest.approx(np.sqrt(missed / BEND), rel=0.01)
