@@ -22,3 +22,6 @@ from .step_plan import accuracies_of as accuracies_of
 from .step_plan import plan_steps as plan_steps
 from .step_plan import pull_between as pull_between
 from .step_plan import require_accuracy as require_accuracy
+from .turns_at_folds import FoldsAtTurns as FoldsAtTurns
+from .turns_at_folds import folds_at as folds_at
+from .turns_at_folds import nearest_turn as nearest_turn

@@ -55,6 +55,10 @@ class Settings(NamedTuple):
     rounded: float = 2e-11  # over |z|: tolerances times `safety` that are near it
     double_spacing: float = 2.0**-50  # shortest step over the duration: four of floats
 
+    # Where the load turns at folds (`turns_at_folds.py`).
+    cancelled: float = 2.0**-48  # of forces: their rounding where they cancel
+    flat: float = 1e-300  # N: added to curvatures that may be 0
+
     # Energies (`energy_balance.py`).
     # Distance in periods from its equilibrium up to which a rest counts as one: tolerances
     # are up to 1e-4, and 1e-6 with a viscosity of 1e-12 would look like a residual of 0.1

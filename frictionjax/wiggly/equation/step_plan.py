@@ -15,6 +15,7 @@ from ...supports import AbstractSupport
 from ..stepping import Control
 from .landscape import Landscape, WiggleFolds, landscape
 from .settings import SETTINGS
+from .turns_at_folds import nearest_turn
 
 
 def require_accuracy(
@@ -82,13 +83,17 @@ class PullRange(NamedTuple):
     total: Any = np.inf
 
 
-def _pull_of(scene: Scene) -> PullRange:
+def _pull_of(scene: Scene, edges: Float[Array, " n"]) -> PullRange:
     """The same for all cells: sampled between turning points, and over reached states."""
     found = coefficients(scene.potential)
-    ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
-    edges = jnp.sort(jnp.concatenate([ends, scene.turning_points()]))
     rho = found.rho_plus, found.rho_minus
     return pull_between(scene.load, scene.support, edges, *rho)
+
+
+def _edges_of(scene: Scene) -> Float[Array, " n"]:
+    """Ends and turning points of its load in s, sorted."""
+    ends = jnp.stack([jnp.zeros_like(scene.duration), scene.duration])
+    return jnp.sort(jnp.concatenate([ends, scene.turning_points()]))
 
 
 def pull_between(
@@ -204,18 +209,21 @@ def plan_steps(
 ) -> StepPlan:
     """Step control for an error of `accuracy` eps in z at times outside slips.
 
-    `pull`: that of the scene, where it is known.
+    `pull`: that of the scene, where it is known, and how near the load turns to folds, too.
     """
+    ground = landscape(scene.potential, eps)
+    turn: Real | float = jnp.inf
     if pull is None:
         assert isinstance(scene, Scene)
-        pull = _pull_of(scene)
-    ground = landscape(scene.potential, eps)
+        edges = _edges_of(scene)
+        pull = _pull_of(scene, edges)
+        turn = nearest_turn(scene.load, scene.support, edges, ground.folds, eps)
     memory = remembered_slips(ground, pull, eps, gamma)
     stretch = jnp.maximum(1.0, ground.stretch)
     adding = _adding(ground, pull, eps, gamma, memory)
     few = _of_few_wells(pull.way / eps, jnp.abs(scene.z0) / eps, accuracy)
     share = few * accuracy / (SETTINGS.safety * stretch)
-    at_folds = SETTINGS.fold * _way_to_fold(ground, pull, eps, gamma)
+    at_folds = SETTINGS.fold * jnp.minimum(_way_to_fold(ground, pull, eps, gamma), turn)
     held = eps * scene.support.stiffness_at(scene.z0)
     relaxation = eps ** (gamma + 1) / jnp.maximum(ground.steepest, held)
     shortest = SETTINGS.double_spacing * scene.duration

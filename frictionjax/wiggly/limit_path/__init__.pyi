@@ -6,6 +6,7 @@ from .find_path import known_path as known_path
 from .find_path import path_of as path_of
 from .motion import arrivals_at as arrivals_at
 from .motion import state_under as state_under
+from .near_turns import nearness_at_turns as nearness_at_turns
 from .path import Path as Path
 from .resting_ends import slow_ends as slow_ends
 from .sampled_slide import DEFICIT as DEFICIT
@@ -17,4 +18,3 @@ from .sampled_slide import SampledSlide as SampledSlide
 from .sampled_slide import nodes_of as nodes_of
 from .sampled_slide import sampled_slides_of as sampled_slides_of
 from .settings import SETTINGS as SETTINGS
-from .turns_at_folds import nearness_at_turns as nearness_at_turns

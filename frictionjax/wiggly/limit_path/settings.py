@@ -32,10 +32,9 @@ class Settings(NamedTuple):
     rests: float = 0.7
     end: float = 8.0  # wells before a slide's end where it should be slow
 
-    # Where the load turns at folds (`turns_at_folds.py`).
+    # Where the load turns at folds (`near_turns.py`).
     beside: float = 3.0  # wells that tips may be behind the path
     halves: int = 56  # of the duration: down to the spacing of floats
-    rounding: float = 2.0**-48  # of forces that cancel
 
     # Sampled slides (`sampled_slide.py`).
     nodes: int = 17  # periods measured in a slide, unless it takes more

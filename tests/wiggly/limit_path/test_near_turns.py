@@ -7,6 +7,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.model import tabulated_scene
+from frictionjax.wiggly.equation import plan_steps
 from frictionjax.wiggly.equation.landscape import landscape
 from frictionjax.wiggly.limit_path import known_path, nearness_at_turns
 
@@ -124,3 +125,33 @@ def test_a_load_that_misses_the_fold_is_as_near_as_it_misses():
     for side in (1, -1):
         first = nearness(fx.loads.Sine(fold(eps) + side * missed, PERIOD), eps, gamma)[0]
         assert first == pytest.approx(np.sqrt(missed / BEND), rel=0.01)
+
+
+def of_a_spring(stiffness, peak: float) -> fx.Scene:
+    load, support = fx.loads.Sine(peak, PERIOD), fx.supports.Spring(stiffness)
+    return SLANTED.replace(load=load, support=support)
+
+
+def test_plans_of_steps_that_follow_each_other_know_it_too():
+    touch, eps = float(fx.friction(SLANTED).rho_plus), 3e-5
+
+    @jax.jit
+    def tolerance(peak):
+        return plan_steps(of_a_spring(1.0, peak), eps, 1.0, 1e-3).tolerance
+
+    usual = tolerance(touch + 0.4 * eps)
+    assert tolerance(touch) < 0.1 * usual
+    assert tolerance(touch + 1e-4 * eps) < usual
+    assert tolerance(touch + 0.3 * eps) == usual
+
+
+@pytest.mark.slow
+def test_derivatives_are_those_of_a_tip_that_does_not_slip():
+    touch, eps = float(fx.friction(SLANTED).rho_plus), 3e-5
+
+    def at_rest(stiffness):
+        return fx.solve(of_a_spring(stiffness, touch), eps, ts=[0.8]).z[0] / eps
+
+    value, slope = jax.value_and_grad(at_rest)(1.0)
+    assert value == pytest.approx(float(at_rest(1.0)), abs=1e-3)
+    assert abs(slope) < 1e-3
