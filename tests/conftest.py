@@ -18,6 +18,7 @@ if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import jax
+from contexts_shared import share_contexts
 from jaxtyping import install_import_hook
 
 import frictionjax as fx
@@ -49,6 +50,7 @@ if os.environ.get("SHAPES_CHECKED"):
     install_import_hook(SHAPES_CHECKED, "shape_checks.shapes_checked")
 
 jax.config.update("jax_enable_x64", True)
+share_contexts()
 
 # What JAX traces is many small objects, few of them garbage. (Looking through them took 4%
 # of the suite.)
