@@ -3,6 +3,7 @@
 import threading
 
 from jax._src.interpreters import mlir
+from jax._src.lib.mlir import ir
 
 _MOST = 64  # programs written in one: what a context has been told it keeps
 
@@ -22,9 +23,18 @@ def share_contexts():
     shared, make = _Shared(), mlir.make_ir_context
 
     def context():
+        if _is_entered():  # inside of another program's writing: no place of its own
+            return make()
         if not shared.left:
             shared.context, shared.left = make(), _MOST
         shared.left -= 1
         return shared.context
 
     mlir.make_ir_context = context
+
+
+def _is_entered():
+    try:
+        return ir.Context.current is not None
+    except ValueError:
+        return False
