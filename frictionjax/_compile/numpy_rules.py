@@ -49,6 +49,84 @@ def _slice(params: dict, x: Any) -> Any:
     return x[tuple(map(slice, starts, limits, steps))]
 
 
+def _padded(params: dict, x: Any, value: Any) -> Any:
+    low, high, inside = zip(*params["padding_config"], strict=True)
+    sizes = [max(0, n + (n - 1) * gap) for n, gap in zip(x.shape, inside, strict=True)]
+    added = [(max(0, a), max(0, b)) for a, b in zip(low, high, strict=True)]
+    whole = np.full([n + a + b for n, (a, b) in zip(sizes, added, strict=True)], value)
+    places = [
+        slice(a, a + n, 1 + gap)
+        for n, (a, _), gap in zip(sizes, added, inside, strict=True)
+    ]
+    whole[tuple(places)] = x
+    cuts = [  # what is less than nothing is cut off
+        slice(max(0, -a), n - max(0, -b))
+        for n, a, b in zip(whole.shape, low, high, strict=True)
+    ]
+    return whole[tuple(cuts)]
+
+
+def _sliced_at(params: dict, x: Any, *starts: Any) -> Any:
+    """A slice of a known size, moved to where all of it is inside."""
+    sizes = params["slice_sizes"]
+    firsts = [
+        int(np.clip(start, 0, n - size))
+        for start, n, size in zip(starts, x.shape, sizes, strict=True)
+    ]
+    return x[tuple(slice(at, at + size) for at, size in zip(firsts, sizes, strict=True))]
+
+
+def _ordered(x: Any) -> Any:
+    """Whole numbers in the order of floats that has -0 < 0 and NaN at its ends."""
+    if x.dtype.kind != "f":
+        return x
+    bits = x.view(f"i{x.dtype.itemsize}")
+    return np.where(bits < 0, bits ^ np.iinfo(bits.dtype).max, bits)
+
+
+def _gathered(params: dict, x: Any, indices: Any) -> Any:
+    """Slices of x at many places: `indices` (..., which axes), of which `...` stays."""
+    how, sizes = params["dimension_numbers"], params["slice_sizes"]
+    rooms = np.array(x.shape) - sizes
+    wanted = {d: indices[..., k] for k, d in enumerate(how.start_index_map)}
+    batch = indices.shape[:-1]
+    for d, axis in zip(
+        how.operand_batching_dims, how.start_indices_batching_dims, strict=True
+    ):
+        wanted[d] = np.arange(x.shape[d]).reshape(
+            [-1 if i == axis else 1 for i in range(len(batch))]
+        )
+    gone = (*how.collapsed_slice_dims, *how.operand_batching_dims)
+    window = [d for d in range(x.ndim) if d not in gone]
+    places: list[Any] = []
+    for d in range(x.ndim):
+        start = np.clip(wanted.get(d, np.zeros(batch, int)), 0, rooms[d])
+        start = np.reshape(start, start.shape + (1,) * len(window))
+        along = [sizes[d] if d == other else 1 for other in window]
+        places.append(start + np.arange(sizes[d] if d in window else 1).reshape(along))
+    found = x[tuple(places)] if x.ndim else np.broadcast_to(x, batch)
+    if "FILL" in str(params["mode"]).upper():
+        found = _filled(params, found, [(wanted[d], rooms[d]) for d in wanted], window)
+    shape = batch + tuple(sizes[d] for d in window)
+    stays = [i for i in range(len(shape)) if i not in how.offset_dims]
+    found = np.broadcast_to(found, shape)
+    return np.moveaxis(found, range(len(shape)), [*stays, *how.offset_dims])
+
+
+def _filled(params: dict, found: Any, asked: list, window: list) -> Any:
+    """What was asked for outside of an array is no number, or the least or largest."""
+    fill = params["fill_value"]
+    if fill is None:
+        kind = found.dtype.kind
+        whole = {"i": lambda t: np.iinfo(t).min, "u": lambda t: np.iinfo(t).max}
+        fill = True if kind == "b" else whole.get(kind, lambda t: np.nan)(found.dtype)
+    inside = np.array(True)
+    for start, room in asked:
+        inside = inside & (start >= 0) & (start <= room)
+    inside = np.reshape(inside, inside.shape + (1,) * len(window))
+    return np.where(inside, found, np.asarray(fill, found.dtype))
+
+
 # Steps that NumPy calls as JAX does.
 _ALIKE = (
     *("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "exp2", "expm1", "log", "log1p"),
@@ -101,6 +179,12 @@ RULES: dict[str, Rule] = {name: _termwise(fn) for name, fn in _TERMWISE.items()}
     "concatenate": lambda params, *x: np.concatenate(x, axis=params["dimension"]),
     "stack": lambda params, *x: np.stack(x, axis=params["axis"]),
     "slice": _slice,
+    "pad": _padded,
+    "rev": lambda params, x: np.flip(x, tuple(params["dimensions"])),
+    "dynamic_slice": _sliced_at,
+    "gather": _gathered,
+    "lt_to": lambda params, a, b: _ordered(a) < _ordered(b),
+    "le_to": lambda params, a, b: _ordered(a) <= _ordered(b),
     "reduce_sum": _reduced(np.sum),
     "reduce_max": _reduced(np.max),
     "reduce_min": _reduced(np.min),

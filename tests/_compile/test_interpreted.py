@@ -157,3 +157,43 @@ def test_values_that_are_not_finite_are_no_error_where_jax_looks_for_them():
 
     with jax.debug_nans(True):
         assert np.all(np.isnan(Interpreted(lost)(X)))
+
+
+ROWS = np.random.default_rng(0).normal(size=(4, 5, 6))
+WHICH = np.array([[0, 3, -1], [9, -9, 2]])
+WHOLE = np.random.default_rng(1).integers(-5, 5, (4, 5, 6)).astype(np.int32)
+
+
+def picked(x, i, k):
+    """Entries and slices at places inside and outside of an array, and it in a frame."""
+    kinds = [x.at[i].get(mode=mode) for mode in ("clip", "fill")]
+    kinds += [n.at[i, i].get(mode="fill") for n in (x > 0, k, k.astype(np.uint8))]
+    kinds += [x.at[i, i].get(mode="fill", fill_value=7.0)]
+    kinds += [x.at[jnp.clip(i, 0, 3)].get(mode="promise_in_bounds")]
+    axes = [x[i], x[:, i, 2], x[i, i], x[i, :, i], x[1], x[i[0, 0], :, 2:4]]
+    axes += [jnp.take_along_axis(x, k % 6, axis=2), x[::-1, :, ::-1]]
+    lanes = [jax.vmap(lambda row, at: row[:, at], in_axes=(1, 0))(x, k[0, :, 0])]
+    lanes += [jax.vmap(jax.vmap(lambda row, at: row.at[at].get(mode="fill")))(x, k)]
+    lanes += [jax.vmap(lambda at: jax.lax.dynamic_slice(x, (at, 0, at), (2, 5, 3)))(i[0])]
+    framed = [jax.lax.pad(x, 0.5, ((1, 2, 0), (-1, 2, 1), (2, -3, 2)))]
+    framed += [jax.lax.pad(x[:0], 0.5, ((1, 2, 3), (0, 0, 0), (0, 0, 0)))]
+    edges, asked = jnp.stack([-x[0, 0, 0] / 0, 0 * x[1, 1, 1], x[0, 0, 0] / 0]), 0 * x[0, 0]
+    found = [jnp.searchsorted(edges, asked, side=side) for side in ("left", "right")]
+    return kinds + axes + lanes + framed + found
+
+
+def test_what_only_moves_numbers_gives_the_same_bits():
+    expected = jax.jit(picked)(ROWS, WHICH, WHOLE)
+    for one, other in zip(Interpreted(picked)(ROWS, WHICH, WHOLE), expected, strict=True):
+        assert one.dtype == other.dtype
+        np.testing.assert_array_equal(one, other, strict=True)
+        np.testing.assert_array_equal(np.signbit(one), np.signbit(other))
+
+
+@pytest.mark.parametrize("name", ["lt_to", "le_to"])
+def test_floats_have_one_order(name):
+    """-0 < 0, and no number is above or below all others, by its sign."""
+    row = np.array([0.0, -0.0, np.nan, -np.nan, 1.0, -1.0, np.inf, -np.inf, 5e-324])
+    pairs = [np.ravel(side) for side in np.meshgrid(row, row)]
+    step = getattr(jax.lax, f"{name}_p")
+    np.testing.assert_array_equal(RULES[name]({}, *pairs), step.bind(*pairs))
