@@ -1,7 +1,9 @@
 from .arguments import Real as Real
+from .arguments import as_jax as as_jax
 from .arguments import as_plain as as_plain
 from .arguments import as_real as as_real
 from .arguments import as_text as as_text
+from .arguments import by_numpy as by_numpy
 from .arguments import has_numbers as has_numbers
 from .arguments import in_64_bits as in_64_bits
 from .arguments import is_concrete as is_concrete

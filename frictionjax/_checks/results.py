@@ -4,7 +4,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from .arguments import has_numbers, is_known
+from .arguments import by_numpy, has_numbers, is_known
 from .status_enums import Outcome, counted, flags, outcomes
 
 
@@ -26,9 +26,10 @@ class Result:
     @property
     def ok(self) -> Any:
         """One bool; of a batch (`jax.vmap`), or where traced, an array of them."""
-        good = self._codes == int(self._good[0])
+        codes = by_numpy(self._codes)
+        good = codes == int(self._good[0])
         for other in self._good[1:]:
-            good = good | (self._codes == int(other))
+            good = good | (codes == int(other))
         return flags(good)
 
     @property

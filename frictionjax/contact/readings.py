@@ -193,13 +193,14 @@ def _columns(
     scene: Scene, solution: Any, forces: TipForces, support: SupportRows
 ) -> dict[str, Any]:
     """Numbers by name, None where there are none."""
-    constant = 0.0 if scene.bristle is None else scene.bristle.root_constant()
+    constant = 0.0 if scene.bristle is None else float(scene.bristle.root_constant())
     rest = scene.load.rest_length if isinstance(scene.load, Pulled) else 0.0
     spring = scene.support if isinstance(scene.support, Spring) else None
-    far = None if spring is None else support.load / spring.stiffness
+    far = None if spring is None else np.asarray(support.load) / float(spring.stiffness)
+    z = np.asarray(solution.z)
     return {
-        "z": solution.z,
-        "u": solution.z - constant,
+        "z": z,
+        "u": z - constant,
         "q": None if far is None else far + rest - constant,
         "p": forces.tip,
         "theta": forces.angle,

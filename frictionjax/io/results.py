@@ -4,10 +4,9 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-import jax.numpy as jnp
 import numpy as np
 
-from .._checks import Outcome
+from .._checks import Outcome, as_jax
 from .documents import array_of, checked_document, plain, read_document
 from .registry import part_entry, part_of
 
@@ -53,8 +52,8 @@ NUMBER = Form(read=_number)
 ARRAY = Form(read=array_of)
 INTEGERS = Form(read=_integers)
 BOOLS = Form(read=lambda rows: np.array(rows, dtype=bool))
-LEAF = Form(read=lambda rows: jnp.asarray(array_of(rows)))
-CODES = Form(read=lambda rows: jnp.asarray(_integers(rows)))
+LEAF = Form(read=lambda rows: as_jax(array_of(rows)))
+CODES = Form(read=lambda rows: as_jax(_integers(rows)))
 PART = Form(part_entry, part_of)
 
 

@@ -12,7 +12,9 @@ from .._checks import (
     CodedResult,
     Outcome,
     Real,
+    as_jax,
     is_concrete,
+    is_known,
     no_less,
     no_more,
     noting_the_scene,
@@ -75,9 +77,10 @@ class LimitSolution(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
     _picture = "draw_solution"
 
     @property
-    def _codes(self) -> Array:
-        good = jnp.all(jnp.isfinite(self.z) & jnp.isfinite(self.dissipation), axis=-1)
-        return jnp.where(good, int(LimitStatus.OK), int(LimitStatus.NOT_FINITE))
+    def _codes(self) -> Any:
+        by = np if is_known(self.z, self.dissipation) else jnp
+        good = by.all(by.isfinite(self.z) & by.isfinite(self.dissipation), axis=-1)
+        return by.where(good, int(LimitStatus.OK), int(LimitStatus.NOT_FINITE))
 
     def to_dataset(self) -> "xr.Dataset":
         """What there is over the dimension `time` (s), with units and how it ended.
@@ -201,7 +204,7 @@ def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSo
     spent = np.cumsum(np.where(moves >= 0, rho_plus * moves, rho_minus * moves))
     if np.any(np.isnan(turns)):  # more than there is room for
         z, spent = np.full_like(z, np.nan), np.full_like(z, np.nan)
-    return LimitSolution(ts, jnp.asarray(z[back]), jnp.asarray(spent[back]))
+    return LimitSolution(ts, as_jax(z[back]), as_jax(spent[back]))
 
 
 def require_start_in_strip(scene: Scene) -> None:
@@ -225,7 +228,7 @@ def _with_turning(scene: Scene, effect: NapFlip, ts: Float[Array, " n"]) -> Limi
     require(known, "scene", "traced numbers", "known ones, as it has effects.NapFlip")
     found = hybrid_play(scene, effect, np.asarray(ts))
     columns = found.z, found.dissipation, found.root, found.mode, found.tip
-    return LimitSolution(ts, *map(jnp.asarray, columns))
+    return LimitSolution(ts, *map(as_jax, columns))
 
 
 @noting_the_scene

@@ -12,6 +12,7 @@ from jaxtyping import Array, Bool, Float
 
 from .._checks import (
     Real,
+    as_jax,
     as_real,
     in_64_bits,
     is_known,
@@ -105,7 +106,7 @@ class Custom(AbstractLoad):
             warnings.warn(_doubt(course), UnprovedLoad, stacklevel=3)
         times = self._times(course, float(duration))
         with jax.ensure_compile_time_eval():
-            known = tuple(map(jnp.asarray, (times, course.steepest, float(duration))))
+            known = tuple(map(as_jax, (times, course.steepest, float(duration))))
         return eqx.tree_at(_unknown, self, known, is_leaf=lambda leaf: leaf is None)
 
     def turning_count(self, duration: float) -> int:

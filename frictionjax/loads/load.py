@@ -1,14 +1,15 @@
 """What a load is."""
 
 import abc
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
-from .._checks import Asked, Part, Real, as_real, require_real
+from .._checks import Asked, Part, Real, as_jax, as_real, is_concrete, require_real
 
 
 class AbstractPull(Part):
@@ -76,23 +77,34 @@ class PeriodicLoad(AbstractLoad):
         return max(0, int((duration / (float(self.period) / 4) + 1) // 2) + 1)
 
     def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
-        quarter = self.period / 4
-        times = (2 * jnp.arange(count) + 1) * quarter
+        (period, duration), by, exact = _looked_at(self.period, duration)
+        quarter = period / 4
+        times = (2 * by.arange(count) + 1) * quarter
         enough = (2 * count + 1) * quarter >= duration
         # One at the end is the load's own: derivatives by the period go through it.
-        times = jnp.where(times <= duration, times, duration)
-        return jnp.where(enough, times, jnp.nan)
+        times = by.where(times <= duration, times, duration)
+        return exact(by.where(enough, times, by.nan))
+
+
+def _looked_at(times: Real, duration: Real) -> tuple[tuple[Any, Any], Any, Any]:
+    """Both for NumPy where they are known, what computes with them, and what ends it.
+
+    JAX compiles each step at each new `count`, for 20 ms.
+    """
+    if is_concrete(times, duration):
+        return (np.asarray(times), np.asarray(duration)), np, as_jax
+    return (times, duration), jnp, jnp.asarray
 
 
 def listed_turning_points(
     listed: Float[Array, " n"], duration: Real, count: int
 ) -> Float[Array, " count"]:
     """Listed times in (0, duration), as rule 2 wants them."""
-    inside = (listed > 0) & (listed < duration)
+    (known, duration), by, exact = _looked_at(listed, duration)
+    inside = (known > 0) & (known < duration)
     # One at the end is as large as what fills the room, and moves as it does itself.
-    kept = inside | (listed == duration)
-    times = jnp.sort(jnp.where(kept, listed, duration))
-    fill = jnp.full((max(0, count - times.shape[0]),), duration)
-    return jnp.where(
-        jnp.sum(inside) <= count, jnp.concatenate([times, fill])[:count], jnp.nan
-    )
+    kept = inside | (known == duration)
+    times = by.sort(by.where(kept, known, duration))
+    fill = by.full((max(0, count - times.shape[0]),), duration)
+    all_of_them = by.concatenate([times, fill])[:count]
+    return exact(by.where(by.sum(inside) <= count, all_of_them, by.nan))

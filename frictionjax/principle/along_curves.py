@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 from scipy.interpolate import PchipInterpolator
 
-from .._checks import as_real, require, require_real, with_nan
+from .._checks import as_jax, as_real, require, require_real, with_nan
 from .._compile import Program, in_chunks
 from ..effects import Engine
 from ..loads import AbstractPull
@@ -63,7 +63,7 @@ def D(scene: Scene, ts: Any, z: Any) -> float:
     xi = load - held
     # A load near its zero carries the rounding of its largest values.
     largest = max(float(np.max(np.abs(load))), float(np.max(np.abs(held))))
-    if not np.all(is_held(law, jnp.asarray(xi), load=jnp.asarray(largest))):
+    if not np.all(is_held(law, as_jax(xi), load=as_jax(largest))):
         return float("inf")
     low, high = float(law.rho_minus), float(law.rho_plus)
     moves = np.abs(np.diff(z))
@@ -71,7 +71,7 @@ def D(scene: Scene, ts: Any, z: Any) -> float:
     # Where xi is rho, as on all slides of the limit, K is |xi|.
     inside = felt & (xi > low) & (xi < high)
     K = np.abs(np.clip(xi, low, high))
-    K[inside] = mean_resistance(scene.potential, jnp.asarray(xi[inside]))
+    K[inside] = mean_resistance(scene.potential, as_jax(xi[inside]))
     return float(np.sum(moves * (K[1:] + K[:-1]) / 2))
 
 

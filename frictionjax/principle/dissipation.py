@@ -6,7 +6,14 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._checks import Real, require, require_numbers, require_x64, with_nan
+from .._checks import (
+    Real,
+    is_concrete,
+    require,
+    require_numbers,
+    require_x64,
+    with_nan,
+)
 from ..coefficients import Coefficients
 from ..model import (
     SETTINGS,
@@ -65,10 +72,13 @@ def is_held(
     that where l is 1e5 rho or larger. From xi alone nobody can tell: without `load`, and
     for a Phi' that is itself a difference of large forces, `slack` has to.
     """
-    size = jnp.maximum(jnp.abs(load), jnp.abs(load - xi))
-    lost = jnp.where(jnp.asarray(load) == 0, 0.0, SETTINGS.spacings * _SPACING * size)
-    slack = slack + lost + SETTINGS.slack * (found.rho_plus - found.rho_minus)
-    return (xi >= found.rho_minus - slack) & (xi <= found.rho_plus + slack)
+    given = found.rho_plus, found.rho_minus, xi, slack, load
+    by: Any = np if is_concrete(given) else jnp  # JAX compiles steps at each new shape
+    plus, minus, force, more, pull = map(by.asarray, given)
+    size = by.maximum(by.abs(pull), by.abs(pull - force))
+    lost = by.where(pull == 0, 0.0, SETTINGS.spacings * _SPACING * size)
+    more = more + lost + SETTINGS.slack * (plus - minus)
+    return by.asarray((force >= minus - more) & (force <= plus + more))
 
 
 @with_nan

@@ -4,9 +4,10 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
-from .._checks import is_concrete, require_numbers, with_nan
+from .._checks import as_jax, is_concrete, require_numbers, with_nan
 from .._compile import Program, padded_size
 from ..model import AbstractPotential, cancels, potential_at_rest
 from .dissipation import (
@@ -33,11 +34,14 @@ def mean_resistance(
     """`K` of a potential, at forces in N of any shape: one program for all of them."""
     if is_concrete(potential) and cancels(potential):
         return jnp.abs(xi)
-    count = jnp.size(xi)
+    by: Any = np if is_concrete(xi) else jnp
+    count, shape = by.size(xi), by.shape(xi)
     room = padded_size(max(count, 1), SETTINGS.together)
-    rows = jnp.pad(jnp.ravel(xi), (0, room - count)).reshape(-1, SETTINGS.together)
+    rows = by.pad(by.ravel(xi), (0, room - count)).reshape(-1, SETTINGS.together)
     found = _variations(potential_at_rest(potential), rows)
-    return found.ravel()[:count].reshape(jnp.shape(xi))
+    if is_concrete(found):
+        return as_jax(np.asarray(found).ravel()[:count].reshape(shape))
+    return found.ravel()[:count].reshape(shape)
 
 
 @with_nan

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import Asked, as_real, is_concrete, is_known, known_numbers, require
+from .._checks import Asked, as_jax, as_real, is_concrete, is_known, known_numbers, require
 from .slope_errors import (
     AbstractSampled,
     SlopeErrors,
@@ -112,6 +112,8 @@ class Spline(AbstractSampled):
     @property
     def heights(self) -> Float[Array, " n"]:
         """The interpolated heights, shape (n,)."""
+        if is_concrete(self.coefficients):
+            return as_jax(_heights(np.asarray(self.coefficients), np))
         return _heights(self.coefficients, jnp)
 
     def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:

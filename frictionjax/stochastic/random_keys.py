@@ -5,7 +5,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float, UInt32
+from jaxtyping import Array, Float, Int, UInt32
 
 from .._checks import require, require_outside, require_whole
 
@@ -40,10 +40,14 @@ def key_words(key: Any) -> UInt32[np.ndarray, " words"]:
 def path_keys(key: Any, paths: int) -> UInt32[np.ndarray, "paths words"]:
     """Keys of the first paths of an ensemble, `fold_in(key, i)`: more paths change none."""
     require_whole("paths", paths)
-    words = jnp.asarray(key_words(key))
+    return np.asarray(_folded_in(jnp.asarray(key_words(key)), np.arange(paths)))
+
+
+@jax.jit  # one program, not eight
+def _folded_in(words: UInt32[Array, " words"], numbers: Int[Array, " n"]) -> Any:
     whole = jax.random.wrap_key_data(words, impl="threefry2x32")
-    keys = jax.vmap(lambda i: jax.random.fold_in(whole, i))(np.arange(paths))
-    return np.asarray(jax.random.key_data(keys))
+    keys = jax.vmap(lambda i: jax.random.fold_in(whole, i))(numbers)
+    return jax.random.key_data(keys)
 
 
 def cell_keys(

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float, Int
 
-from .._checks import exchanged
+from .._checks import as_jax, exchanged
 from ..profiles import AbstractProfile
 from .settings import SETTINGS, size_for
 
@@ -81,7 +81,7 @@ def binned(pieces: Pieces, sizes: tuple[int, ...], for_each: int) -> Binned | No
             rows[count:, 0] = np.inf
             rows[:count, 0] = pieces.left
             rows[:count, 1 : 1 + terms] = pieces.terms
-            return Binned(jnp.asarray(rows), jnp.asarray(first))
+            return Binned(as_jax(rows), as_jax(first))
     return None
 
 

@@ -6,6 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
+from .._checks import as_jax
 from ..effects import Noise
 from ..model import tabulated_scene
 from ..numerics import rows_of
@@ -30,7 +31,7 @@ def _energies(
     balanced: bool, dissipation: Any, residual: Any
 ) -> tuple[Array | None, Array | None]:
     """Both as arrays, or None where none were asked for."""
-    return (jnp.asarray(dissipation), jnp.asarray(residual)) if balanced else (None, None)
+    return (as_jax(dissipation), as_jax(residual)) if balanced else (None, None)
 
 
 def through_lanes(problem: Problem, method: str, balanced: bool) -> Solution | None:
@@ -54,9 +55,9 @@ def through_lanes(problem: Problem, method: str, balanced: bool) -> Solution | N
         counts["spread"] = apart[0]
     return Solution(
         problem.ts,
-        jnp.asarray(one.z),
+        as_jax(one.z),
         *_energies(balanced, one.dissipation, one.running_residual),
-        jnp.asarray(one.status),
+        as_jax(one.status),
         counts,
         f"; compiled for {own}" if own else "",
     )
@@ -77,7 +78,7 @@ def along_one_path(problem: Problem, noise: Noise, key: Any) -> Solution:
         "rounds": found.rounds,
     }
     how = "a path with noise, by fixed steps (Leimkuhler and Matthews), in windows"
-    z = jnp.asarray(found.z)
+    z = as_jax(found.z)
     return Solution(ts, z, None, None, jnp.asarray(int(status)), counts, how)
 
 
@@ -96,12 +97,12 @@ def with_mass(problem: Problem, effect: Any, balanced: bool, max_steps: int) -> 
     }
     return Solution(
         problem.ts,
-        jnp.asarray(found.z),
+        as_jax(found.z),
         *_energies(balanced, found.dissipation, found.running_residual),
-        jnp.asarray(found.status),
+        as_jax(found.status),
         counts,
         "resolved, every slip since z0, with mass, at three tolerances",
-        jnp.asarray(found.velocity),
+        as_jax(found.velocity),
     )
 
 
@@ -125,12 +126,12 @@ def with_turning(problem: Problem, effect: Any, balanced: bool, max_steps: int) 
     }
     return Solution(
         problem.ts,
-        jnp.asarray(found.z),
+        as_jax(found.z),
         *_energies(balanced, found.dissipation, found.residual),
-        jnp.asarray(found.status),
+        as_jax(found.status),
         counts,
         "resolved, every slip, with a rod that turns over",
-        root=jnp.asarray(found.root),
-        mode=jnp.asarray(found.mode),
-        tip=jnp.asarray(found.tip),
+        root=as_jax(found.root),
+        mode=as_jax(found.mode),
+        tip=as_jax(found.tip),
     )

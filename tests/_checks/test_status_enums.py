@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
+from frictionjax._checks import as_jax
 from frictionjax._checks.status_enums import counted
 from frictionjax.coefficients import Coefficients
 from frictionjax.design.bristle.inverse import PulledParts
@@ -23,28 +24,35 @@ SINE = fx.profiles.Sine(0.1)
 BAD = int(fx.Status.MAX_STEPS)
 
 
+def full(shape, value):
+    """`jnp.full`, uncompiled."""
+    return as_jax(np.full(shape, value))
+
+
 def solution(codes):
     codes = jnp.asarray(codes)
-    z, steps = jnp.zeros((*codes.shape, 3)), jnp.full(codes.shape, 7)
+    z, steps = full((*codes.shape, 3), 0.0), full(codes.shape, 7)
     return Solution(z, z, None, None, codes, {"steps": steps}, "by hand")
 
 
 def limit(codes):
-    z = jnp.where(jnp.asarray(codes)[..., None] == 0, jnp.zeros(3), jnp.nan)
+    by = jnp if isinstance(codes, jax.core.Tracer) else np
+    z = jnp.asarray(by.where(by.asarray(codes)[..., None] == 0, np.zeros(3), np.nan))
     return LimitSolution(z, z, z)
 
 
 def slide(codes):
     codes = jnp.asarray(codes)
-    force = jnp.ones(codes.shape)
-    return SteadySlide(force, force, force, force, force, codes, jnp.zeros_like(codes))
+    force = full(codes.shape, 1.0)
+    return SteadySlide(force, force, force, force, force, codes, full(codes.shape, 0))
 
 
 def angle_fit(codes):
-    codes, one = jnp.asarray(codes), jnp.ones(jnp.shape(codes))
-    codes = jnp.where(codes == 0, 0, int(FitStatus.INADMISSIBLE))
-    ends = jnp.ones((1, 2))
-    known = one, one, one, one, one[..., None], ends, ends, codes, PulledParts(one, one)
+    by = jnp if isinstance(codes, jax.core.Tracer) else np
+    codes = jnp.asarray(by.where(codes == 0, 0, int(FitStatus.INADMISSIBLE)))
+    one, ends = full(codes.shape, 1.0), full((1, 2), 1.0)
+    roots = full((*codes.shape, 1), 1.0)
+    known = one, one, one, one, roots, ends, ends, codes, PulledParts(one, one)
     return AngleFit(None, *known, None, None, "angle", "ratio")
 
 

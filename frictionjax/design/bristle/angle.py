@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
 
 from ..._checks import (
     Real,
+    as_jax,
     as_text,
     is_concrete,
     is_known,
@@ -87,15 +87,20 @@ def _solve(free: FreeParameter, bristle, slopes, which, targets, seen):
 
 def _in_sizes(target: Real, fit: Any) -> Any:
     """`fit` of targets in pieces of a few sizes, so that few programs are compiled."""
-    targets = jnp.atleast_1d(target)
+    by: Any = np if is_concrete(target) else jnp  # JAX compiles steps at each new shape
+    targets = by.atleast_1d(by.asarray(target))
     count = targets.shape[0]
     size = min(padded_size(count, *SETTINGS.room), SETTINGS.side_by_side)
-    padded = jnp.pad(targets, (0, -count % size), mode="edge")
+    padded = by.pad(targets, (0, -count % size), mode="edge")
     parts = [fit(padded[at : at + size]) for at in range(0, count, size)]
 
-    def joined(*leaves: Array) -> Array:
-        whole = jnp.concatenate(leaves)[:count] if len(leaves) > 1 else leaves[0][:count]
-        return whole if target.ndim else whole[0]
+    def joined(*leaves: Any) -> Any:
+        known = is_concrete(leaves)
+        parts = [np.asarray(leaf) for leaf in leaves] if known else list(leaves)
+        by: Any = np if known else jnp
+        whole = by.concatenate(parts)[:count] if len(parts) > 1 else parts[0][:count]
+        found = whole if target.ndim else whole[0]
+        return as_jax(found) if known else found
 
     return jax.tree_util.tree_map(joined, *parts)
 
@@ -214,15 +219,17 @@ def _with_pulled(
 
     The same program as for those that press. Where all are found it is not run.
     """
-    none = jnp.full(targets.shape, jnp.nan)
+    none = as_jax(np.full(targets.shape, np.nan))
     failed = (int(FitStatus.UNREACHABLE), int(FitStatus.INADMISSIBLE))
     if is_concrete(code) and not np.isin(np.asarray(code), failed).any():
         return code, PulledParts(none, none)
     found = _in_sizes(targets, lambda some: _solve(*asked, some, seen))
-    reached = jnp.isin(found.code, np.array([int(status) for status in GOOD]))
-    pulls = reached & jnp.isin(code, np.array(failed))
-    nearest = (jnp.where(pulls, one, none) for one in (found.value, found.alpha))
-    return jnp.where(pulls, int(FitStatus.PULLS), code), PulledParts(*nearest)
+    known = is_concrete(code, found)
+    by, exact = (np, as_jax) if known else (jnp, jnp.asarray)
+    good = np.array([int(status) for status in GOOD])
+    pulls = by.isin(found.code, good) & by.isin(code, np.array(failed))
+    nearest = [exact(by.where(pulls, one, none)) for one in (found.value, found.alpha)]
+    return exact(by.where(pulls, int(FitStatus.PULLS), code)), PulledParts(*nearest)
 
 
 def _asked(given: tuple) -> tuple[str, Any]:

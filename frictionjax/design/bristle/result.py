@@ -7,7 +7,15 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..._checks import CodedResult, Real, as_text, is_concrete, is_known, require_whole
+from ..._checks import (
+    CodedResult,
+    Real,
+    as_jax,
+    as_text,
+    is_concrete,
+    is_known,
+    require_whole,
+)
 from ..._compile import once_a_scene
 from ..._text import Named, SelfDrawn, ShownNumbers
 from ...bristles import AbstractBristle, pulling_text
@@ -114,7 +122,8 @@ class AngleFit(ShownNumbers, SelfDrawn, DesignResult, CodedResult, eqx.Module):
     def solutions(self) -> Real:
         """All solutions, increasing; one target's alone are without padding."""
         if is_concrete(self.roots) and self.roots.ndim == 1:
-            return self.roots[~jnp.isnan(self.roots)]
+            roots = np.asarray(self.roots)
+            return as_jax(roots[~np.isnan(roots)])
         return self.roots
 
     @property
@@ -139,17 +148,21 @@ class AngleFit(ShownNumbers, SelfDrawn, DesignResult, CodedResult, eqx.Module):
 
     def __getitem__(self, index: int) -> "AngleFit":
         """One target's fit out of a batch."""
+
+        def one(leaf: Any) -> Real:
+            return as_jax(np.asarray(leaf)[index]) if is_known(leaf) else leaf[index]
+
         return AngleFit(
-            jax.tree_util.tree_map(lambda leaf: leaf[index], self.bristle),
-            self.value[index],
-            self.achieved[index],
-            self.alpha[index],
-            self.target[index],
-            self.roots[index],
+            jax.tree_util.tree_map(one, self.bristle),
+            one(self.value),
+            one(self.achieved),
+            one(self.alpha),
+            one(self.target),
+            one(self.roots),
             self.admissible,
             self.reachable,
-            self.code[index],
-            PulledParts._make(part[index] for part in self.pulled),
+            one(self.code),
+            PulledParts._make(map(one, self.pulled)),
             self.slopes,
             self.profile,
             self.free,
@@ -198,7 +211,7 @@ def _message(fit: AngleFit) -> str:
         return f"{asked} {_out_of_reach(fit, status)}"
     if status == FitStatus.INADMISSIBLE:
         return f"{asked}: {status.message}"
-    count = int(jnp.sum(~jnp.isnan(fit.roots)))
+    count = int(np.sum(~np.isnan(fit.roots)))
     others = "" if count < 2 else f" ({count} solutions)"
     pulls = pulling_text(fit.alpha, fit.bristle)
     told = f"; {pulls}" if pulls else ""

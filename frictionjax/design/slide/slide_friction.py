@@ -13,10 +13,12 @@ from jaxtyping import Array, Float
 from ..._checks import (
     CodedResult,
     Real,
+    as_jax,
     as_real,
     as_text,
     checked,
     is_concrete,
+    is_known,
     require,
     require_flags,
     require_numbers,
@@ -82,7 +84,8 @@ class SteadySlide(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
 
     @property
     def _codes(self) -> Any:
-        return jnp.maximum(self.code_plus, self.code_minus)
+        by = np if is_known(self.code_plus, self.code_minus) else jnp
+        return by.maximum(self.code_plus, self.code_minus)
 
     def _in_words(self) -> str:
         names = ("eps", "mean_plus", "mean_minus", "peak_plus", "peak_minus")
@@ -267,7 +270,7 @@ def _known_forces(
     if array is not None:
         cells = [(tables[i], float(e)) for i, e in zip(which, eps, strict=True)]
         found = _of_many(found, cells, (gamma, rate, stiffness), np.asarray(array.offsets))
-    return Sides(*(jnp.asarray(column) for column in _where_found(found, np)))
+    return Sides(*(as_jax(column) for column in _where_found(found, np)))
 
 
 def _of_many(
