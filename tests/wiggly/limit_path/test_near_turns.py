@@ -142,7 +142,7 @@ def test_plans_of_steps_that_follow_each_other_know_it_too():
     usual = tolerance(touch + 0.4 * eps)
     assert tolerance(touch) < 0.1 * usual
     assert tolerance(touch + 1e-4 * eps) < usual
-    assert tolerance(touch + 0.3 * eps) == usual
+    assert tolerance(touch + 0.3 * eps) > 0.5 * usual
 
 
 @pytest.mark.slow
