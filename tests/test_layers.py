@@ -39,7 +39,7 @@ FLOORS = {
         {"__main__"},
     ],
     "wiggly": [
-        {"stepping"},
+        {"stepping", "reverse_mode"},
         {"equation", "rosenbrock", "solved_scene", "how_obtained", "problem"},
         {"sequential", "lanes", "limit_path", "settings", "solution", "turning"},
         {"slip_map", "inertial"},

@@ -9,6 +9,7 @@ import jax.numpy as jnp
 from .._compile import Program, hoisted, once_a_scene, strong_arrays
 from .equation import StepPlan, plan_steps
 from .problem import Problem
+from .reverse_mode import in_reverse_mode, without_derivatives
 from .sequential import Past, integrate
 from .solution import Solution
 
@@ -95,6 +96,7 @@ def _pulled_back(
     known: tuple, by: tuple, perturbed: Any, problem: Problem, options: Options
 ) -> Problem:
     plan, past, curve = known
+    problem = without_derivatives(problem)
     if all(by_energy is None for by_energy in by[0][1:]):
         # Of z alone: energies are not gone through again.
         options, past, curve = options._replace(balanced=False), _of_tips(past), curve[:1]
@@ -114,7 +116,7 @@ def _of_tips(past: Past) -> Past:
 def solve_one_after_the_other(problem: Problem, options: Options) -> Solution:
     problem = strong_arrays(hoisted(problem))
     if options.adjoint is None:
-        curve, (status, counts) = _differentiable(problem, options)
+        curve, (status, counts) = _differentiable(in_reverse_mode(problem), options)
     else:
         curve, (status, counts), _ = _forth(problem, _planned(problem), options)
     how = f"resolved, every slip, by {type(options.solver).__name__}"

@@ -118,8 +118,9 @@ def solve(
 
     Differentiable with respect to the leaves of the scene, eps and gamma: traced values go
     through `diffeqsolve`, every slip one after the other. `adjoint`: how diffrax
-    differentiates (`diffrax.ForwardMode()` for `jax.jvp`; by default derivatives in reverse
-    mode are those of the steps taken, and NaN through more than 15 million of them).
+    differentiates (`diffrax.ForwardMode()` for `jax.jvp`, and for second derivatives by
+    `jax.jacfwd(jax.jacfwd(...))`; by default first derivatives in reverse mode are those of
+    the steps taken, and NaN through more than 15 million of them).
     `max_steps`: of such a solve.
     `key`: of a scene with `effects.Noise`, a seed or a key of `jax.random`, whose path it
     is: in windows that meet to the last bit, by each of our methods. Steps are fixed, and
@@ -140,7 +141,8 @@ def solve(
     (n,), `.ok`, `.status`, `.stats`. Failure is a `status`, not an exception.
 
     Raises `ValueError` for arguments out of range, 32 bits, or an eps at which the
-    bristle loses its contact (`G > 0` fails), with the largest eps allowed.
+    bristle loses its contact (`G > 0` fails), with the largest eps allowed; and for
+    derivatives in forward mode, or second ones, without an adjoint for them.
 
     >>> solution = fx.solve(scene, eps=0.01)
     >>> solution.status

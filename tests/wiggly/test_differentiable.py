@@ -75,3 +75,38 @@ def test_places_alone_have_the_derivatives_that_they_have_beside_energies():
     beside = jax.vjp(all_of_it, 0.1)[1]((by, 0 * by, 0 * by))[0]
     assert alone != 0
     assert float(alone) == pytest.approx(float(beside), rel=1e-9)
+
+
+def with_eps(eps, **options):
+    return curve([*POINT[:7], eps, 1.0], **options).z[-1]
+
+
+@pytest.mark.parametrize(
+    "derived",
+    [
+        lambda: jax.jvp(with_eps, (0.05,), (1.0,)),
+        lambda: jax.jvp(jax.jit(with_eps), (0.05,), (1.0,)),
+        lambda: jax.jit(jax.jacfwd(with_eps))(0.05),
+        lambda: jax.jit(jax.jacfwd(jax.jit(with_eps)))(0.05),
+        lambda: jax.vmap(jax.jacfwd(with_eps))(jnp.array([0.05, 0.06])),
+        lambda: jax.hessian(with_eps)(0.05),
+        lambda: jax.eval_shape(jax.grad(jax.grad(with_eps)), 0.05),
+    ],
+    ids=[
+        "jvp",
+        "jvp of jit",
+        "jit of jacfwd",
+        "both",
+        "vmap of jacfwd",
+        "hessian",
+        "grad of grad",
+    ],
+)
+def test_derivatives_that_there_are_not_say_what_does(derived):
+    with pytest.raises(ValueError, match=r"adjoint = None: needs diffrax.ForwardMode\(\)"):
+        derived()
+
+
+def test_reverse_mode_goes_through_batches():
+    total = jax.grad(lambda eps: jnp.sum(jax.vmap(with_eps)(eps)))
+    assert jax.eval_shape(total, jnp.array([0.05, 0.06])).shape == (2,)
