@@ -9,6 +9,7 @@ from .arguments import in_64_bits as in_64_bits
 from .arguments import is_concrete as is_concrete
 from .arguments import is_known as is_known
 from .arguments import is_masked as is_masked
+from .arguments import kind_of as kind_of
 from .arguments import known_numbers as known_numbers
 from .arguments import no_less as no_less
 from .arguments import no_more as no_more

@@ -2,6 +2,7 @@
 
 import decimal
 import inspect
+from collections.abc import Iterator
 from types import CellType, ModuleType
 from typing import Any
 
@@ -117,8 +118,25 @@ def _is_numeric(array: np.ndarray) -> bool:
     return array.dtype.kind in "iuf"
 
 
+class _Kinds(str):
+    """What error messages show as it is, and not as a text in quotes."""
+
+
+def kind_of(value: Any) -> Any:
+    """What of a value of a wrong kind an error message shows: the name of its class.
+
+    None as it is, and lists with the kinds of what they hold: `[Scene, None]`.
+    """
+    if isinstance(value, list | tuple):
+        kinds = [str(kind_of(one)) for one in value[:3]]
+        return _Kinds(f"[{', '.join(kinds + ['...'] * (len(value) > 3))}]")
+    return None if value is None else type(value).__name__
+
+
 def as_text(value: Any) -> str:
     """A value as an error message shows it: six digits, arrays shortened."""
+    if isinstance(value, _Kinds):
+        return str(value)
     if value is None or isinstance(value, str | bool | np.bool_) or callable(value):
         return repr(value)
     if is_masked(value):
@@ -127,8 +145,8 @@ def as_text(value: Any) -> str:
     if _has_truths(value):
         return repr(value)
     try:
-        # A float of complex numbers warns, and one of texts is no longer a text.
-        if np.asarray(value).dtype.kind in "cSU":
+        # A float of complex numbers warns, one of texts is no longer a text, None is NaN.
+        if np.asarray(value).dtype.kind in "cSUO":
             return repr(value)
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
@@ -174,6 +192,8 @@ def is_concrete(*trees: Any) -> bool:
 
 def is_known(*trees: Any) -> bool:
     """Whether all numbers are known, so that NumPy can look at them."""
+    # JAX warns of iterators among trees; the check of an argument refuses them.
+    trees = tuple(tree for tree in trees if not isinstance(tree, Iterator))
     leaves = jax.tree_util.tree_leaves(trees)
     for _ in range(_CLOSURES):
         if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
@@ -267,6 +287,7 @@ def require_function(name: str, fn: Any, what: str, smooth: bool = True) -> None
     """Check that `fn` takes one number to one number, and has a derivative if `smooth`."""
     require(callable(fn), name, fn, what)
     require(_can_be_hashed(fn), name, fn, f"{what}, with a hash: programs are kept by it")
+    require(_takes_one(fn), name, fn, f"{what} alone, which is its one argument")
     number, given = jax.ShapeDtypeStruct((), float), []
 
     def value(x: Real) -> Array:
@@ -293,6 +314,16 @@ def require_function(name: str, fn: Any, what: str, smooth: bool = True) -> None
             jax.eval_shape(jax.grad(lambda x: jnp.asarray(fn(x))), number)
         except (TypeError, ValueError):
             require(False, name, fn, f"{what}, which jax.grad goes through")
+
+
+def _takes_one(fn: Any) -> bool:
+    try:
+        inspect.signature(fn).bind(None)
+    except TypeError:
+        return False
+    except ValueError:
+        pass  # no signature to be had
+    return True
 
 
 def _can_be_hashed(fn: Any) -> bool:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from .._checks import require, require_real
+from .._checks import kind_of, require, require_real
 from ..bristles import AbstractBristle
 from ..loads import AbstractLoad, Pulled
 from ..model import Scene
@@ -31,7 +31,7 @@ def foot_on_spring(
         ("bristle", bristle, AbstractBristle, "a part of frictionjax.bristles"),
         ("breathing", breathing, AbstractLoad, "a part of frictionjax.loads, read as m"),
     ):
-        require(isinstance(part, kind), name, type(part).__name__, needs)
+        require(isinstance(part, kind), name, kind_of(part), needs)
     needs = "another load than Pulled, read as the rest length in m"
     require(not isinstance(breathing, Pulled), "breathing", "Pulled", needs)
     require_real("stiffness", stiffness, "stiffness > 0", lambda k: k > 0)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import tomli_w
 
-from .._checks import Asked, Part, asked_names, require, require_flags, write_whole
+from .._checks import Asked, Part, asked_names, kind_of, require, require_flags, write_whole
 from ..effects import AbstractEffect
 from ..loads import Pulled
 from ..measured import fit_profile, read_heights
@@ -86,7 +86,7 @@ def load_scene(path: Any, functions: bool = False) -> Scene:
 def load_study(path: Any, functions: bool = False) -> SceneFile:
     """Read scene and study of a TOML file; see `load_scene`."""
     named = isinstance(path, str | os.PathLike)
-    require(named, "path", type(path).__name__, "the path of a TOML file")
+    require(named, "path", kind_of(path), "the path of a TOML file")
     try:
         text = Path(path).read_text(encoding="utf-8-sig")  # Windows' editors mark a file
     except OSError as problem:
@@ -368,7 +368,7 @@ def _named_functions(name: str, part: Any, kind: FunctionKind) -> dict[str, Any]
         if key in kind.optional and fn is no_rest:
             continue
         text = name_of(fn)
-        require(text is not None, name, type(part).__name__, f"{_NAMED}: {key} is none")
+        require(text is not None, name, kind_of(part), f"{_NAMED}: {key} is none")
         entries[key] = text
     for key in kind.numbers:
         value = getattr(part, stored.get(key, key))

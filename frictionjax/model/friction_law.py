@@ -6,7 +6,7 @@ from typing import Any
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import checked, note_origin, require, require_x64, with_nan
+from .._checks import checked, kind_of, note_origin, require, require_x64, with_nan
 from ..bristles import AbstractBristle
 from ..coefficients import Coefficients, with_errors
 from ..profiles import AbstractSampled
@@ -43,7 +43,7 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
         require(
             hasattr(scene_or_profile, "potential"),
             "friction(...)",
-            type(scene_or_profile).__name__,
+            kind_of(scene_or_profile),
             "a Scene, or a profile and a bristle",
         )
         known = isinstance(scene_or_profile, Scene)

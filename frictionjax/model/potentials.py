@@ -19,6 +19,7 @@ from .._checks import (
     call_text,
     checked,
     is_concrete,
+    kind_of,
     part_text,
     require,
     require_function,
@@ -387,9 +388,9 @@ def potential(profile: AbstractProfile, bristle: AbstractBristle) -> BristlePote
     V_eps' = 0.1204 N, W = 0.0160 N
     """
     known = isinstance(profile, AbstractProfile)
-    require(known, "profile", type(profile).__name__, "a part of frictionjax.profiles")
+    require(known, "profile", kind_of(profile), "a part of frictionjax.profiles")
     known = isinstance(bristle, AbstractBristle)
-    require(known, "bristle", type(bristle).__name__, "a part of frictionjax.bristles")
+    require(known, "bristle", kind_of(bristle), "a part of frictionjax.bristles")
     return BristlePotential(checked(profile), checked(bristle))
 
 

@@ -13,6 +13,7 @@ from .._checks import (
     ByIdentity,
     Real,
     as_real,
+    as_text,
     asked_names,
     checked,
     eagerly,
@@ -22,6 +23,7 @@ from .._checks import (
     is_checked,
     is_concrete,
     is_known,
+    kind_of,
     known_numbers,
     mark_checked,
     no_less,
@@ -101,7 +103,7 @@ class Scene(SelfDrawn, eqx.Module):
         self.potential = _potential_of(profile, bristle, potential)
         self.support = _part("support", support, AbstractSupport)
         load = _part("load", load, AbstractLoad)
-        require(duration is not None, "scene.duration", "None", "a time > 0 in s")
+        require(duration is not None, "scene.duration", None, "a time > 0 in s")
         self.duration, self.z0 = as_real(duration), as_real(z0)
         self.effects = _effects_of(effects, self.bristle)
         require_real("scene.duration", self.duration, "duration > 0", lambda t: t > 0)
@@ -187,15 +189,15 @@ def _potential_of(profile, bristle, given) -> AbstractPotential:
         return potential(profile, bristle)
     for name, part in (("profile", profile), ("bristle", bristle)):
         needs = f"none beside potential; `scene.replace({name}=...)` exchanges it"
-        require(part is None, f"scene.{name}", type(part).__name__, needs)
+        require(part is None, f"scene.{name}", kind_of(part), needs)
     known = isinstance(given, AbstractPotential)
-    require(known, "scene.potential", type(given).__name__, "a GivenPotential")
+    require(known, "scene.potential", kind_of(given), "a GivenPotential")
     return checked(given)
 
 
 def _part(name: str, part: Any, kind: type) -> Any:
     needs = f"a part of frictionjax.{name}s"
-    require(isinstance(part, kind), f"scene.{name}", type(part).__name__, needs)
+    require(isinstance(part, kind), f"scene.{name}", kind_of(part), needs)
     return checked(part)
 
 
@@ -276,7 +278,7 @@ def known_scene(scene: Any) -> Scene:
     of them. Raises `ValueError` for what is no scene, and as the constructor does.
     """
     needs = "a Scene, as frictionjax.Scene or load_scene make it"
-    require(isinstance(scene, Scene), "scene", type(scene).__name__, needs)
+    require(isinstance(scene, Scene), "scene", kind_of(scene), needs)
     require_x64(scene)
     if is_checked(scene):
         return scene
@@ -339,17 +341,28 @@ def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " 
     if not is_known(ts, scene.duration):
         return ts
     known = np.asarray(ts)
-    require(known.ndim == 1 and known.size > 0, "ts", known, "times, shape (n,), n > 0")
+    if known.ndim != 1 or known.size == 0:
+        _refuse_times(known, "times, shape (n,), n > 0")
     require(np.all(np.isfinite(known)), "ts", known, "finite times")
-    require(np.all(np.diff(known) >= 0), "ts", known, "times that do not decrease")
+    falls = np.flatnonzero(np.diff(known) < 0)
+    if falls.size:
+        _refuse_times(known[falls[0] : falls[0] + 2], "times that do not decrease")
     end = float(duration)
     # 3 * 0.1 > 0.3, and what is added up n times is n spacings off.
     slack = (SETTINGS.rounded + known.size) * np.spacing(end)
-    inside = known[0] >= -slack and known[-1] <= end + slack
-    require(inside, "ts", known[[0, -1]], f"times in [0, duration] = [0, {no_more(end)}]")
+    outside = known[(known < -slack) | (known > end + slack)]
+    if outside.size:
+        _refuse_times(outside[0], f"times in [0, duration] = [0, {no_more(end)}]")
     if known[0] >= 0 and known[-1] <= end:
         return ts
     return jnp.asarray(np.clip(known, 0.0, end))
+
+
+def _refuse_times(times: Any, needs: str) -> None:
+    """Times differ in digits that messages round off: these are told to the last one."""
+    few = np.size(times) <= SETTINGS.times_told
+    told = np.asarray(times).tolist() if few else as_text(times)
+    raise ValueError(f"ts = {told}: needs {needs}")
 
 
 def require_instants(scene: Scene, ts: Any) -> Float[np.ndarray, " n"]:

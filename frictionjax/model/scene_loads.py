@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .._checks import require
+from .._checks import kind_of, require
 from .._compile import Interpreted, padded_size
 from ..loads import AbstractLoad, Pulled
 from ..supports import AbstractSupport, Spring
@@ -25,7 +25,7 @@ def held_load(
         return load
     needs = "a Spring, as the load is Pulled: l = k_h (q - L_h + c)"
     linear = isinstance(support, Spring)
-    require(linear, "scene.support", type(support).__name__, needs)
+    require(linear, "scene.support", kind_of(support), needs)
     constant = jnp.zeros(())
     if isinstance(potential, BristlePotential):
         constant = potential.bristle.root_constant()

@@ -16,6 +16,7 @@ class Settings(NamedTuple):
     # 3e-13 most sweeps of five scenes held ROUGH_SURVEY, at accuracy 1e-3; at 5e-13 to
     # 8e-13 a stiff one did, and 1 in 100 above.)
     told_apart: float = 2.0**-40
+    times_told: int = 6  # wrong ones that are told to the last digit; more are rounded
     rounded: int = 8  # spacings of floats by which a time may exceed the duration
 
     # Admissibility (`admissibility.py`, `clearance.py`).

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy import special
 
-from .._checks import require, require_numbers, with_nan
+from .._checks import kind_of, require, require_numbers, with_nan
 from ..effects import Engine, Noise, noise_among
 from ..model import Scene, scene_for
 from .boltzmann import AtRest, boltzmann_shares, energies_at_rest
@@ -86,7 +86,7 @@ def _paths_at(paths: Any, time: Any) -> tuple[float, Float[np.ndarray, " paths"]
     """A time of the data set in s, and where the good paths are then."""
     ours = {"z", "status"} <= set(getattr(paths, "data_vars", ()))
     ours = ours and {"eps", "gamma"} <= set(paths.attrs) and "path" in paths.dims
-    require(ours, "paths", type(paths).__name__, "a data set that ensemble has made")
+    require(ours, "paths", kind_of(paths), "a data set that ensemble has made")
     known = np.asarray(paths.time.values)
     if time is None:
         place = known.size - 1

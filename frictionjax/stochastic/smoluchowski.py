@@ -10,6 +10,7 @@ from .._checks import (
     CodedResult,
     Outcome,
     as_text,
+    kind_of,
     require,
     require_numbers,
     require_real,
@@ -129,7 +130,7 @@ def smoluchowski_friction(
     """
     require_x64(potential, support)
     springs = "a Spring: with others there is no steady slide"
-    require(isinstance(support, Spring), "support", type(support).__name__, springs)
+    require(isinstance(support, Spring), "support", kind_of(support), springs)
     require_numbers("speeds", speeds, "finite numbers in m/s", lambda v: np.isfinite(v))
     require_real("eps", eps, "eps > 0 in m", lambda v: v > 0)
     require_real("viscosity", viscosity, "viscosity > 0 in N s/m", lambda v: v > 0)

@@ -49,11 +49,13 @@ def sweep(
 ) -> "xr.Dataset":
     """Solve all cells `eps` x `gamma` (eq. 2.8), compare each with the limit (eq. 2.3).
 
-    `eps` in m and `gamma`: numbers or lists, in any order; `ts`, `accuracy` and `method`
-    as in `solve`. `progress`: a bar on standard error. `dissipation=False` integrates no
-    energies and leaves their variables out; `suprema=False` leaves out `sup_error`,
-    `strip_excess` and `survey_error`. Without both only `z` at `ts` is left, and no slips
-    between are looked at: two thirds of the time that suprema take.
+    `eps` in m and `gamma`: numbers or lists, in any order, where a value that is there
+    twice is one cell (the data set has eps falling, gamma rising, each once); `ts`,
+    `accuracy` and `method` as in `solve`. `progress`: a bar on standard error.
+    `dissipation=False` integrates no energies and leaves their variables out;
+    `suprema=False` leaves out `sup_error`, `strip_excess` and `survey_error`. Without
+    both only `z` at `ts` is left, and no slips between are looked at: two thirds of the
+    time that suprema take.
 
     Returns a data set with dims (gamma, eps, time): `z`, `dissipation`; over (gamma, eps)
     `sup_error` = sup |z_eps - z| and `dissipation_error` over all of [0, T], `residual`

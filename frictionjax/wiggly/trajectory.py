@@ -9,6 +9,7 @@ from .._checks import (
     as_real,
     is_concrete,
     is_known,
+    kind_of,
     known_numbers,
     noting_the_scene,
     require,
@@ -51,7 +52,7 @@ def _require_adjoint(adjoint: Any) -> None:
         from diffrax import AbstractAdjoint  # 0.5 s
 
         known, told = isinstance(adjoint, AbstractAdjoint), "None or an adjoint of diffrax"
-        require(known, "adjoint", type(adjoint).__name__, told)
+        require(known, "adjoint", kind_of(adjoint), told)
 
 
 def _require_method(method: Any) -> None:
@@ -107,9 +108,10 @@ def solve(
 ) -> Solution:
     """Solve `eps^gamma z' = l(t) - Phi'(z) - V_eps'(z)` (eq. 2.8) of a `scene` from z0.
 
-    `eps` in m, `gamma` > 0. `ts`: times in s, not decreasing, in [0, duration]; 201 evenly
-    spaced ones where None. `accuracy`: wanted error of `z` in units of eps at every time
-    not inside a slip, and of `dissipation` in units of its value at `duration`;
+    `eps` in m, `gamma` > 0. `ts`: times in s, not decreasing, in [0, duration] (those that
+    are a rounding outside are taken for its end); 201 evenly spaced ones where None.
+    `accuracy`: wanted error of `z` in units of eps at every time not inside a slip, and of
+    `dissipation` in units of its value at `duration`;
     `dissipation_gap` in `stats` is an estimate of its error. `method`: "resolved"
     integrates every slip with a Rosenbrock method, in tiles side by side; "windowed" only
     what values at `ts` and sums over [0, T] need, and falls back to every slip where starts

@@ -46,6 +46,9 @@ def test_functions_that_are_frozen_partial_or_loads_of_whole_numbers_are_taken()
     assert fx.loads.Custom(functools.partial(jnp.multiply, 2.0))(0.5) == 1
 
 
+JUST_OVER = np.nextafter(3.0, 4.0)
+
+
 @functools.cache
 def known():
     """Made once, and not while workers collect."""
@@ -67,8 +70,29 @@ def known():
         (lambda: fx.solve(known(), 1e-2, adjoint=3), r"adjoint = 'int': needs None or an"),
         (lambda: fx.solve(known(), None), r"eps = None: needs one number eps > 0"),
         (lambda: fx.sweep(known(), ["0.1"], 1.0), r"eps = \['0\.1'\]: needs eps > 0, a"),
-        (lambda: fx.study(None), r"dataset = 'NoneType': needs a data set"),
+        (lambda: fx.study(None), r"dataset = None: needs a data set"),
         (lambda: fx.study({}), r"dataset = 'dict': needs a data set"),
+        (
+            lambda: fx.solve(known(), 1e-2, ts=[0, 3.0000001]),
+            r"ts = 3\.0000001: needs .* 3\]",
+        ),
+        (lambda: fx.solve(known(), 1e-2, ts=JUST_OVER), r"ts = 3\.0000000000000004: needs"),
+        (
+            lambda: fx.solve(known(), 1e-2, ts=[0, 0.50000001, 0.5]),
+            r"ts = \[0\.50000001, 0\.5\]: needs times that do not decrease",
+        ),
+        (lambda: fx.solve(known(), 1e-2, ts=[None]), r"ts = \[None\]: needs times, shape"),
+        (lambda: fx.solve([known()], 1e-2), r"scene = \[Scene\]: needs a Scene, as"),
+        (lambda: fx.solve(None, 1e-2), r"scene = None: needs a Scene, as"),
+        (
+            lambda: fx.friction([None, 1, 2, 3]),
+            r"\(\.\.\.\) = \[None, int, int, \.\.\.\]: n",
+        ),
+        (lambda: fx.solve(known(), 1e-2, method=None), r"method = None: needs one of auto"),
+        (
+            lambda: fx.solve(known(), 1e-2, method=["auto"]),
+            r"method = \['auto'\]: needs one",
+        ),
         (
             lambda: fx.study(fx.sweep(known(), [1e-2], 1.0, suprema=False)),
             r"dataset = 'one without strip_excess, sup_error': needs .* suprema=True",
@@ -132,8 +156,8 @@ def test_wrong_arguments_are_named(call, message):
     ],
 )
 def test_what_is_no_scene_is_named(call, scene):
-    kind = type(scene).__name__
-    with pytest.raises(ValueError, match=rf"scene = '{kind}': needs a Scene"):
+    kind = None if scene is None else repr(type(scene).__name__)
+    with pytest.raises(ValueError, match=rf"scene = {kind}: needs a Scene"):
         call(scene)
 
 
@@ -214,3 +238,41 @@ def test_the_end_named_in_an_error_is_a_time_that_is_accepted():
     with pytest.raises(ValueError, match=r"\[0, 1\.23456\]"):
         require_times(scene, [0.0, 1.3])
     require_times(scene, [0.0, 1.23456])
+
+
+@pytest.mark.parametrize("fn", [lambda y, z: y, lambda: 1.0, lambda y, *, slope: y])
+@pytest.mark.parametrize(
+    ("part", "message"),
+    [
+        (fx.profiles.Custom, r"profile\.fn = .*: needs a function of y alone"),
+        (fx.supports.Convex, r"support\.energy = .*: needs a function Phi of z alone"),
+        (fx.loads.Custom, r"load\.fn = .*: needs a function of t alone"),
+        (
+            lambda fn: fx.bristles.Custom(fn, jnp.cos),
+            r"bristle\.offset = .*: needs a function A of eta alone",
+        ),
+        (
+            lambda fn: fx.bristles.Custom(jnp.sin, fn),
+            r"bristle\.energy = .*: needs a function F of eta alone",
+        ),
+        (fx.GivenPotential, r"potential\.W = .*: needs a function of Y alone"),
+    ],
+)
+def test_functions_of_two_arguments_are_refused_by_name(part, message, fn):
+    with pytest.raises(ValueError, match=message):
+        part(fn)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda one: fx.sweep(known(), one, 1.0),
+        lambda one: fx.sweep(known(), 1e-2, one),
+        lambda one: fx.sweep(known(), 1e-2, 1.0, ts=one),
+        lambda one: fx.solve(known(), one),
+    ],
+)
+def test_iterators_are_refused_without_a_warning(call):
+    """Warnings are errors here."""
+    with pytest.raises(ValueError, match=r"(eps|gamma|ts) = <list_iterator .*>: needs"):
+        call(iter([0.1]))

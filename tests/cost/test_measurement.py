@@ -180,7 +180,7 @@ def test_slow_runs_end_and_keep_their_place(scene, method):
 def test_bad_arguments_are_named(scene):
     for change, message in [
         ({"methods": "Euler5"}, "methods = 'Euler5'"),
-        ({"methods": None}, "methods = 'None'"),
+        ({"methods": None}, "methods = None"),
         ({"methods": 5}, "methods = '5'"),
         ({"methods": []}, "methods = .*at least one"),
         ({"methods": np.array(["auto", "Euler5"])}, "methods = 'Euler5'"),

@@ -179,7 +179,7 @@ def test_unreadable_files(tmp_path):
     (tmp_path / "deep.toml").write_text("a = " + "[" * 5000 + "]" * 5000)
     with pytest.raises(ValueError, match=r"deep\.toml: not a scene \(lists or tables nes"):
         fx.load_scene(tmp_path / "deep.toml")
-    with pytest.raises(ValueError, match="path = 'NoneType': needs the path of a TOML"):
+    with pytest.raises(ValueError, match="path = None: needs the path of a TOML"):
         fx.load_scene(None)
 
 

@@ -189,7 +189,7 @@ def scene(**change):
         ({"support": 1.0}, "scene.support = 'float'"),
         ({"load": jnp.sin}, "scene.load = "),
         ({"duration": 0.0}, "scene.duration = 0: needs duration > 0"),
-        ({"duration": None}, "scene.duration = 'None'"),
+        ({"duration": None}, "scene.duration = None"),
         ({"duration": "long"}, "scene.duration = 'long'"),
         ({"z0": np.nan}, "scene.z0 = nan"),
         ({"z0": [0.0, 1.0]}, "scene.z0 = .*one number"),

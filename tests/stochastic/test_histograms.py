@@ -108,7 +108,7 @@ def test_rare_bins_are_counted_together():
         ({"time": 0.05}, "time = 0.05: needs one of the 2 times of paths"),
         ({"bins": 0}, "bins = 0: needs how many"),
         ({"bins": [0.1, 0.0]}, "bins = .*needs how many.*rising"),
-        ({"paths": None}, "paths = 'NoneType': needs a data set that ensemble has made"),
+        ({"paths": None}, "paths = None: needs a data set that ensemble has made"),
         (
             {"scene": pinned().replace(effects=())},
             r"scene\.effects = .*needs effects\.Noise among them",

@@ -100,6 +100,14 @@ def test_order_of_cells_does_not_matter(data):
     xr.testing.assert_allclose(shuffled, data, rtol=1e-12, atol=1e-14)
 
 
+def test_a_value_that_is_there_twice_is_one_cell(data):
+    eps, gamma = [0.03, 0.09, 0.03, 0.05], [2.0, 0.5, 1.0, 0.5]
+    twice = fx.sweep(scene_of(), eps, gamma, ts=data.time.values)
+    assert list(twice.eps.values) == EPS
+    assert list(twice.gamma.values) == GAMMA
+    xr.testing.assert_allclose(twice, data, rtol=1e-12, atol=1e-14)
+
+
 def test_one_compilation_for_any_values(data):
     """Other eps, gamma, accuracy and parameters, and other numbers of cells."""
     # Both loops are there: when one is compiled in the background hangs on what ran before.

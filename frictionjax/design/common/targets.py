@@ -8,6 +8,7 @@ import numpy as np
 from ..._checks import (
     checked,
     is_concrete,
+    kind_of,
     known_numbers,
     require,
     require_real,
@@ -87,11 +88,11 @@ def _nap_is_left(bristle: Any) -> bool:
     """Raises `ValueError` where it has no nap."""
     known = isinstance(bristle, AbstractBristle)
     allowed = "a part of frictionjax.bristles"
-    require(known, "bristle", type(bristle).__name__, allowed)
+    require(known, "bristle", kind_of(bristle), allowed)
     require(is_concrete(bristle), "bristle", "traced", "numbers: a fit is not traced")
     lean = lean_of(bristle)
     needs = "one that leans, SlantedSpring or AngularSpring: others have no nap"
-    require(lean != 0 and np.isfinite(lean), "bristle", type(bristle).__name__, needs)
+    require(lean != 0 and np.isfinite(lean), "bristle", kind_of(bristle), needs)
     return bool(nap_is_left(lean))
 
 
@@ -160,7 +161,7 @@ def require_targets(
     """
     single = isinstance(targets, Target)
     listed = single or isinstance(targets, list | tuple)
-    require(listed, "targets", type(targets).__name__, "a Target or a list of them")
+    require(listed, "targets", kind_of(targets), "a Target or a list of them")
     many = [targets] if single else list(targets)
     require(many, "targets", "[]", "at least one Target")
     known = []
@@ -176,11 +177,11 @@ def require_targets(
 
 def _require_target(name: str, target: Any) -> Target:
     known = isinstance(target, Target)
-    require(known, name, type(target).__name__, "a frictionjax.Target")
+    require(known, name, kind_of(target), "a frictionjax.Target")
     bristle = target.bristle
     known = isinstance(bristle, AbstractBristle)
     allowed = "a part of frictionjax.bristles"
-    require(known, f"{name}.bristle", type(bristle).__name__, allowed)
+    require(known, f"{name}.bristle", kind_of(bristle), allowed)
     require_x64(bristle)
     bristle = checked(bristle)
     known = is_concrete(bristle)

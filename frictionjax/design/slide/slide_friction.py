@@ -19,6 +19,7 @@ from ..._checks import (
     checked,
     is_concrete,
     is_known,
+    kind_of,
     require,
     require_flags,
     require_numbers,
@@ -157,7 +158,7 @@ def spring_of(support: Spring | None) -> Spring:
     if support is None:
         return Spring(as_real(1.0))
     known = isinstance(support, Spring)
-    require(known, "support", type(support).__name__, "a frictionjax.supports.Spring")
+    require(known, "support", kind_of(support), "a frictionjax.supports.Spring")
     return checked(support)
 
 

@@ -6,7 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from ..._checks import require, require_flags, require_real, require_whole, with_nan
+from ..._checks import (
+    kind_of,
+    require,
+    require_flags,
+    require_real,
+    require_whole,
+    with_nan,
+)
 from ..._compile import waiting
 from ...effects import Engine
 from ...model import Scene, scene_for
@@ -83,7 +90,7 @@ def fit_trace(
     """
     scene = scene_for(Engine.TRACE, scene)
     known = isinstance(trace, Trace)
-    require(known, "trace", type(trace).__name__, "a Trace")
+    require(known, "trace", kind_of(trace), "a Trace")
     require_whole("harmonics", harmonics)
     require_whole("max_steps", max_steps)
     require_whole("starts", starts)

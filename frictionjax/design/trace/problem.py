@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from ..._checks import as_real, require
+from ..._checks import as_real, kind_of, require
 from ..._compile import Program, in_chunks, padded_size
 from ...bristles import AbstractBristle
 from ...loads import AbstractPull
@@ -181,7 +181,7 @@ def trace_problem(
 ) -> TraceProblem:
     """Check the arguments of `fit_trace` that belong together."""
     given = isinstance(scene, Scene) and isinstance(scene.potential, BristlePotential)
-    require(given, "scene", type(scene).__name__, "a Scene with a profile and a bristle")
+    require(given, "scene", kind_of(scene), "a Scene with a profile and a bristle")
     ts = np.asarray(require_times(scene, trace.ts))
     alpha = abs(float(scene.potential.alpha()))
     scene, limits = in_tables(scene, eps, harmonics)

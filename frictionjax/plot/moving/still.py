@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..._checks import as_real, require, require_real
+from ..._checks import as_real, kind_of, require, require_real
 from ...model import Scene
 from ..style import Picture, styled
 from .bristle_artist import BristleArtist
@@ -45,7 +45,7 @@ def draw_bristle(
     places = places_along(scene, solution, eps)
     row = _row_at(places, time)
     if ax is not None:
-        require(isinstance(ax, Axes), "ax", type(ax).__name__, "axes of matplotlib")
+        require(isinstance(ax, Axes), "ax", kind_of(ax), "axes of matplotlib")
         BristleArtist(ax, places).move_to(row)
         whole = ax.get_figure(root=True)
         assert whole is not None

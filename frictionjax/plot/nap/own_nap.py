@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..._checks import require
+from ..._checks import kind_of, require
 from ...bristles import AngularSpring
 from ...contact import Nap, nap
 from ...model import friction
@@ -45,7 +45,7 @@ def draw_own_nap(
     """
     found = nap(profile, bristle, bending_stiffness)
     rod = isinstance(bristle, AngularSpring)
-    require(rod, "bristle", type(bristle).__name__, "an AngularSpring")
+    require(rod, "bristle", kind_of(bristle), "an AngularSpring")
     family = _family(profile, bristle)
     figure, grid = new_figure(1, 2, 9.6, 4.4)
     here = float(bristle.limit_angle)

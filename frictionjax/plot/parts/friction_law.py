@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..._checks import require
+from ..._checks import kind_of, require
 from ...model import Scene, coefficients_jit
 from ...principle import K
 from ..style import GUIDE, LIMIT, STRIP, colour, new_figure, styled
@@ -27,7 +27,7 @@ def draw_friction_law(scene: Scene) -> Any:
     >>> [axes.get_title(loc="left") for axes in figure.axes]
     ['What friction takes of each metre', 'What friction allows']
     """
-    require(isinstance(scene, Scene), "scene", type(scene).__name__, "a Scene")
+    require(isinstance(scene, Scene), "scene", kind_of(scene), "a Scene")
     law = coefficients_jit(scene.potential)
     low, high = float(law.rho_minus), float(law.rho_plus)
     wide = high - low

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..._checks import require
+from ..._checks import kind_of, require
 from ..style import GUIDE, axes_of, colour, styled
 
 
@@ -26,7 +26,7 @@ def draw_crawler(motion: Any, ax: Any = None) -> Any:
     ['front foot', 'rear foot', 'middle']
     """
     known = hasattr(motion, "rear")
-    require(known, "motion", type(motion).__name__, "what crawler returns")
+    require(known, "motion", kind_of(motion), "what crawler returns")
     drawn, axes = axes_of(ax, 7.2, 4.4)
     ts = np.asarray(motion.ts)
     axes.fill_between(ts, motion.rear, motion.front, color=colour(0), alpha=0.12, lw=0)

@@ -48,7 +48,7 @@ def solver_of(
     candidate: Any = getattr(diffrax, str(method), None) if named else method
     allowed = f"one of {', '.join([*OURS, *others, *known_solvers()])}, or a diffrax solver"
     usable = _is_usable(candidate)
-    require(usable, argument, method if named else repr(method), allowed)
+    require(usable, argument, method, allowed)
     return candidate()
 
 

@@ -192,8 +192,8 @@ def test_bad_traces_are_named(arguments, message):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"trace": None}, "trace = 'NoneType': needs a Trace"),
-        ({"scene": None}, "scene = 'NoneType': needs a Scene"),
+        ({"trace": None}, "trace = None: needs a Trace"),
+        ({"scene": None}, "scene = None: needs a Scene"),
         ({"eps": 0.0}, "eps = 0: needs eps > 0"),
         ({"gamma": -1.0}, "gamma = -1: needs gamma > 0"),
         ({"within": 0.0}, "within = 0"),
