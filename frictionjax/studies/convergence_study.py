@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from .._checks import require, require_flags
+from .._checks import kind_of, require, require_flags
 from .._compile import waiting
 from ..convergence import (
     ENERGY,
@@ -22,7 +22,7 @@ from ..slide_laws import NO_LAW, Prediction, SlideData, predict_errors
 from ..sweeps import one_scene, whole_grid
 from ..wiggly import Status, warn_of_failed
 from .scene_spread import spread_over_scenes
-from .sound_cells import require_sound_cells
+from .sound_cells import require_dims_of_sweeps, require_each_once, require_sound_cells
 from .study_result import Study
 
 _MOST_PAIRS = 400  # times compared with each other for the constant of Lemma 9
@@ -74,9 +74,9 @@ def study(dataset: xr.Dataset, *, progress: bool = False) -> Study:
 
     `progress`: a line on standard error where it takes more than two seconds: laws compile.
 
-    Raises `ValueError` where the data set lacks what `sweep` puts there, and for an eps or
-    gamma that is not positive, a status that is none, and a cell that is OK without a
-    distance from the limit.
+    Raises `ValueError` where the data set lacks what `sweep` puts there, or has it along
+    other dims, and for an eps or gamma that is not positive or there twice, a status
+    that is none, and a cell that is OK without a distance from the limit.
 
     >>> found = fx.study(fx.sweep(scene, eps=[0.1, 0.03, 0.01, 0.003, 0.001], gamma=1.0))
     >>> order = found.orders.sel(gamma=1.0)
@@ -86,11 +86,13 @@ def study(dataset: xr.Dataset, *, progress: bool = False) -> Study:
     needed = {"sup_error", "status", "strip_excess", "z"}
     given = getattr(dataset, "variables", None)
     allowed = "a data set that `sweep` has made"
-    require(given is not None, "dataset", type(dataset).__name__, allowed)
+    require(given is not None, "dataset", kind_of(dataset), allowed)
     missing = ", ".join(sorted(needed - set(given or ())))
     allowed = "one that `sweep` has made, with suprema=True"
     require(not missing, "dataset", f"one without {missing}", allowed)
+    require_each_once(dataset)
     dataset = whole_grid(dataset)
+    require_dims_of_sweeps(dataset)
     require_sound_cells(dataset)
     codes = dataset.status.transpose(..., "gamma", "eps").values
     require_flags(progress=progress)

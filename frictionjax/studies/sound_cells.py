@@ -3,8 +3,37 @@
 import numpy as np
 import xarray as xr
 
-from .._checks import require
+from .._checks import require, require_real
 from ..wiggly import Status
+
+_OF_CELLS = (
+    *("sup_error", "strip_excess", "status", "dissipation_error", "dissipation_gap"),
+    *("graph_error", "dissipation_graph_error", "beta"),
+)
+
+
+def require_each_once(dataset: xr.Dataset) -> None:
+    """Check that no eps or gamma is there twice, as in data sets that were joined."""
+    for name in ("eps", "gamma"):
+        if name not in dataset.dims or name not in dataset.coords:
+            continue
+        values, counts = np.unique(dataset[name].values, return_counts=True)
+        twice = values[counts > 1].tolist()
+        needs = f"every {name} once: `dataset.drop_duplicates({name!r})`"
+        require(not twice, f"dataset.{name}", f"{twice[:1]} more than once", needs)
+
+
+def require_dims_of_sweeps(dataset: xr.Dataset) -> None:
+    """Check along what variables are, and the accuracy, which no variable tells."""
+    cells = ({"scene"} & set(dataset.dims)) | {"gamma", "eps"}
+    of_cells = {name: cells for name in _OF_CELLS if name in dataset}
+    for name, dims in (of_cells | {"z": cells | {"time"}}).items():
+        given = [str(dim) for dim in dataset[name].dims]
+        needs = f"the dims {', '.join(sorted(dims))}, as `sweep` has them"
+        require(set(given) == dims, f"dataset.{name}", f"dims {', '.join(given)}", needs)
+    known = "accuracy" in dataset.attrs
+    require(known, "dataset", "one without the attribute accuracy", "those of `sweep`")
+    require_real("dataset.accuracy", dataset.accuracy, "accuracy > 0", lambda a: a > 0)
 
 
 def require_sound_cells(dataset: xr.Dataset) -> None:

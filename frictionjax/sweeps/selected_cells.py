@@ -14,7 +14,7 @@ _OF_TIME = (
     *("root_limit", "mode_limit"),
 )
 _SERIES = ("z", "root", "mode", "dissipation", "how", "bracket", *_OF_TIME)
-_OF_SCENE = ("jumps", "jump_loss")
+_OF_SCENE = ("jumps", "jump_loss", "parts", *LAW_DIMS)
 
 
 def whole_grid(dataset: "xr.Dataset") -> "xr.Dataset":
@@ -35,6 +35,7 @@ def whole_grid(dataset: "xr.Dataset") -> "xr.Dataset":
 
 def one_scene(dataset: "xr.Dataset") -> "xr.Dataset":
     """A data set of several scenes of which one was selected, as that scene's own."""
+    _require_of_scene(dataset)
     laws = {
         name: dataset[name].dropna(dim).values
         for name, dim in LAW_DIMS.items()
@@ -44,6 +45,16 @@ def one_scene(dataset: "xr.Dataset") -> "xr.Dataset":
     own = dataset.drop_vars(["scene", "parts", *laws], errors="ignore")
     label, parts = dataset["scene"].item(), dataset["parts"].item()
     return own.assign_attrs(scene=f"{label}: {parts}", **known)
+
+
+def _require_of_scene(dataset: "xr.Dataset") -> None:
+    """`xr.concat` of selections gives what is a scene's own to every cell, by default."""
+    whole = {"parts": (), **{name: (dim,) for name, dim in LAW_DIMS.items()}}
+    for name in (one for one in whole if one in dataset.variables):
+        dims = tuple(str(dim) for dim in dataset[name].dims)
+        told = ", ".join(whole[name]) or "no dims"
+        needs = f"{told}, of one scene: `xr.concat(..., data_vars='minimal')` leaves it"
+        require(dims == whole[name], f"dataset.{name}", f"dims {', '.join(dims)}", needs)
 
 
 def _with_axis(dataset: "xr.Dataset", name: str) -> "xr.Dataset":

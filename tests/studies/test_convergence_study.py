@@ -115,6 +115,39 @@ def test_cells_that_somebody_edited_are_named(name, value, needs):
         fx.study(data)
 
 
+def joined(dim: str) -> xr.Dataset:
+    return xr.concat([synthetic(), synthetic()], dim, data_vars="all")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            lambda data: joined("eps"),
+            r"dataset\.eps = '\[0\.001\] more than once'",
+        ),
+        (
+            lambda data: joined("gamma"),
+            r"dataset\.gamma = '\[0\.5\] more than once'",
+        ),
+        (lambda data: joined("run"), r"dataset\.sup_error = 'dims run, gamma, eps': needs"),
+        (
+            lambda data: data.assign(strip_excess=data.strip_excess.isel(gamma=0)),
+            r"dataset\.strip_excess = 'dims eps': needs the dims eps, gamma, as `sweep`",
+        ),
+        (lambda data: data.drop_attrs(), r"dataset = 'one without the attribute accuracy'"),
+        (lambda data: data.assign_attrs(accuracy="1"), r"dataset\.accuracy = '1': needs a"),
+        (
+            lambda data: data.assign_coords(scene=0, parts=("eps", ["spring"] * 10)),
+            r"dataset\.parts = 'dims eps': needs no dims, of one scene: `xr\.concat\(",
+        ),
+    ],
+)
+def test_what_a_sweep_does_not_have_is_named(change, message):
+    with pytest.raises(ValueError, match=message):
+        fx.study(change(synthetic()))
+
+
 def test_end_to_end_on_a_scene():
     """gamma = 2 on the vertical spring: the limit lags by just under one eps."""
     scene = fx.Scene(
