@@ -64,7 +64,8 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
 
     The interval is for the order as eps -> 0, not for a power law through the window: it
     holds the scatter and what `asymptote` allows for, a correction 1 + c eps^q with
-    q >= 0.2, a logarithm as factor or divisor where the errors show one. Not in it: a
+    q >= 0.2, a logarithm as factor or divisor where the errors show one; and in a window of
+    less than a factor of 3 in eps a wave of the errors by a factor of 1.25. Not in it: a
     correction above 5% that the scatter hides, one that decays more slowly than eps^0.2
     otherwise, and errors that change their law below the smallest eps.
 
@@ -88,6 +89,8 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
     x, y = np.log(eps[usable]), np.log(errors[usable])
     start, found = _best_window(x, y)
     window = eps[usable][start:]
+    wave = _unseen_wave(window)
+    found = found._replace(low=found.low - wave, high=found.high + wave)
     middle = y[start:].mean() - found.slope * x[start:].mean()
     misfit = float(np.exp(np.abs(y - middle - found.slope * x)[start:].max()))
     ends = constant_range(window, errors[usable][start:], found.low, found.high)
@@ -107,6 +110,15 @@ def fit_order(eps: np.ndarray, errors: np.ndarray, uncertainty: np.ndarray) -> F
         constant_high=max(ends[1], float(np.exp(middle))),
         **counts,
     )
+
+
+def _unseen_wave(window: Float[np.ndarray, " n"]) -> float:
+    """What the order may be off by where the window is narrower than waves of the errors.
+
+    A part of a wave is a slope like any other. Of windows that are wide enough it is 0.
+    """
+    width = float(np.log(window.max() / window.min()))
+    return float(np.log(SETTINGS.waves)) * max(0.0, 1 / width - 1 / np.log(SETTINGS.narrow))
 
 
 def _no_fit(points: int, floor: int, failed: int) -> Fit:
@@ -137,7 +149,8 @@ def constant_range(
     scatter = np.sqrt(np.sum(left**2) / (x.size - 2) / np.sum(small))
     margin = float(stdtrit(x.size - 2, 0.975) * scatter)
     ends = y[small].mean() - np.array([low, high]) * x[small].mean()
-    return float(np.exp(ends.min() - margin)), float(np.exp(ends.max() + margin))
+    with np.errstate(over="ignore"):  # orders of a narrow window may be anything
+        return float(np.exp(ends.min() - margin)), float(np.exp(ends.max() + margin))
 
 
 def verdict_of(low: float, high: float, misfit: float) -> Verdict:

@@ -15,6 +15,11 @@ class Settings(NamedTuple):
     one_sided: float = 1.64  # sigmas, 95%: neighbouring residuals that differ by chance
     rare: float = 0.01  # chance that scatters of a window and of all points are one
     exact: float = 1e-12  # of log errors that follow a power to the last digit
+    # Errors wave about their power with where slips fall, by a factor of up to this one,
+    # and a window narrower than the second one may see a part of one wave alone, without
+    # any scatter: five eps from 0.01 to 0.0104 gave [1.09, 1.54], which no 4% can show.
+    waves: float = 1.25
+    narrow: float = 3.0
     worst_misfit: float = 3.0  # factor by which a line may miss its points and still be one
 
     # Curves `log(1 + c e^(q x))` beside a line (`regression.py`), y the log error.

@@ -210,3 +210,24 @@ def test_a_window_must_foretell_its_smallest_eps():
     assert found.misfit > 10
     assert found.verdict is Verdict.NO_POWER
     assert not found.low > 1.0
+
+
+@pytest.mark.parametrize("order", [1.0, 4 / 3, 2.0])
+@pytest.mark.parametrize("step", [1e-2, 1e-5])
+def test_a_grid_of_four_percent_shows_no_order(order, step):
+    """However well a power goes through it: errors wave by more than they fall there."""
+    eps = 0.01 * (1 + step * np.arange(5))
+    found = fit(eps, eps**order)
+    assert found.order == pytest.approx(order, abs=1e-6)
+    assert found.verdict == Verdict.UNDECIDED
+    assert found.low < 0 < 2 * order < found.high
+
+
+def test_narrow_windows_widen_the_interval_without_a_step():
+    widths = []
+    for factor in (1.1, 1.5, 2.9, 3.1, 10.0):
+        found = fit(np.geomspace(0.01, 0.01 * factor, 6), np.ones(6))
+        widths.append(found.high - found.low)
+    assert np.all(np.diff(widths) <= 1e-9)
+    assert widths[0] > 4.0
+    assert widths[2] - widths[3] < 0.02
