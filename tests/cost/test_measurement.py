@@ -181,7 +181,7 @@ def test_bad_arguments_are_named(scene):
     for change, message in [
         ({"methods": "Euler5"}, "methods = 'Euler5'"),
         ({"methods": None}, "methods = None"),
-        ({"methods": 5}, "methods = '5'"),
+        ({"methods": 5}, "methods = 5: needs"),
         ({"methods": []}, "methods = .*at least one"),
         ({"methods": np.array(["auto", "Euler5"])}, "methods = 'Euler5'"),
         ({"methods": ["auto", "auto"]}, "methods = .*once"),
