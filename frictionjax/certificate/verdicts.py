@@ -59,12 +59,17 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
 
     @property
     def message(self) -> str:
-        """The verdict; where samples are too far apart, how far."""
-        coarse = self.spacing > SETTINGS.coarsest
-        if self.status != CertificateStatus.UNRESOLVED or not coarse:
+        """The verdict; of samples that leave it open what is the matter, where known."""
+        if self.status != CertificateStatus.UNRESOLVED:
             return super().message
-        most = f"eps/{1 / SETTINGS.coarsest:g}"
-        return f"samples are {as_text(self.spacing)} eps apart, more than {most}: undecided"
+        if self.spacing > SETTINGS.coarsest:
+            most = f"eps/{1 / SETTINGS.coarsest:g}"
+            spacing = as_text(self.spacing)
+            return f"samples are {spacing} eps apart, more than {most}: undecided"
+        seen = abs(self.viscosity - 1) > SETTINGS.viscosity
+        if seen and not math.isnan(self.missing_force):  # no tip with mass
+            return "samples are too few to tell the viscosity of slips: undecided"
+        return super().message
 
     @property
     def shares(self) -> dict[str, float]:

@@ -112,7 +112,9 @@ def solve(
     are a rounding outside are taken for its end); 201 evenly spaced ones where None.
     `accuracy`: wanted error of `z` in units of eps at every time not inside a slip, and of
     `dissipation` in units of its value at `duration`;
-    `dissipation_gap` in `stats` is an estimate of its error. `method`: "resolved"
+    `dissipation_gap` in `stats` is an estimate of its error. A load is meant to its
+    rounding: where it turns, or stays, within 1e-14 of itself at the force that a slip
+    takes, rounding decides on that slip. `method`: "resolved"
     integrates every slip with a Rosenbrock method, in tiles side by side; "windowed" only
     what values at `ts` and sums over [0, T] need, and falls back to every slip where starts
     are not forgotten; "auto" takes what is cheaper; or any adaptive diffrax solver of an
@@ -123,7 +125,7 @@ def solve(
     differentiates (`diffrax.ForwardMode()` for `jax.jvp`, and for second derivatives by
     `jax.jacfwd(jax.jacfwd(...))`; by default first derivatives in reverse mode are those of
     the steps taken, and NaN through more than 15 million of them).
-    `max_steps`: of such a solve.
+    `max_steps`: of such a solve; any but the default asks for one.
     `key`: of a scene with `effects.Noise`, a seed or a key of `jax.random`, whose path it
     is: in windows that meet to the last bit, by each of our methods. Steps are fixed, and
     accuracy, max_steps and adjoint are refused; dissipation and residual are None, as

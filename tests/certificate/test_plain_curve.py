@@ -7,6 +7,7 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.certificate.plain_curve import CurveMeasures, verdict
+from frictionjax.certificate.verdicts import CertificateStatus
 
 EPS, GAMMA, RATE, END = 0.02, 2.0, 2.0, 0.1
 SCENE = fx.Scene(
@@ -150,3 +151,11 @@ def test_few_samples_of_slips_leave_their_viscosity_open(
         spacing=0.2,
     )
     assert verdict(measured, coarser).name == status
+
+
+def test_open_verdicts_say_what_is_the_matter():
+    found = certified(solved())._replace(status=CertificateStatus.UNRESOLVED)
+    few = found._replace(viscosity=1.3, within=np.inf).message
+    assert few == "samples are too few to tell the viscosity of slips: undecided"
+    assert found._replace(spacing=0.3).message.startswith("samples are 0.3 eps apart")
+    assert found.message == CertificateStatus.UNRESOLVED.message
