@@ -20,6 +20,7 @@ _CELLS = (("gamma", "eps"), np.zeros((1, 2)))
 SWEPT = xr.Dataset(  # nothing is made of it: calls end where their line begins
     dict.fromkeys(("sup_error", "status", "strip_excess", "z"), _CELLS),
     coords={"gamma": [1.0], "eps": [0.1, 0.05], "time": 0.0},
+    attrs={"accuracy": 1e-3},
 )
 # Where the line begins, and a call of little work before it.
 CALLS = {

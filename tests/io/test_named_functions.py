@@ -157,7 +157,11 @@ def test_numbers_of_loads_are_kept(files):
         ("points = 512", "pints = 512", "pints is unknown"),
         ('offset = "{module}:offset"', "", "offset is missing"),
         ('kind = "Convex"', 'kind = "Concave"', "one of Spring, Convex"),
-        ("{module}:surface", "{module}:Q", "missing 1 required"),
+        (
+            "{module}:surface",
+            "{module}:Q",
+            "a function of y alone",
+        ),
     ],
 )
 def test_mistakes_are_named_on_one_line(files, old, new, told):

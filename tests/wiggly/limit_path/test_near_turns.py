@@ -1,7 +1,6 @@
 """Loads that turn while a tip is at a fold: a slip there hangs on very little."""
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -93,10 +92,8 @@ def test_a_plateau_at_the_fold_is_as_long_as_it_takes():
 def nearness(load: fx.loads.AbstractPull, eps: float, gamma: float) -> np.ndarray:
     scene = VERTICAL.replace(load=load)
     path = known_path(scene, tabulated_scene(scene, eps))
-    folds = jax.tree_util.tree_map(
-        lambda number: np.asarray(number)[None],
-        landscape(scene.potential, jnp.asarray(eps)).folds,
-    )
+    found = jax.jit(landscape)(scene.potential, eps).folds
+    folds = jax.tree_util.tree_map(lambda number: np.asarray(number)[None], found)
     one = np.ones(1)
     return nearness_at_turns(path, folds, eps * one, eps**gamma * one, 0.01 * one)[0]
 

@@ -36,7 +36,7 @@ from frictionjax.wiggly.sums.stop_values import StopValues
 
 LOW, HIGH, COUNT, PERIOD = 1.0, 3.0, 17, 1e-3
 
-NONE = (None, None, *[np.zeros(2)] * 5)  # of a path, what these sums do not read
+NONE = (None, None, *[np.zeros(2)] * 6)  # of a path, what these sums do not read
 
 
 def survey(density):
