@@ -242,3 +242,13 @@ def test_a_strip_that_is_not_known_leaves_nothing_known_after_it():
         play_operator(lower, upper, -1.0), [0.0, 0.2, np.nan, np.nan]
     )
     np.testing.assert_array_equal(play_operator(-upper, -lower, 2.0)[2:], [np.nan] * 2)
+
+
+@pytest.mark.parametrize("name", ["z", "dissipation"])
+def test_one_number_that_is_not_finite_is_enough(name):
+    found = fx.solve_limit(scene(LOOPS), [0.0, 1.0, 2.0])
+    assert found.ok
+    lost = getattr(found, name).at[1].set(jnp.nan)
+    wrong = eqx.tree_at(lambda solution: getattr(solution, name), found, lost)
+    assert not wrong.ok
+    assert wrong.status.name == "NOT_FINITE"

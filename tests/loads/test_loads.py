@@ -205,3 +205,17 @@ def test_functions_in_pieces_by_name_have_their_course_looked_at():
     rho = 0.1
     found = fx.solve_limit(scene, [0.0, 1.0, 3.0]).z
     np.testing.assert_allclose(found, [0.0, 1.5 - rho, -0.5 + rho], atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("load", "turns"),
+    [
+        (fx.loads.Sine(1.0, 4.0), [1.0, 3.0, 5.0, 7.0]),
+        (fx.loads.Triangle(1.0, 4.0), [1.0, 3.0, 5.0, 7.0]),
+        (fx.loads.PiecewiseLinear([1.0, 7.9, 9.0], [0, 2, 1]), [1.0, 7.9]),
+    ],
+)
+def test_turning_points_are_there_up_to_the_end(load, turns):
+    found = load.turning_points(jnp.asarray(8.0), 5)
+    np.testing.assert_allclose(found[: len(turns)], turns, rtol=1e-15)
+    np.testing.assert_array_equal(found[len(turns) :], 8.0)
