@@ -49,7 +49,7 @@ def certify(
     (n,), n >= 2, NumPy or JAX. The curve's start is not compared with the scene's `z0`.
     Needs slips sampled at eps/4 or finer; a tenth of eps is comfortable, and as much finer
     as the wells have flanks narrower than a sine's: eps/50 of a rod that lies flat, of
-    whose true curves `VISCOSITY` may be told before.
+    whose true curves `UNRESOLVED` or `VISCOSITY` may be told before.
 
     `ok` accepts a curve within eps/100 of a solution, whatever the deviation, and rejects
     one that skips a well, is shifted by eps/10, has another gamma, or slips late or early,

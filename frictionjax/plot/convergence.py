@@ -210,33 +210,30 @@ def _order(fit: dict[str, Any]) -> str:
 
 def _failures(axes: Any, cells: xr.Dataset, index: int) -> None:
     """Crosses on the axis where cells failed: they have no error to show."""
-    bad = cells.eps.values[cells.status.values != 0]
-    if bad.size:
-        axes.plot(
-            bad,
-            np.full(bad.size, 0.025 * index),
-            "x",
-            color=colour(index),
-            markersize=7,
-            clip_on=False,
-            transform=axes.get_xaxis_transform(),
-            label=f"failed, $\\gamma$ = {float(cells.gamma):.3g}",
-        )
+    _on_axis(axes, cells, cells.status.values != 0, "x", "failed", index)
 
 
 def _zeros(axes: Any, cells: xr.Dataset, name: str, index: int) -> None:
     """Triangles on the axis where there is no error at all, which no log axis shows."""
-    none = cells.eps.values[(cells.status.values == 0) & (cells[name].values == 0)]
-    if none.size:
+    none = (cells.status.values == 0) & (cells[name].values == 0)
+    _on_axis(axes, cells, none, "v", "0, below the axis", index)
+
+
+def _on_axis(
+    axes: Any, cells: xr.Dataset, some: np.ndarray, marker: str, told: str, index: int
+) -> None:
+    """Marks at the eps of `some` cells, which have no place in the panel."""
+    eps = cells.eps.values[some]
+    if eps.size:
         axes.plot(
-            none,
-            np.full(none.size, 0.025 * index),
-            "v",
+            eps,
+            np.full(eps.size, 0.025 * index),
+            marker,
             color=colour(index),
             markersize=7,
             clip_on=False,
             transform=axes.get_xaxis_transform(),
-            label=f"0, below the axis, $\\gamma$ = {float(cells.gamma):.3g}",
+            label=f"{told}, $\\gamma$ = {float(cells.gamma):.3g}",
         )
 
 

@@ -111,14 +111,14 @@ def solve(
     `eps` in m, `gamma` > 0. `ts`: times in s, not decreasing, in [0, duration] (those that
     are a rounding outside are taken for its end); 201 evenly spaced ones where None.
     `accuracy`: wanted error of `z` in units of eps at every time not inside a slip, and of
-    `dissipation` in units of its value at `duration`;
-    `dissipation_gap` in `stats` is an estimate of its error. A load is meant to its
-    rounding: where it turns, or stays, within 1e-14 of itself at the force that a slip
-    takes, rounding decides on that slip. `method`: "resolved"
-    integrates every slip with a Rosenbrock method, in tiles side by side; "windowed" only
-    what values at `ts` and sums over [0, T] need, and falls back to every slip where starts
-    are not forgotten; "auto" takes what is cheaper; or any adaptive diffrax solver of an
-    ODE, by name, class or instance. `dissipation=False` integrates no energies.
+    `dissipation` in units of its value at `duration`; `dissipation_gap` in `stats` is an
+    estimate of its error. A load is meant to its rounding: where it turns, or stays, within
+    1e-14 of itself at the force that a slip takes, rounding decides on that slip. `method`:
+    "resolved" integrates every slip with a Rosenbrock method, in tiles side by side;
+    "windowed" only what values at `ts` and sums over [0, T] need, and falls back to every
+    slip where starts are not forgotten; "auto" takes what is cheaper; or any adaptive
+    diffrax solver of an ODE, by name, class or instance. `dissipation=False` integrates no
+    energies.
 
     Differentiable with respect to the leaves of the scene, eps and gamma: traced values go
     through `diffeqsolve`, every slip one after the other. `adjoint`: how diffrax

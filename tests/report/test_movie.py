@@ -8,6 +8,14 @@ from PIL import Image
 import frictionjax as fx
 from frictionjax.report import movie
 
+HOMOTHETIC = fx.Scene(
+    fx.profiles.Sine(0.1),
+    fx.bristles.Homothetic(1.0),
+    fx.supports.Spring(1.0),
+    fx.loads.Triangle(1.1, 4.0),
+    4.0,
+)
+
 
 @pytest.mark.slow  # rods that turn over, at an eps
 def test_a_movie_of_a_rod_that_turns_over(tmp_path, monkeypatch):
@@ -23,34 +31,20 @@ def test_a_movie_of_a_rod_that_turns_over(tmp_path, monkeypatch):
 
 
 def test_the_eps_whose_slips_can_be_told_apart():
-    scene = fx.Scene(
-        fx.profiles.Sine(0.1),
-        fx.bristles.Homothetic(1.0),
-        fx.supports.Spring(1.0),
-        fx.loads.Triangle(1.1, 4.0),
-        4.0,
-    )
     # The limit goes from -1 to 1.
-    assert movie._seen_best(scene, [0.5, 0.1, 0.05, 0.01]) == [0.1, 0.05]
-    assert movie._seen_best(scene, [0.01, 0.001]) == [0.01]
-    still = scene.replace(load=fx.loads.Triangle(0.05, 4.0))
+    assert movie._seen_best(HOMOTHETIC, [0.5, 0.1, 0.05, 0.01]) == [0.1, 0.05]
+    assert movie._seen_best(HOMOTHETIC, [0.01, 0.001]) == [0.01]
+    still = HOMOTHETIC.replace(load=fx.loads.Triangle(0.05, 4.0))
     assert movie._seen_best(still, [0.01, 0.1]) == [0.1]
 
 
 def test_of_those_the_first_whose_forces_are_near_the_limits():
     """At gamma = 1 drag adds more than half of rho at eps = 0.1, little at 0.02."""
-    scene = fx.Scene(
-        fx.profiles.Sine(0.1),
-        fx.bristles.Homothetic(1.0),
-        fx.supports.Spring(1.0),
-        fx.loads.Triangle(1.1, 4.0),
-        4.0,
-    )
-    eps, _, beyond = movie._nearest(scene, [0.1, 0.02], 1.0)
+    eps, _, beyond = movie._nearest(HOMOTHETIC, [0.1, 0.02], 1.0)
     assert (eps, beyond <= 0.2) == (0.02, True)
-    eps, found, beyond = movie._nearest(scene, [0.1], 1.0)
+    eps, found, beyond = movie._nearest(HOMOTHETIC, [0.1], 1.0)
     assert (eps, beyond > 0.2) == (0.1, True)
-    load = jax.vmap(scene.load)(found.ts)
+    load = jax.vmap(HOMOTHETIC.load)(found.ts)
     assert beyond == pytest.approx(float(abs(load - found.z).max()) / 0.1 - 1.0, rel=1e-9)
 
 
