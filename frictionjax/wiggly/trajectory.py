@@ -112,8 +112,9 @@ def solve(
     are a rounding outside are taken for its end); 201 evenly spaced ones where None.
     `accuracy`: wanted error of `z` in units of eps at every time not inside a slip, and of
     `dissipation` in units of its value at `duration`; `dissipation_gap` in `stats` is an
-    estimate of its error. A load is meant to its rounding: where it turns, or stays, within
-    1e-14 of itself at the force that a slip takes, rounding decides on that slip. `method`:
+    estimate of its error. Where the load turns, or stays, at the very force that a slip
+    takes, errors decide on that slip: of steps, some 1e-6 of eps (rho_plus - rho_minus) at
+    a kink, less at a finer accuracy, and of rounding, 1e-14 of the load. `method`:
     "resolved" integrates every slip with a Rosenbrock method, in tiles side by side;
     "windowed" only what values at `ts` and sums over [0, T] need, and falls back to every
     slip where starts are not forgotten; "auto" takes what is cheaper; or any adaptive

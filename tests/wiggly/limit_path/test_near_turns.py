@@ -54,6 +54,20 @@ def test_a_slip_takes_what_a_parabola_takes(eps, gamma, share, slips):
     assert np.round(found.z[0] / eps) == slips
 
 
+@pytest.mark.parametrize(("beyond", "wells"), [(-1e-8, 19.837), (1e-8, 20.820)])
+def test_a_load_with_a_kink_near_a_fold_makes_the_slip_that_it_should(beyond, wells):
+    """From 0.300522446130530 N on: SciPy's Radau at rtol 1e-12, without the slip 1e-10 N
+    below and with it 1e-10 N above. Steps at the default accuracy see it 1.6e-9 N early.
+    """
+    eps, most = 1e-2, 0.300522446130530 + beyond
+    load = fx.loads.PiecewiseLinear([0.0, 1.0, 2.0], [0.0, most, most - 0.1])
+    bristle = fx.bristles.Homothetic(1.0)
+    scene = VERTICAL.replace(bristle=bristle, load=load, duration=2.0)
+    found = fx.solve(scene, eps, ts=[1.5])
+    assert found.ok
+    assert found.z[0] / eps == pytest.approx(wells, abs=1e-3)
+
+
 @pytest.mark.parametrize("method", ["auto", "resolved"])
 def test_a_load_that_only_touches_the_fold_makes_no_slip(method):
     """The first fold of a slanted spring is within 1e-12 N of its limit's."""
