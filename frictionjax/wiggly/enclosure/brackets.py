@@ -63,6 +63,11 @@ class BracketPlan(NamedTuple):
     brief: np.ndarray
     forgetful: np.ndarray
 
+    @property
+    def owner(self) -> np.ndarray:
+        """Which job each segment is of, (S,)."""
+        return np.repeat(np.arange(self.jobs.cell.size), self.jobs.legs)
+
 
 def points_between(points: np.ndarray, low: np.ndarray, high: np.ndarray):
     """Sorted `points` strictly inside each interval: indices of intervals, and values."""

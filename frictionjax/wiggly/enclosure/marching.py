@@ -136,10 +136,9 @@ class BracketContext(NamedTuple):
 
     def _taken(self, plan: BracketPlan, ends: SegmentEnds) -> Effort:
         """What the lanes of a plan took."""
-        owner = np.repeat(plan.jobs.cell, plan.jobs.past_leg - plan.jobs.first_leg)
-        count = self.ground.eps.size
+        cell, count = plan.jobs.cell[plan.owner], self.ground.eps.size
         steps, rejected = (
-            np.bincount(owner, np.nan_to_num(each), count)
+            np.bincount(cell, np.nan_to_num(each), count)
             for each in (ends.steps, ends.rejected)
         )
         return Effort(steps, rejected, self._waited(plan, ends))
@@ -162,10 +161,9 @@ class BracketContext(NamedTuple):
         left = SETTINGS.patience - self.effort.waited[jobs.cell]
         left[self._alone(plan)] = np.inf
         left[self._known(plan) & self.ground.is_far(self.path)[jobs.cell]] = 0.0
-        owner = np.repeat(np.arange(left.size), jobs.past_leg - jobs.first_leg)
-        cell = jobs.cell[owner]
+        cell = jobs.cell[plan.owner]
         wells = np.abs(segments.guide1 - segments.guide0) / self.ground.eps[cell]
-        allowed = left[owner] + self._share[cell] * wells
+        allowed = left[plan.owner] + self._share[cell] * wells
         segments = segments._replace(budget=np.minimum(segments.budget, allowed))
         # In all on the way no more than that, where little is forgotten.
         many = SETTINGS.lane_steps * self._forgets[jobs.cell] * self._wells(plan)
@@ -206,7 +204,7 @@ class BracketContext(NamedTuple):
         Others end as lanes do that give up.
         """
         jobs, segments = plan.jobs, plan.segments
-        work = self._wells(plan) + 1 + 0.05 * (jobs.past_leg - jobs.first_leg)
+        work = self._wells(plan) + 1 + 0.05 * jobs.legs
         work = np.where(plan.brief, SETTINGS.fast, 1.0) * work
         jobs, cells = self._steered(plan)
         some = np.flatnonzero(able)
@@ -216,8 +214,8 @@ class BracketContext(NamedTuple):
         ends = np.full((len(SegmentEnds._fields), segments.start.size), np.nan)
         # Overwritten by lanes that run.
         ends[SegmentEnds._fields.index("code")] = int(Status.MAX_STEPS)
-        legs, total = (jobs.past_leg - jobs.first_leg)[some], work[some].sum()
-        for block in _blocks(work[some], legs, workers):
+        total = work[some].sum()
+        for block in _blocks(work[some], jobs.legs[some], workers):
             seat = _seats(block.size, workers)
             queues = [some[block[seat == i]] for i in range(workers)]
             for rows, part in self._through(cells, jobs, segments, queues, work):
@@ -250,10 +248,9 @@ class BracketContext(NamedTuple):
         kinks, allowed = self.path.edges[1:-1], self.ground.at_turns
         if not np.isfinite(allowed).any():
             return found
-        owner = np.repeat(np.arange(found.size), plan.jobs.past_leg - plan.jobs.first_leg)
         place = np.minimum(np.searchsorted(kinks, plan.segments.end), kinks.size - 1)
         there = kinks[place] == plan.segments.end
-        owner, place = owner[there], place[there]
+        owner, place = plan.owner[there], place[there]
         np.minimum.at(found, owner, allowed[plan.jobs.cell[owner], place])
         return found
 
@@ -273,7 +270,7 @@ class BracketContext(NamedTuple):
         """Segments of chosen jobs, and what is found there."""
         mine = rows_of(jobs, chosen)
         # Rows of this queue's segments only, in the order of its jobs.
-        count = mine.past_leg - mine.first_leg
+        count = mine.legs
         past = np.cumsum(count)
         rows = np.repeat(mine.first_leg - (past - count), count) + np.arange(count.sum())
         mine = mine._replace(first_leg=past - count, past_leg=past)

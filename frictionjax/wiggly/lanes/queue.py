@@ -40,6 +40,11 @@ class Lanes(NamedTuple):
     past_leg: Any
     patience: Any = np.inf
 
+    @property
+    def legs(self) -> Any:
+        """How many each runs through, (jobs,)."""
+        return self.past_leg - self.first_leg
+
 
 class Segments(NamedTuple):
     """Stretches of a lane's way between two stops, shape (legs,).
