@@ -288,13 +288,18 @@ def require_function(name: str, fn: Any, what: str, smooth: bool = True) -> None
     require(callable(fn), name, fn, what)
     require(_can_be_hashed(fn), name, fn, f"{what}, with a hash: programs are kept by it")
     require(_takes_one(fn), name, fn, f"{what} alone, which is its one argument")
-    number, given = jax.ShapeDtypeStruct((), float), []
+    number, wrong = jax.ShapeDtypeStruct((), float), []
 
     def value(x: Real) -> Array:
-        given.append(fn(x))
-        if isinstance(given[0], str):
-            raise TypeError  # JAX may read it as a kind of numbers
-        return jnp.asarray(given[0])
+        given = fn(x)
+        try:
+            if isinstance(given, str):
+                raise TypeError  # JAX may read it as a kind of numbers
+            return jnp.asarray(given)
+        except (TypeError, ValueError):
+            # A text, as no trace may outlive the call.
+            wrong.append(f"values that are [{given!r}]")
+            raise
 
     one = f"{what}, one real number for one"
     try:
@@ -302,7 +307,7 @@ def require_function(name: str, fn: Any, what: str, smooth: bool = True) -> None
     except jax.errors.JAXTypeError:
         require(False, name, fn, f"{what}, written with jax.numpy")
     except (TypeError, ValueError):
-        require(not given, name, f"values that are {given[:1]}", one)
+        require(not wrong, name, "".join(wrong), one)
         raise
     require(found.shape == (), name, f"values of shape {found.shape}", one)
     real = not jnp.issubdtype(found.dtype, jnp.complexfloating)

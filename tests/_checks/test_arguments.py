@@ -46,6 +46,11 @@ def test_functions_that_are_frozen_partial_or_loads_of_whole_numbers_are_taken()
     assert fx.loads.Custom(functools.partial(jnp.multiply, 2.0))(0.5) == 1
 
 
+def test_no_trace_outlives_the_check_of_a_function():
+    with jax.checking_leaks():
+        fx.loads.Custom(lambda t: 2.0 * t)
+
+
 JUST_OVER = np.nextafter(3.0, 4.0)
 
 
