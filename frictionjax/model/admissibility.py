@@ -208,6 +208,26 @@ def _range_and_convexity(support: AbstractSupport, low: Real, high: Real):
     return ends, least, jnp.max(coarse), jax.vmap(support.force)(ends)
 
 
+@Interpreted
+def _bends(support: AbstractSupport, z: Array) -> tuple[Array, Array]:
+    return jax.vmap(support.stiffness_at)(z), jax.vmap(support.force)(z)
+
+
+def _out_of_reach(support: AbstractSupport, wanted: np.ndarray, found: np.ndarray) -> str:
+    """What of a support does not reach forces: where `Phi'' <= 0` next to 0, or `Phi'`."""
+    far = np.geomspace(*SETTINGS.bend_places)
+    z = np.concatenate([[0.0], np.stack([far, -far], axis=1).ravel()])
+    bend, force = (np.asarray(column) for column in _bends(support, z))
+    if np.any(bend <= 0):
+        k = int(np.argmax(bend <= 0))
+        return f"Phi'' = {bend[k]:.6g} N/m at z = {z[k]:.6g} m"
+    force = force[np.isfinite(force)]
+    least, most = np.min(force, initial=np.inf), np.max(force, initial=-np.inf)
+    if least <= wanted[0] and most >= wanted[1]:
+        return f"Phi'(state_of) = [{found[0]:.6g}, {found[1]:.6g}]"
+    return f"Phi' in [{least:.6g}, {most:.6g}] N for |z| <= {far[-1]:.6g} m"
+
+
 def require_convex(support: AbstractSupport, low: Any, high: Any) -> None:
     """Check `Phi'' > 0` on the states that forces between `low` and `high` (N) reach.
 
@@ -221,9 +241,10 @@ def require_convex(support: AbstractSupport, low: Any, high: Any) -> None:
     ends, least, largest, forces = (np.asarray(column) for column in found)
     size = max(1e-300, float(np.max(np.abs(wanted))))
     reached = np.all(np.abs(forces - wanted) <= 1e-6 * size)
+    if not (np.all(np.isfinite(ends)) and reached):
+        forces_wanted = f"[{wanted[0]:.6g}, {wanted[1]:.6g}]"
+        needs = f"Phi uniformly convex and Phi' to reach the forces {forces_wanted}"
+        require(False, "support", _out_of_reach(support, wanted, forces), needs)
     span = f"[{ends[0]:.6g}, {ends[1]:.6g}]"
-    forces_wanted = f"[{wanted[0]:.6g}, {wanted[1]:.6g}]"
-    needs = f"Phi uniformly convex and Phi' to reach the forces {forces_wanted}"
-    require(np.all(np.isfinite(ends)) and reached, "support", span, needs)
     needs = f"Phi uniformly convex on the range reached, z in {span}"
     require(float(least) > 1e-9 * float(largest), "support: min Phi''", least, needs)

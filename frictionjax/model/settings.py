@@ -22,6 +22,9 @@ class Settings(NamedTuple):
     # Admissibility (`admissibility.py`, `clearance.py`).
     margins: int = 2  # eps of one compiled call
     clearance_places: int = 512  # for the tip and for what is ahead of it
+    # From and to how far away in m, and in how many places, a support is asked why it
+    # does not reach a force.
+    bend_places: tuple[float, float, int] = (1e-6, 1e6, 121)
 
     # Digits of the potential (`digits.py`).
     places: int = 256  # off the grid of round phases

@@ -13,6 +13,7 @@ from frictionjax.model.admissibility import (
     is_admitted,
     largest_eps,
     require_admissible,
+    require_convex,
     require_reach,
 )
 from frictionjax.numerics.extrema import smallest
@@ -146,6 +147,9 @@ def test_reach_is_seen_on_a_long_grid():
         (lambda z: z**4 / 4, "uniformly convex"),
         (lambda z: jnp.log(jnp.cosh(z)), "Phi' to reach the forces"),
         (lambda z: -(z**2), "Phi"),
+        # It said where its root was sought: z in [-1.6e150, 1.6e150].
+        (jnp.cos, "= .Phi'' = -1 N/m at z = 0 m.: needs Phi uniformly convex"),
+        (lambda z: jnp.sqrt(1 + z**2), r"= .Phi' in \[-1, 1\] N for .z. <= 1e\+06 m"),
     ],
 )
 def test_a_support_that_is_not_convex_is_named(energy, message):
@@ -157,6 +161,19 @@ def test_a_support_that_is_not_convex_is_named(energy, message):
             fx.loads.Sine(2.0, 1.0),
             duration=1.0,
         )
+
+
+def test_a_state_of_ones_own_that_is_not_of_the_force_is_named():
+    class Halved(fx.supports.AbstractSupport):
+        def energy(self, z):
+            return z**2 / 2
+
+        def state_of(self, force):
+            return force / 2
+
+    message = r"Phi'\(state_of\) = \[-1, 1\].: needs .* forces \[-2, 2\]"
+    with pytest.raises(ValueError, match=message):
+        require_convex(Halved(), -2.0, 2.0)
 
 
 def test_convexity_is_asked_for_where_the_load_reaches():
