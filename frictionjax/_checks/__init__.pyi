@@ -40,6 +40,7 @@ from .parts import checked as checked
 from .parts import eagerly as eagerly
 from .parts import exchanged as exchanged
 from .parts import is_checked as is_checked
+from .parts import is_foreign as is_foreign
 from .parts import mark_checked as mark_checked
 from .results import CodedResult as CodedResult
 from .results import Result as Result

@@ -137,6 +137,8 @@ def as_text(value: Any) -> str:
     """A value as an error message shows it: six digits, arrays shortened."""
     if isinstance(value, _Kinds):
         return str(value)
+    if isinstance(value, eqx.Module) and hasattr(value, "__func__"):
+        value = value.__self__  # type: ignore[attr-defined]  # of a part's method
     if value is None or isinstance(value, str | bool | np.bool_) or callable(value):
         return repr(value)
     if is_masked(value):

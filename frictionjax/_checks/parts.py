@@ -15,6 +15,7 @@ from .higher_floors import floor_above
 from .shown_parts import notebook_text, part_text
 
 _PartT = TypeVar("_PartT", bound="Part")
+_OURS = __name__.partition(".")[0]
 
 
 class ByIdentity:
@@ -101,6 +102,11 @@ def asked_names(kind: type, changes: dict[str, Any]) -> list[str]:
         allowed = f"an argument of {kind.__name__}, one of {', '.join(known)}"
         require(name in known, f"{kind.__name__}.replace: {name}", value, allowed)
     return known
+
+
+def is_foreign(part: Any) -> bool:
+    """Whether its class is written outside the library: nobody knows what it keeps to."""
+    return type(part).__module__.partition(".")[0] != _OURS
 
 
 def mark_checked(thing: eqx.Module) -> None:

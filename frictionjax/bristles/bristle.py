@@ -1,12 +1,24 @@
 """What a bristle is."""
 
 import abc
-from typing import ClassVar, NamedTuple
+from collections.abc import Callable
+from typing import Any, ClassVar, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
-from .._checks import Part, Real, require_real
+from .._checks import (
+    Part,
+    Real,
+    is_concrete,
+    is_foreign,
+    require,
+    require_function,
+    require_real,
+)
+
+_ROUNDED = 1e-12  # m: an A(0) that is a difference of lengths
 
 
 class SlopeBounds(NamedTuple):
@@ -55,7 +67,8 @@ class AbstractBristle(Part):
 
     Everything else (a, alpha, mu, rho, V_eps, the dynamics) follows by autodiff. `positive`
     and `angles` name constructor arguments: those > 0, and those within a right angle
-    either way. Designs look for them there; any other number may be anywhere.
+    either way. Designs look for them there; any other number may be anywhere. Bristles of
+    a class of your own are checked as `Custom` is where they are made.
 
     >>> spring = scene.bristle
     >>> print(f"A = {spring.offset(0.01):.4f} m, F = {spring.energy(0.01):.4f} J")
@@ -64,6 +77,10 @@ class AbstractBristle(Part):
 
     positive: ClassVar[tuple[str, ...]] = ()
     angles: ClassVar[tuple[str, ...]] = ()
+
+    def __check_init__(self):
+        if is_foreign(self):
+            require_two(f"bristle: {type(self).__name__}.", self.offset, self.energy)
 
     def _require_positive(self) -> None:
         for name in self.positive:
@@ -104,3 +121,18 @@ class AbstractBristle(Part):
         zero = jnp.zeros(())
         known = self.geometry(zero)
         return zero if known is None else -known.length * jnp.sin(known.angle)
+
+
+def require_two(whose: str, offset: Callable, energy: Callable) -> None:
+    """Check what makes a bristle: A and F that JAX traces, `A(0) = 0` but for rounding,
+    and a finite `F'(0)` that is not 0."""
+    require_function(f"{whose}offset", offset, "a function A of eta")
+    require_function(f"{whose}energy", energy, "a function F of eta")
+    if not is_concrete(offset, energy):
+        return
+    zero: Any = np.float64(0.0)
+    start = float(offset(zero))
+    require(abs(start) <= _ROUNDED, f"{whose}offset", start, "A(0) = 0")
+    alpha = float(jax.grad(lambda eta: jnp.asarray(energy(eta)))(zero))
+    require(np.isfinite(alpha), f"{whose}energy", alpha, "a finite F'(0)")
+    require(alpha != 0, f"{whose}energy", alpha, "alpha = F'(0) != 0")

@@ -1,14 +1,12 @@
 """Bristle given by its two functions."""
 
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import ClassVar
 
-import jax
 import jax.numpy as jnp
-import numpy as np
 
-from .._checks import Real, is_concrete, require, require_function
-from .bristle import AbstractBristle
+from .._checks import Real
+from .bristle import AbstractBristle, require_two
 
 
 class Custom(AbstractBristle):
@@ -36,16 +34,7 @@ class Custom(AbstractBristle):
         self.energy_fn = energy
 
     def __check_init__(self):
-        require_function("bristle.offset", self.offset_fn, "a function A of eta")
-        require_function("bristle.energy", self.energy_fn, "a function F of eta")
-        if not is_concrete(self):
-            return
-        zero: Any = np.float64(0.0)
-        start = float(self.offset(zero))
-        require(start == 0, "bristle.offset", start, "A(0) = 0")
-        alpha = float(jax.grad(self.energy)(zero))
-        require(np.isfinite(alpha), "bristle.energy", alpha, "a finite F'(0)")
-        require(alpha != 0, "bristle.energy", alpha, "alpha = F'(0) != 0")
+        require_two("bristle.", self.offset_fn, self.energy_fn)
 
     def offset(self, eta: Real) -> Real:
         return jnp.asarray(self.offset_fn(eta))

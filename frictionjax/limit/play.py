@@ -25,7 +25,7 @@ from .._compile import Program
 from .._text import Named, SelfDrawn, ShownNumbers, dataset_over_time
 from ..coefficients import Coefficients
 from ..effects import Engine, NapFlip, nap_flip_among
-from ..loads import AbstractPull
+from ..loads import AbstractPull, turning_points_of
 from ..model import (
     Scene,
     coefficients_jit,
@@ -190,7 +190,7 @@ def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSo
     if not is_concrete(scene, ts):
         # Turning points do not move with the duration, and what fills their room is none.
         until = jax.lax.stop_gradient(jnp.asarray(scene.duration))
-        corners = scene.load.turning_points(until, scene.turns)
+        corners = turning_points_of(scene.load, until, scene.turns)
         parts = scene.load, scene.support, scene.z0, corners
         return LimitSolution(ts, *_limit_at(*parts, found, ts))
     # Known numbers compile nothing, whatever the parts.

@@ -6,8 +6,9 @@
   where a short pulse may have gone unseen); or derive from `AbstractLoad`.
 """
 
+from .completeness import UnprovedLoad as UnprovedLoad
+from .completeness import turning_points_of as turning_points_of
 from .custom import Custom as Custom
-from .custom import UnprovedLoad as UnprovedLoad
 from .load import AbstractLoad as AbstractLoad
 from .load import AbstractPull as AbstractPull
 from .piecewise_linear import PiecewiseLinear as PiecewiseLinear

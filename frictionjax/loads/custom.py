@@ -1,6 +1,5 @@
 """Load given as a function."""
 
-import warnings
 from collections.abc import Callable
 from typing import ClassVar
 
@@ -8,7 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Float
 
 from .._checks import (
     Real,
@@ -18,23 +17,16 @@ from .._checks import (
     is_known,
     known_numbers,
     require,
-    require_function,
+)
+from .completeness import (
+    require_complete,
+    require_rate,
+    turns_elsewhere,
+    warn_of_doubt,
 )
 from .course import Course, course_of
 from .load import AbstractLoad, listed_turning_points
 from .settings import SETTINGS
-
-
-class UnprovedLoad(UserWarning):
-    """A load may turn where nobody has looked.
-
-    >>> import jax, warnings
-    >>> wrap = lambda t: jax.lax.while_loop(lambda x: x > 1, lambda x: x - 1, t)
-    >>> with warnings.catch_warnings(record=True, action="always") as told:
-    ...     pulled = scene.replace(load=fx.loads.Custom(wrap), duration=0.9)
-    >>> print(told[0].message)
-    load.fn: while has no bounds, so a pulse of less than ... s may have gone unseen; ...
-    """
 
 
 class Custom(AbstractLoad):
@@ -85,8 +77,7 @@ class Custom(AbstractLoad):
         self.found = self.steepest = self.until = None
 
     def __check_init__(self):
-        require_function("load.fn", self.fn, "a function of t", smooth=False)
-        _require_slope(self.fn)
+        require_rate("load.fn", self.fn)
         if not is_known(self.listed):
             return
         times = known_numbers(self.listed)
@@ -102,8 +93,7 @@ class Custom(AbstractLoad):
         if not in_64_bits() or not is_known(self.fn, self.listed, duration):
             return self
         course = course_of(self.fn, float(duration))
-        if course.unproved:
-            warnings.warn(_doubt(course), UnprovedLoad, stacklevel=3)
+        warn_of_doubt("load.fn", course, "write fn")
         times = self._times(course, float(duration))
         with jax.ensure_compile_time_eval():
             known = tuple(map(as_jax, (times, course.steepest, float(duration))))
@@ -116,11 +106,11 @@ class Custom(AbstractLoad):
 
     def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
         if self.found is None or self.until is None:
-            wrong, times = _turns_elsewhere(self, self.listed, duration), self.listed
+            wrong, times = turns_elsewhere(self, self.listed, duration), self.listed
         else:
             wrong, times = duration > (1 + SETTINGS.later) * self.until, self.found
             if jax.tree_util.tree_leaves(eqx.filter(self.fn, eqx.is_array)):
-                wrong |= _turns_elsewhere(self, self.found, duration)
+                wrong |= turns_elsewhere(self, self.found, duration)
         return jnp.where(wrong, jnp.nan, listed_turning_points(times, duration, count))
 
     def _times(self, course: Course, duration: float) -> np.ndarray:
@@ -129,64 +119,11 @@ class Custom(AbstractLoad):
         if listed.size == 0:
             return np.union1d(course.turns, course.kinks)
         inside = listed[(listed > 0) & (listed < duration)]
-        _require_complete(course, inside)
+        none = ", or none: then they are found"
+        require_complete("load.turning_points", course, inside, none)
         apart = np.abs(course.kinks[:, None] - inside) > SETTINGS.same * duration
         return np.union1d(listed, course.kinks[apart.all(axis=1)])
 
 
-def _require_slope(fn: Callable[[Real], Real]) -> None:
-    """Callbacks and functions with `jax.custom_vjp` have none."""
-
-    def rate(t: Real) -> tuple[Real, Real]:
-        return jax.jvp(lambda t: jnp.asarray(fn(t), float), (t,), (jnp.ones_like(t),))
-
-    try:
-        jax.eval_shape(rate, jax.ShapeDtypeStruct((), float))
-    except (TypeError, ValueError, NotImplementedError) as error:
-        known = f"without jax.jvp, as {str(error).splitlines()[0]}"
-        mend = "a function of t that jax.jvp can differentiate"
-        require(False, "load.fn", known, f"{mend}; jax.custom_jvp gives a callback a slope")
-
-
 def _unknown(load: Custom) -> tuple:
     return load.found, load.steepest, load.until
-
-
-def _doubt(course: Course) -> str:
-    share = f"a pulse of less than {course.hidden:.3g} s may have gone unseen"
-    mend = "write fn with functions of jax.numpy, or as a PiecewiseLinear load"
-    return f"load.fn: {course.unproved}, so {share}; {mend}"
-
-
-def _require_complete(course: Course, listed: np.ndarray) -> None:
-    """Check that a listed time is at each turning point: as high, and on its flanks."""
-    turns = course.turns
-    before = np.concatenate([[-np.inf], turns[:-1]])
-    after = np.append(turns[1:], np.inf)
-    missing = []
-    for turn, low, high in zip(turns, before, after, strict=True):
-        near = listed[(listed > low) & (listed < high)]
-        heights = course.values(np.append(near, turn))
-        if not np.any(np.abs(heights[:-1] - heights[-1]) <= SETTINGS.same * course.size):
-            missing.append(turn)
-    some = ", ".join(f"{turn:.9g}" for turn in missing[:4])
-    more = f" and {len(missing) - 4} more" if len(missing) > 4 else ""
-    allowed = "every time at which l' changes sign, or none: then they are found"
-    require(not missing, "load.turning_points", f"without {some}{more}", allowed)
-
-
-def _turns_elsewhere(
-    load: Custom, turns: Float[Array, " n"], duration: Real
-) -> Bool[Array, ""]:
-    """Whether samples of a load go both ways between two of these times, traceable."""
-    times = duration * jnp.linspace(0.0, 1.0, SETTINGS.samples)
-    values = jax.lax.stop_gradient(jax.vmap(load)(times))
-    steps, noise = jnp.diff(values), SETTINGS.other_way * jnp.max(jnp.abs(values))
-    piece = jnp.searchsorted(turns, times, side="right")
-    inside = piece[1:] == piece[:-1]
-    rooms = turns.shape[0] + 1
-
-    def some(which: Bool[Array, " n"]) -> Bool[Array, " pieces"]:
-        return jnp.zeros(rooms, dtype=bool).at[piece[1:]].max(which & inside)
-
-    return jnp.any(some(steps > noise) & some(steps < -noise))

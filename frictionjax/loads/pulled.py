@@ -6,6 +6,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from .._checks import Asked, Real, as_real, exchanged, require, require_real
+from .completeness import turning_points_of
 from .load import AbstractLoad
 
 
@@ -74,7 +75,7 @@ class Pulled(AbstractLoad):
         return self.position.turning_count(duration)
 
     def turning_points(self, duration: Real, count: int) -> Float[Array, " count"]:
-        return self.position.turning_points(duration, count)
+        return turning_points_of(self.position, duration, count)
 
     def prepared(self, duration: Real) -> "Pulled":
         return exchanged(self, {"position": self.position.prepared(duration)})

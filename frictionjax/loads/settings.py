@@ -68,11 +68,12 @@ class Settings(NamedTuple):
     most_looks: int = 60
     steepest: float = 1.02  # of the steepest slope found: cells with lower bounds are left
 
-    # Loads whose numbers are traced or may have changed (`custom.py`).
+    # Loads whose numbers are traced or may have changed (`completeness.py`).
     samples: int = 4096  # finds slow turns
     other_way: float = 1e-9  # of the largest |l|: what it may go there where it should not
     later: float = 1e-12  # of the duration: rounding of durations
     same: float = 1e-9  # of the largest |l|, of the duration: turning points that are one
+    most_stated: int = 2**20  # turning points that a foreign class may state
 
     # Where loads are steepest (`steep.py`).
     steep_samples: int = 64

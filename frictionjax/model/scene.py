@@ -38,7 +38,7 @@ from .._compile import Interpreted
 from .._text import ResultTable, SelfDrawn
 from ..bristles import AbstractBristle, pulling_text
 from ..effects import AbstractEffect, require_bristle, require_together
-from ..loads import AbstractLoad, AbstractPull, Pulled
+from ..loads import AbstractLoad, AbstractPull, Pulled, turning_points_of
 from ..profiles import AbstractProfile
 from ..supports import AbstractSupport
 from ..tables import load_table
@@ -181,7 +181,7 @@ class Scene(SelfDrawn, eqx.Module):
 
     def turning_points(self) -> Float[Array, " turns"]:
         """Turning points of the load in (0, T), shape (turns,), padded with T."""
-        return self.load.turning_points(jnp.asarray(self.duration), self.turns)
+        return turning_points_of(self.load, jnp.asarray(self.duration), self.turns)
 
 
 def _potential_of(profile, bristle, given) -> AbstractPotential:

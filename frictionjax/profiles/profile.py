@@ -8,7 +8,17 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import Part, Real, in_64_bits, is_concrete, require, with_nan
+from .._checks import (
+    Part,
+    Real,
+    in_64_bits,
+    is_concrete,
+    is_foreign,
+    require,
+    require_function,
+    require_whole,
+    with_nan,
+)
 from .._compile import Interpreted, in_chunks
 from .settings import SETTINGS
 
@@ -23,9 +33,15 @@ class AbstractProfile(Part):
     2. It is twice differentiable by `jax.jvp` everywhere.
     3. `points` samples a period resolve `w'`; it is static.
 
+    Of a class of your own they are checked where it is made, as `Custom` is.
+
     >>> print(scene.profile(np.array([0.0, 0.25, 0.5, 0.75])).round(4))
     [ 0.      0.0159 -0.     -0.0159]
     """
+
+    def __check_init__(self):
+        if is_foreign(self):
+            _require_rules(self)
 
     @abc.abstractmethod
     def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
@@ -80,6 +96,28 @@ def require_smooth(name: str, fn: Callable[[Real], Real], points: int) -> None:
             f"{label} jumps by {jumps[worst]:.3g} near y = {worst / points:.4g}",
             "a 1-periodic C^2 function",
         )
+
+
+@Interpreted
+def _heights(profile: AbstractProfile, y: Array) -> Array:
+    return jax.vmap(profile)(y)
+
+
+@with_nan
+def _require_rules(profile: AbstractProfile) -> None:
+    """Check the rules of a profile, of one that nobody knows."""
+    kind = f"profile: {type(profile).__name__}"
+    require_function(f"{kind}.__call__", profile, "a function of y")
+    require_whole(f"{kind}.points", profile.points, 16)
+    require_smooth(f"{kind}.__call__", profile, profile.points)
+    if not is_concrete(profile) or not in_64_bits():
+        return
+    y = (np.arange(SETTINGS.places) + 0.1) / SETTINGS.places
+    inside, before, after = (_heights(profile, y + period) for period in (0.0, -1.0, 1.0))
+    off = float(np.max(np.abs([before - inside, after - inside])))
+    same = off <= SETTINGS.seam * float(np.max(np.abs(inside)))
+    known = f"w(y) and w(y + 1) are {off:.3g} apart"
+    require(same, f"{kind}.__call__", known, "a function that reduces y to one period")
 
 
 def _steps(value: np.ndarray, slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

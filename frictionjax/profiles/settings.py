@@ -11,6 +11,8 @@ class Settings(NamedTuple):
     seam: float = 1e-6  # of the largest value
     jump: float = 1e-9  # of it: between neighbouring samples, beyond what slopes explain
 
+    places: int = 64  # looked at in the periods beside: is it the same there?
+
     together: int = 1024  # samples that a function is asked for at once
 
     # Polylines (`polyline.py`).

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from .._checks import Part, Real
+from .._checks import Part, Real, is_foreign, require_function
 
 _NEWTON = 3
 
@@ -15,12 +15,20 @@ _NEWTON = 3
 class AbstractSupport(Part):
     """The energy `Phi(z)` of the horizontal spring, uniformly convex.
 
+    Of a class of your own it is checked where it is made that JAX traces it.
+
     >>> spring = scene.support
     >>> print(f"{spring.force(0.5):.2f} N at 0.5 m, {spring.state_of(0.3):.2f} m at 0.3 N")
     0.50 N at 0.5 m, 0.30 m at 0.3 N
     >>> print(spring.force(np.array([0.0, 0.5, 1.0])))
     [0.  0.5 1. ]
     """
+
+    def __check_init__(self):
+        if is_foreign(self):
+            kind = f"support: {type(self).__name__}"
+            require_function(f"{kind}.energy", self.energy, "a function Phi of z")
+            require_function(f"{kind}.state_of", self.state_of, "a function of a force")
 
     @abc.abstractmethod
     def energy(self, z: Real) -> Real:

@@ -125,3 +125,37 @@ def test_bristles_of_two_functions_have_no_geometry():
     for part in (fx.bristles.Homothetic(1.0), fx.bristles.Custom(jnp.sin, jnp.exp)):
         assert part.geometry(ETA) is None
         assert float(part.root_constant()) == 0
+
+
+class Mine(fx.bristles.AbstractBristle):
+    """A bristle of a class of one's own."""
+
+    start: float = 0.0
+
+    def offset(self, eta):
+        return self.start - 1.5 * eta
+
+    def energy(self, eta):
+        return jnp.exp(eta)
+
+
+MINE = {
+    "tuple": (lambda self, eta: (eta,), r"energy = 'values of shape \(1,\)'"),
+    "numpy": (lambda self, eta: np.exp(eta), r"energy = Mine\(\).*jax\.numpy"),
+    "no force": (lambda self, eta: eta**2, r"energy = 0: needs alpha = F'\(0\) != 0"),
+}
+
+
+@pytest.mark.parametrize("case", MINE)
+def test_a_class_of_ones_own_is_checked(monkeypatch, case):
+    energy, message = MINE[case]
+    monkeypatch.setattr(Mine, "energy", energy)
+    with pytest.raises(ValueError, match=rf"bristle: Mine\.{message}"):
+        Mine()
+
+
+def test_an_offset_of_ones_own_starts_at_0_but_for_rounding():
+    with pytest.raises(ValueError, match=r"bristle: Mine\.offset = 1: needs A\(0\) = 0"):
+        Mine(1.0)
+    assert Mine(1e-16).energy(0.0) == 1.0
+    assert jax.vmap(lambda x: Mine(x).offset(0.0))(jnp.ones(2)).tolist() == [1.0, 1.0]

@@ -1,5 +1,7 @@
 """Profiles: values, period, smoothness, and the check that a function is one."""
 
+from collections.abc import Callable
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -93,6 +95,39 @@ def test_what_is_not_periodic_and_smooth_is_named(case):
     fn, message = JUMPS[case]
     with pytest.raises(ValueError, match=f"profile.fn = .*{message}"):
         fx.profiles.Custom(fn)
+
+
+class Mine(fx.profiles.AbstractProfile):
+    """A surface of a class of one's own."""
+
+    fn: Callable
+    points: int = eqx.field(static=True, default=512)
+
+    def __call__(self, y):
+        return self.fn(y)
+
+
+MINE = {
+    "another period": (lambda y: jnp.sin(4 * y), "w jumps by .* at the seam"),
+    "no period": (lambda y: y**3 * (1 - y) ** 3, r"w\(y\) and w\(y \+ 1\) are 7.94 apart"),
+    "numpy": (np.sin, "written with jax.numpy"),
+    "two numbers": (lambda y: (y, y), r"values of shape \(2,\)"),
+}
+
+
+@pytest.mark.parametrize("case", MINE)
+def test_a_class_of_ones_own_is_checked(case):
+    fn, message = MINE[case]
+    with pytest.raises(ValueError, match=rf"profile: Mine\.__call__ = .*{message}"):
+        Mine(fn)
+
+
+def test_a_class_of_ones_own_that_keeps_the_rules_is_taken():
+    assert Mine(lambda y: jnp.sin(TAU * y))(0.25) == 1.0
+    with pytest.raises(ValueError, match=r"profile: Mine\.points = 4: needs .* >= 16"):
+        Mine(lambda y: jnp.sin(TAU * y), 4)
+    slopes = jax.vmap(lambda s: Mine(lambda y: s * jnp.sin(TAU * y))(0.25))
+    assert slopes(jnp.array([1.0, 2.0])).tolist() == [1.0, 2.0]  # traced ones too
 
 
 @pytest.mark.filterwarnings("ignore::frictionjax.profiles.SlopesUndetermined")
