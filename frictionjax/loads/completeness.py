@@ -71,6 +71,15 @@ def warn_of_doubt(name: str, course: Course, written: str) -> None:
     warnings.warn(text, UnprovedLoad, stacklevel=4)
 
 
+def warn_of_traces(what: str) -> None:
+    """Say that no turning points were found of a function, as something is traced."""
+    unknown = "turning points cannot be found, and where it turns all results are NaN"
+    mend = "list turning_points, or trace numbers of a scene that is built"
+    how = "(equinox.tree_at, equinox.filter_grad)"
+    text = f"load.fn: {what} traced, so {unknown}; {mend} {how}"
+    warnings.warn(text, UnprovedLoad, stacklevel=4)
+
+
 def require_complete(
     name: str, course: Course, listed: np.ndarray, otherwise: str = ""
 ) -> None:

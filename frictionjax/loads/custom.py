@@ -23,6 +23,7 @@ from .completeness import (
     require_rate,
     turns_elsewhere,
     warn_of_doubt,
+    warn_of_traces,
 )
 from .course import Course, course_of
 from .load import AbstractLoad, listed_turning_points
@@ -45,9 +46,12 @@ class Custom(AbstractLoad):
     long) are looked at in four places each, and closer where they surprise; then an
     `UnprovedLoad` warning says how short a pulse may have gone unseen.
 
-    Where numbers of `fn` are traced, nothing can be found: list the turning points. A load
-    that turns elsewhere, as 4096 samples see it, has the status TOO_MANY_TURNS then; and
-    so has one of which numbers, or the duration, were changed after the scene was built.
+    Where numbers of `fn`, or the duration, are traced while the scene is built, nothing
+    can be found, and an `UnprovedLoad` warning says so where no turning points are listed:
+    list them, or trace numbers of a scene that is built (`equinox.tree_at`,
+    `equinox.filter_grad`). A load that turns elsewhere, as 4096 samples see it, gives NaN
+    then, with the status TOO_MANY_TURNS (of limits NOT_FINITE); and so does one of which
+    numbers, or the duration, were changed after the scene was built.
     Derivatives by numbers of `fn` hold its turning points where they are, which is right
     where l' = 0 there.
 
@@ -90,7 +94,12 @@ class Custom(AbstractLoad):
 
     def prepared(self, duration: Real) -> "Custom":
         """With the turning points and kinks of [0, duration] that are found there."""
-        if not in_64_bits() or not is_known(self.fn, self.listed, duration):
+        if not in_64_bits():
+            return self
+        none = self.listed.size == 0  # as good as known, though JAX traces it
+        if not is_known(self.fn, () if none else self.listed, duration):
+            if none and self.found is None:
+                warn_of_traces("the duration is" if is_known(self.fn) else "numbers are")
             return self
         course = course_of(self.fn, float(duration))
         warn_of_doubt("load.fn", course, "write fn")
@@ -115,9 +124,9 @@ class Custom(AbstractLoad):
 
     def _times(self, course: Course, duration: float) -> np.ndarray:
         """Where pieces end: listed times, or turning points that were found; and kinks."""
-        listed = known_numbers(self.listed)
-        if listed.size == 0:
+        if self.listed.size == 0:
             return np.union1d(course.turns, course.kinks)
+        listed = known_numbers(self.listed)
         inside = listed[(listed > 0) & (listed < duration)]
         none = ", or none: then they are found"
         require_complete("load.turning_points", course, inside, none)

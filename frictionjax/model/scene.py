@@ -104,7 +104,7 @@ class Scene(SelfDrawn, eqx.Module):
         self.support = _part("support", support, AbstractSupport)
         load = _part("load", load, AbstractLoad)
         require(duration is not None, "scene.duration", None, "a time > 0 in s")
-        self.duration, self.z0 = as_real(duration), as_real(z0)
+        self.duration, self.z0 = _as_known(duration), as_real(z0)
         self.effects = _effects_of(effects, self.bristle)
         require_real("scene.duration", self.duration, "duration > 0", lambda t: t > 0)
         require_real("scene.z0", self.z0, "a position in m")
@@ -182,6 +182,14 @@ class Scene(SelfDrawn, eqx.Module):
     def turning_points(self) -> Float[Array, " turns"]:
         """Turning points of the load in (0, T), shape (turns,), padded with T."""
         return turning_points_of(self.load, jnp.asarray(self.duration), self.turns)
+
+
+def _as_known(duration: Any) -> Any:
+    """As a leaf that stays known inside a caller's `jit`, where turns can be found then."""
+    if not is_known(duration):
+        return as_real(duration)
+    with eagerly(duration):
+        return as_real(duration)
 
 
 def _potential_of(profile, bristle, given) -> AbstractPotential:

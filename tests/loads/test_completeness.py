@@ -82,6 +82,41 @@ def test_traced_ones_that_turn_elsewhere_have_a_status():
     assert ok.tolist() == [True, False]
 
 
+class Swing(eqx.Module):
+    """A function of time with a number to trace."""
+
+    rate: jax.Array
+
+    def __call__(self, t):
+        return jnp.sin(self.rate * t)
+
+
+BUILT = scene_under(fx.loads.Custom(Swing(jnp.ones(()))))
+TOLD = {
+    "numbers are": lambda x: scene_under(fx.loads.Custom(Swing(x))),
+    "the duration is": lambda x: fx.Scene(*PARTS, fx.loads.Custom(jnp.sin), x),
+}
+UNTOLD = {
+    "listed": lambda x: scene_under(fx.loads.Custom(Swing(x), TURNS)),
+    "built": lambda x: eqx.tree_at(lambda s: s.load.fn.rate, BUILT, x).replace(z0=0.1),
+    "known": lambda x: scene_under(fx.loads.Custom(jnp.sin)),
+    "longer": lambda x: BUILT.replace(duration=x),
+}
+
+
+@pytest.mark.parametrize("what", TOLD)
+def test_functions_of_which_nothing_can_be_found_are_told(what):
+    """Derivatives were NaN without a word."""
+    mend = r"list turning_points, or trace numbers of a scene that is built \(.*tree_at"
+    with pytest.warns(fx.loads.UnprovedLoad, match=f"load.fn: {what} traced, .*; {mend}"):
+        eqx.filter_eval_shape(TOLD[what], jnp.ones(()))
+
+
+@pytest.mark.parametrize("what", UNTOLD)
+def test_what_has_been_found_or_listed_is_traced_without_a_warning(what):
+    eqx.filter_eval_shape(UNTOLD[what], jnp.ones(()))
+
+
 METHODS = {
     "numpy": ({"__call__": lambda self, t: np.sin(t)}, "__call__ = .*jax.numpy"),
     "no times": (
