@@ -45,15 +45,17 @@ def measured(eps=(0.01, 0.001)):
     return data
 
 
-@pytest.fixture
-def page(tmp_path, monkeypatch):
-    monkeypatch.setattr(
-        "frictionjax.report.cost.work_precision", lambda *_, **__: measured()
-    )
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """Written once, 3 s, and only read."""
+    folder = tmp_path_factory.mktemp("cost")
     request = ReportRequest("frictionjax cost --report", time.perf_counter())
-    job = read_job(None)
-    run_cost(job._replace(report=request), tmp_path, None, None, 1.0, False)
-    return checked_page((tmp_path / "report.html").read_text(encoding="utf-8"))
+    job = read_job(None)._replace(report=request)
+    with pytest.MonkeyPatch.context() as patch:
+        name = "frictionjax.report.cost.work_precision"
+        patch.setattr(name, lambda *_, **__: measured())
+        run_cost(job, folder, None, None, 1.0, False)
+    return checked_page((folder / "report.html").read_text(encoding="utf-8"))
 
 
 def test_every_number_of_every_run_is_in_it(page):
