@@ -7,13 +7,16 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from at_places import at_places, part_at
 
 import frictionjax as fx
+from frictionjax._compile import padded_size
 from frictionjax.design.trace.fit import _louder
 from frictionjax.design.trace.flow import _states, bumped_flow, flow, plan_of
 from frictionjax.design.trace.gauss_newton import Descent
-from frictionjax.design.trace.problem import in_tables, trace_problem
+from frictionjax.design.trace.problem import _cut, in_tables, trace_problem
 from frictionjax.design.trace.report import _patterned, explains, report_trace
+from frictionjax.design.trace.settings import SETTINGS
 from frictionjax.design.trace.status import TraceStatus
 from frictionjax.design.trace.waves import WaveProfile
 from frictionjax.design.trace.weights import bumps_of, intervals_of
@@ -34,17 +37,21 @@ def scene_of(profile=TRUTH, bristle=SLANTED, support=STIFF, load=LOOP):
 
 
 def states(numbers, scene, ts, accuracy=1e-9):
+    """At as many times as fits have room for: no other program to compile."""
     tables, _ = in_tables(scene, float(EPS), numbers.size // 2)
     plan = plan_of(numbers, tables, EPS, ONE, np.asarray(accuracy))
-    return flow(numbers, tables, EPS, ONE, ts, plan)
+    more = padded_size(ts.size, SETTINGS.room_of_times) - ts.size
+    padded = np.pad(ts, (0, more), mode="edge")
+    return _cut(flow(numbers, tables, EPS, ONE, padded, plan), ts.size)
 
 
 def trace_of(scene, noise=NOISE, ts=TIMES, seed=0, quantity="force", numbers=NUMBERS):
-    """A trace of the fit's own trajectories: no other program to compile."""
-    z = np.asarray(states(numbers, scene, ts, 1e-4).z)
+    """A trace of the fit's own trajectories."""
+    z = states(numbers, scene, ts, 1e-4).z
     values = z
     if quantity == "force":
-        values = np.asarray(jax.vmap(scene.load)(ts) - jax.vmap(scene.support.force)(z))
+        pull = np.asarray(part_at(scene.load, ts))
+        values = pull - at_places(scene.support.force, z)
     values = values + noise * np.random.default_rng(seed).normal(size=ts.size)
     return fx.Trace(ts, **{quantity: values}, uncertainty=noise or None)
 
@@ -54,7 +61,7 @@ def _unstated(trace):
 
 
 def slopes(profile, phases):
-    return np.asarray(jax.vmap(jax.grad(profile))(jnp.asarray(phases)))
+    return at_places(jax.grad(profile), phases)
 
 
 def pulls(fit, truth=TRUTH):
@@ -254,10 +261,10 @@ def test_derivatives_of_the_trace_agree_with_central_differences():
         for share in (1, -1, 2, -2):
             moved = NUMBERS.copy()
             moved[index] += share * step
-            ends.append(np.asarray(states(moved, scene, TIMES).z))
+            ends.append(states(moved, scene, TIMES).z)
         slope = (8 * (ends[0] - ends[1]) - (ends[2] - ends[3])) / (12 * step)
-        rest = np.abs(np.asarray(found.speed)) < 10 * 0.32
-        error = np.abs(np.asarray(found.by)[index] - slope)[rest]
+        rest = np.abs(found.speed) < 10 * 0.32
+        error = np.abs(found.by[index] - slope)[rest]
         assert np.max(error) < 1e-5 * np.max(np.abs(slope[rest]))
 
 
