@@ -306,22 +306,34 @@ def test_study_of_every_row_of_a_map(tmp_path):
     assert "study scene.toml" not in page.text  # which holds their mean
 
 
-def test_figures(tmp_path):
-    result = run("figures", "--out", tmp_path / "figures")
+OLD = ("report.html", "dissipation.png", "nap.png", "notes of mine.txt")
+
+
+@pytest.fixture(scope="module")
+def figures(tmp_path_factory):
+    """A folder in which something was before, and what the command said."""
+    folder = tmp_path_factory.mktemp("figures")
+    for name in OLD:
+        (folder / name).write_text("old")
+    return folder, run("figures", "--out", folder)
+
+
+def test_figures(figures):
+    folder, result = figures
     assert result.exit_code == 0, result.stderr
-    names = {path.name for path in (tmp_path / "figures").iterdir()}
-    assert names == {"mu_slanted.png", "mu_angular.png", "nap.png"}
-    assert names <= WRITTEN
+    pictures = {"mu_slanted.png", "mu_angular.png", "nap.png"}
+    assert {path.name for path in folder.iterdir()} == pictures.union(OLD)
+    for name in pictures:
+        assert (folder / name).read_bytes().startswith(b"\x89PNG")
+    assert pictures <= WRITTEN
 
 
-def test_what_an_earlier_run_has_left_is_named(tmp_path):
+def test_what_an_earlier_run_has_left_is_named(figures):
     """A report or a picture of another bristle would be taken for this run's."""
-    for name in ("report.html", "dissipation.png", "nap.png", "notes of mine.txt"):
-        (tmp_path / name).write_text("old")
-    result = run("figures", "--out", tmp_path)
-    said = f"Written to {tmp_path}\nNot of this run, there before: "
+    folder, result = figures
+    said = f"Written to {folder}\nNot of this run, there before: "
     assert result.stdout.endswith(f"{said}dissipation.png, report.html\n")
-    assert (tmp_path / "report.html").read_text() == "old"
+    assert (folder / "report.html").read_text() == "old"
 
 
 def test_help_without_a_command():
