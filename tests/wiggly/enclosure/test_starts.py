@@ -1,8 +1,9 @@
 """Where lanes set off: below and above the tip, and near enough to it."""
 
+import equinox as eqx
+import jax
 import numpy as np
 import pytest
-from at_places import at_places
 from landings_unknown import without_landings
 from paths import path_of
 from reference import System, sine
@@ -50,6 +51,11 @@ def test_lanes_that_one_leaves_alone_have_met_ten_times_as_closely(monkeypatch):
     assert found.gap.max() <= 0.1 * 1e-3
 
 
+@eqx.filter_jit  # potentials of one kind share a program
+def offsets(potential, tips, eps):
+    return jax.vmap(lambda y: potential.offset(y, eps))(tips)
+
+
 @pytest.mark.parametrize("name", ["sine load", "several folds", "convex support"])
 @pytest.mark.parametrize("gamma", [1.0, 2.0, 3.0])
 def test_lanes_set_off_below_and_above_the_tip(name, gamma):
@@ -69,8 +75,7 @@ def test_lanes_set_off_below_and_above_the_tip(name, gamma):
     z = np.asarray(solution.z)[which]
 
     def states(well, tip):
-        offset = at_places(lambda y: tables.potential.offset(y, eps), tip)
-        return eps * (well + tip) + offset
+        return eps * (well + tip) + offsets(tables.potential, tip, np.asarray(eps))
 
     behind = states(starts.behind_well, starts.behind_tip)
     ahead = states(starts.ahead_well, starts.ahead_tip)
