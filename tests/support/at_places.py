@@ -10,7 +10,7 @@ import numpy as np
 
 def at_places(fn, places):
     """Values, (n,)."""
-    return np.asarray(jax.jit(jax.vmap(fn))(places))
+    return np.asarray(part_at(fn, places))
 
 
 def each_at_places(fns, places):
@@ -26,10 +26,14 @@ def part_at(part, places):
 
 def with_derivatives(fn, places):
     """Values, slopes and second derivatives, (3, n)."""
+    return np.array(_derivatives(fn, places))
+
+
+@eqx.filter_jit
+def _derivatives(fn, places):
     slope = jax.grad(fn)
     orders = fn, slope, jax.grad(slope)
-    found = jax.jit(jax.vmap(lambda place: [order(place) for order in orders]))(places)
-    return np.array(found)
+    return jax.vmap(lambda place: [order(place) for order in orders])(places)
 
 
 def relative_errors(fn, other, places):
