@@ -90,14 +90,16 @@ def smooth(ts):
     return 0.3 * np.sin(ts) + 0.05 * ts
 
 
-@eqx.filter_jit
-def rigid_force(scene, ts, z):
-    return jax.vmap(scene.load)(ts) - scene.support.force(z)
+@eqx.filter_jit  # step by step nine programs for each number of times
+def costs_at(scene, eps, gamma, ts, z, speed):
+    rigid = jax.vmap(scene.load)(ts) - scene.support.force(z)
+    force = rigid - scene.potential.force(z, eps)
+    return fx.principle.M_eps(speed, force, eps, gamma)
 
 
 def by_quadrature(scene, eps, gamma, ts, z, speed):
-    force = np.asarray(rigid_force(scene, ts, z) - scene.potential.force(z, eps))
-    cost = np.asarray(fx.principle.M_eps(speed, force, eps, gamma))
+    eps, gamma = np.asarray(eps), np.asarray(gamma)
+    cost = np.asarray(costs_at(scene, eps, gamma, ts, z, speed))
     return float(np.sum(np.diff(ts) * (cost[1:] + cost[:-1]) / 2))
 
 
