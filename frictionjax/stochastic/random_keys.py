@@ -59,7 +59,14 @@ def cell_keys(
     same alone and in any grid."""
     numbers = np.stack([eps, gamma], axis=1).astype(np.float64)
     words = numbers.view(np.uint32).reshape(-1, 4)
-    whole = jax.random.wrap_key_data(jnp.asarray(key), impl="threefry2x32")
+    return np.asarray(_folded_in_each(jnp.asarray(key), words))
+
+
+@jax.jit  # one program for a number of cells, not a dozen: 0.5 s
+def _folded_in_each(
+    key: UInt32[Array, " words"], words: UInt32[Array, "cells numbers"]
+) -> UInt32[Array, "cells words"]:
+    whole = jax.random.wrap_key_data(key, impl="threefry2x32")
 
     def folded(bits: Any) -> Any:
         found = whole
@@ -67,7 +74,7 @@ def cell_keys(
             found = jax.random.fold_in(found, bit)
         return jax.random.key_data(found)
 
-    return np.asarray(jax.vmap(folded)(words))
+    return jax.vmap(folded)(words)
 
 
 def _of_seed(seed: int) -> Any:
