@@ -9,7 +9,7 @@ from ..turning import BentForce
 from .curve import along_curve, every_second
 from .forces import AbstractForce, AtTip
 from .plain_curve import CurveMeasures, residual_error, verdict
-from .tube import distance
+from .tube import CurveSystem, distances_by_windows
 from .verdicts import Certificate
 
 
@@ -42,8 +42,11 @@ def bent_certificate(
     residual = float(np.sum(on.residual))
     thinned = every_second(ts.size)
     _, on_half = along_curve(force, viscosity, ts[thinned], z[thinned])
+    bend = float(np.max(np.abs(at.bend)))
+    system = CurveSystem(eps, viscosity, 0.5 * scale / eps, bend)
+    by_windows = distances_by_windows(ts, z, at, on, system)
     measured = CurveMeasures(
-        distance=distance(ts, z, at, on, eps, viscosity, 0.5 * scale / eps),
+        distance=by_windows.nearby,
         within=np.inf,
         missing_force=-np.inf,
         viscosity=np.nan,
@@ -56,5 +59,5 @@ def bent_certificate(
         slips=0,
         skipped=0,
         status=verdict(measured),
-        **measured._asdict(),
+        **measured._replace(distance=by_windows.least)._asdict(),
     )

@@ -56,14 +56,16 @@ def certify(
     by a tenth of a slip period say. From samples where tips forget where they were two
     solutions are followed, one from just below and one from just above, between which all
     that are close to the curve have to be: `distance` is how far the curve is from all of
-    these, `within` how far it is at most from one. Where tips forget nothing for many
-    wells, as in fast slides, `within` may be inf; then forces over windows, the force that
-    a slip takes and the viscosity that shows in it decide too. Narrow wells under few
-    samples are `UNRESOLVED` where half of these tell another viscosity by as much as it is
-    off, and may be `OFF` on a true curve: take more. In time a hundredth of what the
-    limit takes to slide by eps is allowed, as slips may be far shorter. The residual of the
-    balance is reported but cannot decide: a shift by eps/100 costs 270 slips at eps = 1e-3
-    and gamma = 1, a skipped well that is made slowly 1e-4 of a slip.
+    these (where it is far from every one, in slips, it may say more than that: some that
+    set off farther away are nearer later), `within` how far it is at most from one. Where
+    tips forget nothing for many wells, as in fast slides, `within` may be inf; then forces
+    over windows, the force that a slip takes and the viscosity that shows in it decide too.
+    Narrow wells under few samples are `UNRESOLVED` where half of these tell another
+    viscosity by as much as it is off, and may be `OFF` on a true curve: take more. In time
+    a hundredth of what the limit takes to slide by eps is allowed, as slips may be far
+    shorter. The residual of the balance is reported but cannot decide: a shift by eps/100
+    costs 270 slips at eps = 1e-3 and gamma = 1, a skipped well that is made slowly 1e-4 of
+    a slip.
 
     Of a scene with `effects.CompliantArray` of N bristles `z` has the shape (N, n), a row
     for each: `solve` of arrays of one offset each gives them, where that of all gives

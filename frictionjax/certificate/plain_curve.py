@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ..model import Scene, known_turning_points, padded_edges
-from .curve import Intervals, along_curve, every_second
+from .curve import CurveSamples, Intervals, along_curve, every_second
 from .following import FollowedCurve, distances_from_rests
 from .forces import Force, force_in_tables, force_of
 from .settings import SETTINGS
@@ -18,7 +18,7 @@ from .transits import (
     most_forgetful,
     viscosity_ratio,
 )
-from .tube import distance
+from .tube import CurveSystem, distances_by_windows
 from .verdicts import Certificate, CertificateStatus
 
 
@@ -51,7 +51,9 @@ def certificate_under(
     residual = float(np.sum(on.residual))
     folds = folds_of(force)
     missing = missing_forces(force, folds, at)
-    by_windows = distance(ts, z, at, on, eps, viscosity, 0.5 * scale / eps)
+    bend = _most_bent(force, viscosity, at, ts, z)
+    system = CurveSystem(eps, viscosity, 0.5 * scale / eps, bend)
+    by_windows = distances_by_windows(ts, z, at, on, system)
     columns = at.well, at.inside, at.force, at.stretch, at.pace
     curve = FollowedCurve(ts, z, *columns, stops)
     rests = distances_from_rests(force, viscosity, curve, most_forgetful(folds, at))
@@ -62,21 +64,32 @@ def certificate_under(
     fast_half = fast_parts(folds, ts[thinned], z[thinned], at_half, on_half)
     ratio, coarse = (viscosity_ratio(f, viscosity, eps) for f in (fast, fast_half))
     measured = CurveMeasures(
-        distance=rests.least if surely else max(by_windows, rests.least),
+        distance=rests.least if surely else max(by_windows.nearby, rests.least),
         within=rests.most,
         missing_force=float(np.max(missing, initial=-np.inf)),
         viscosity=ratio,
         spacing=float(np.max(np.abs(np.diff(z)))) / eps,
     )
+    status = verdict(measured, abs(coarse - ratio))
+    if not surely:
+        measured = measured._replace(distance=max(by_windows.least, rests.least))
     return Certificate(
         residual=residual,
         residual_error=residual_error(on_half, residual),
         scale=scale,
         slips=missing.size,
         skipped=int(np.sum(missing > SETTINGS.missing_force)),
-        status=verdict(measured, abs(coarse - ratio)),
+        status=status,
         **measured._asdict(),
     )
+
+
+def _most_bent(force: Force, viscosity: float, at: CurveSamples, ts, z) -> float:
+    """The largest |f_zz| in N/m^2, along the curve and in a whole well."""
+    places = np.linspace(0.0, 1.0, SETTINGS.places_of_bend)
+    times = ts[0] + places * (ts[-1] - ts[0])
+    well, _ = along_curve(force, viscosity, times, z[0] + float(force.eps) * places)
+    return float(np.nanmax(np.abs(np.concatenate([at.bend, well.bend]))))
 
 
 def residual_error(thinned: Intervals, residual: float) -> float:

@@ -33,6 +33,7 @@ class Settings(NamedTuple):
 
     # Distance.
     second_order: float = 0.015  # perturbation up to which the second order is allowed for
+    places_of_bend: int = 513  # of a well: how much the force bends there
     surely: float = 0.06  # at most so far from a solution: no more is asked
     sliding: float = 0.3  # of (rho_plus - rho_minus)/2: larger forces are a slide's
 

@@ -77,8 +77,8 @@ class Certificate(ShownNumbers, SelfDrawn, Result, _Numbers):
 
         Forces decide where `within` does not; `viscosity` by its distance from 1, and where
         `within` decides only if samples are close enough to tell it. NaN: of a curve that
-        has none, without slips. What else decides of tips with mass and rods that turn
-        over, `status` tells.
+        has none, without slips. What else decides of tips with mass, rods that turn over
+        and curves that are `OFF` closer by, `status` tells.
         """
         apart = {"spacing": self.spacing / SETTINGS.coarsest}
         near = {"distance": self.distance / SETTINGS.farthest}

@@ -69,7 +69,7 @@ def test_one_bristle_that_is_wrong_is_enough(which):
     z[which] += 0.1 * EPS
     found = certified(z)
     assert not found.ok
-    assert found.distance >= 0.05
+    assert 0.05 <= found.distance <= 0.1001
     z[which] = rows()[which] + EPS * (TS > 0.6)
     assert not certified(z).ok
     z[which, 7] = np.nan

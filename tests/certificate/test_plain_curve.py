@@ -70,6 +70,14 @@ def test_noise_is_as_far_as_it_is():
     assert found.within < 0.06
 
 
+@pytest.mark.parametrize("shift", [0.05, 0.1, -0.1])
+def test_a_shifted_curve_is_as_far_as_it_was_shifted(shift):
+    """Not 1.02 eps at 0.1, as windows said without the second order of all of a shift."""
+    found = certified(solved() + shift * EPS)
+    assert not found.ok
+    assert 0.99 * abs(shift) < found.distance < 1.01 * abs(shift)
+
+
 def test_after_a_jump_no_solution_is_near():
     """A well on, and a solution again: of another start."""
     found = certified(solved() + EPS * (TS > 0.5 * END))
