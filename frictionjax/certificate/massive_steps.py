@@ -91,9 +91,10 @@ def _solved(equation: MassiveEquation, step: MassiveSteps) -> SolvedStages:
     rates = _rates(equation, step.well, times, step.tips, step.speeds)
     forgotten = equation.viscosity / equation.mass
     damped = inverse_of_three(jnp.eye(3) + forgotten * weights)
-    pulled = damped @ (weights * rates.speed_by_tip)
-    moved = weights * rates.tip_by_speed
-    left = inverse_of_three(jnp.eye(3) - weights * rates.tip_by_tip - moved @ pulled)
+    pulled = damped @ (weights * rates.speed_by_tip[None])
+    moved = weights * rates.tip_by_speed[None]
+    bent = weights * rates.tip_by_tip[None]
+    left = inverse_of_three(jnp.eye(3) - bent - moved @ pulled)
 
     def changes(tip: Array, speed: Array) -> tuple[Array, Array]:
         late = damped @ speed

@@ -46,7 +46,7 @@ def _ahead(potential: BristlePotential, eps: Real) -> Real:
     places = SETTINGS.clearance_places
     heights = potential.profile(jnp.arange(places) / places)
     rods = _rods(potential, eps * heights)
-    steps = jnp.arange(1, places + 1)
+    steps = jnp.arange(1, places + 1)[None]
     ahead = heights[(jnp.arange(places)[:, None] + steps) % places]
     secants = (ahead - heights[:, None]) * places / steps
     under = eps * steps / places <= rods.reach[:, None]

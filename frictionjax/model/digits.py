@@ -107,14 +107,14 @@ def _phases() -> Float[Array, " n"]:
 def _of_values(fn: Callable[[Real], Real]) -> Real:
     """What changes between neighbouring places and slopes do not explain."""
     ends = jax.vmap(fn)(jnp.append(_phases(), _phases()[0] + 1))
-    inside = _phases()[:, None] + (1 + _NODES) / (2 * SETTINGS.places)
+    inside = _phases()[:, None] + (1 + _NODES[None]) / (2 * SETTINGS.places)
     slopes = jax.vmap(jax.vmap(slope_of(fn)))(inside) @ _SHARES / (2 * SETTINGS.places)
     return _worst_median(jnp.diff(ends) - slopes) / np.sqrt(2.0)
 
 
 def _of_slopes(fn: Callable[[Real], Real]) -> Real:
     """Noise of a slope, from phases that are almost the same."""
-    beside = _phases()[:, None] + SETTINGS.neighbours * jnp.arange(-2, 3)
+    beside = _phases()[:, None] + SETTINGS.neighbours * jnp.arange(-2, 3)[None]
     slopes = jax.vmap(jax.vmap(slope_of(fn)))(beside)
     return _worst_median(slopes @ _WEIGHTS)
 

@@ -407,5 +407,6 @@ def smallest_stretch(
     look = jax.vmap(lambda y: potential.at_tip(y, eps)[1:])
     coarse, offset = look(grid)
     places = [jnp.argmin(coarse), jnp.argmin(offset), jnp.argmax(offset)]
-    fine = grid[jnp.stack(places)][:, None] + np.linspace(-1, 1, SETTINGS.zoom + 1) / count
+    around = np.linspace(-1, 1, SETTINGS.zoom + 1)[None] / count
+    fine = grid[jnp.stack(places)][:, None] + around
     return smallest(jnp.concatenate([coarse, look(fine.ravel())[0]]))

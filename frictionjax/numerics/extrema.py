@@ -50,7 +50,7 @@ def periodic_extrema(
     grid = jnp.arange(points) / points
     sides = jnp.array([1.0, -1.0])
     values = jax.lax.stop_gradient(jax.vmap(fn)(grid))
-    frozen = jax.lax.stop_gradient(_summits(fn, grid, sides[:, None] * values))
+    frozen = jax.lax.stop_gradient(_summits(fn, grid, sides[:, None] * values[None]))
     places = frozen
     if differentiable:
         places = jax.vmap(lambda side, place: _carry(fn, side, place))(sides, frozen)

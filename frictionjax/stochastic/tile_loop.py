@@ -65,7 +65,7 @@ def run_tiles(
         block = begin + march.block
         first = block * size
         noise = jax.vmap(lambda one: block_draws(key, one, size))(block).T
-        times = bath.step * (first + jnp.arange(size)[:, None])
+        times = bath.step * (first[None] + jnp.arange(size)[:, None])
         pulls = jax.vmap(jax.vmap(load))(times)
         (z, last), values = jax.lax.scan(advance, (march.z, march.noise), (noise, pulls))
 
@@ -89,7 +89,7 @@ def run_tiles(
         return jnp.where(block == 0, first_draw(key), last)
 
     out = jnp.broadcast_to(z0, wanted.shape)
-    begun = jnp.sum(wanted <= begin * size, axis=0)
+    begun = jnp.sum(wanted <= begin[None] * size, axis=0)
     start = _March(jnp.zeros((), int), z0, jax.vmap(before)(begin), begun, out)
     end = jax.lax.while_loop(lambda m: m.block < blocks, march, start)
     return TileValues(end.z, end.out)

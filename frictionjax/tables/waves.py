@@ -1,5 +1,6 @@
 """Fourier series: one harmonic after the other, or all at once."""
 
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
@@ -37,5 +38,7 @@ class Waves(SeriesProfile):
     def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         y = jnp.asarray(y)
         inside = y - jnp.round(y)
-        sine, cosine = sin_cos(inside[..., None] * jnp.arange(1, self.cos.shape[0] + 1))
-        return self.mean + jnp.sum(self.cos * cosine + self.sin * sine, axis=-1)
+        rows = (jnp.arange(1, self.cos.shape[0] + 1), self.cos, self.sin)
+        order, cos, sin = (jax.lax.broadcast_to_rank(row, y.ndim + 1) for row in rows)
+        sine, cosine = sin_cos(inside[..., None] * order)
+        return self.mean + jnp.sum(cos * cosine + sin * sine, axis=-1)

@@ -51,7 +51,7 @@ def _solved(
     def newton(number: int, known: tuple[Array, _Solved]) -> tuple[Array, _Solved]:
         tips, _ = known
         rates, slopes, by_state = jax.vmap(at)(times, tips)
-        inverse = inverse_of_three(jnp.eye(3) - weights * slopes)
+        inverse = inverse_of_three(jnp.eye(3) - weights * slopes[None])
         change = inverse @ (tip + weights @ rates - tips)
         tips = tips + change
         left = jnp.max(jnp.abs(change))

@@ -188,8 +188,8 @@ def scan_admissible(
     width = ends[:, 1:] - ends[:, :1]
     even = np.arange(1, SETTINGS.even) / SETTINGS.even
     halved = 2.0 ** -np.arange(*SETTINGS.halvings)
-    near = jnp.concatenate([jnp.zeros(1), halved[::-1], even[even < 0.5]])
-    left, right = ends[:, :1] + width * near, ends[:, 1:] - width * near[::-1]
+    near = jnp.concatenate([jnp.zeros(1), halved[::-1], even[even < 0.5]])[None]
+    left, right = ends[:, :1] + width * near, ends[:, 1:] - width * near[:, ::-1]
     middle = ends[:, :1] + 0.5 * width
     nodes = jnp.sort(jnp.concatenate([left, middle, right], axis=1), axis=1)
     every = jax.jit(jax.vmap(jax.vmap(fn)))
@@ -197,7 +197,7 @@ def scan_admissible(
     size = jnp.max(jnp.abs(values), axis=1)
     flat = jnp.max(values, axis=1) - jnp.min(values, axis=1) <= SETTINGS.flat * size
     places, more = _turns(every, nodes, slopes)
-    steps = width * jnp.array(SETTINGS.asides)
+    steps = width * jnp.array([SETTINGS.asides])
     asides = jnp.concatenate([ends[:, :1] + steps, ends[:, 1:] - steps], axis=1)
     turned = jnp.isfinite(places)
     # Empty places go to the end of the interval, where they repeat its last node.

@@ -1,5 +1,6 @@
 """Several tips on one root as one tip on a surface of its own."""
 
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
@@ -21,7 +22,8 @@ class SummedSurface(AbstractProfile):
     def __call__(self, y: Float[ArrayLike, "*shape"]) -> Float[Array, "*shape"]:
         y = jnp.asarray(y)[..., None]
         # Whole periods go first: large offsets would lose digits.
-        phases = y - jnp.floor(y) + (self.offsets - jnp.floor(self.offsets))
+        own = jax.lax.broadcast_to_rank(self.offsets - jnp.floor(self.offsets), y.ndim)
+        phases = y - jnp.floor(y) + own
         return self.single(phases) @ self.weights
 
     @property

@@ -148,11 +148,11 @@ def _knots(slide: SlideScene) -> tuple[Array, Array, Array]:
         even = jnp.arange(1, _KNOTS + 1) / _KNOTS
         ends = jnp.sort(jnp.append(even, rise_to_turn(level, new, turn)))
         begins = jnp.append(0.0, ends[:-1])
-        inside = begins[:, None] + (ends - begins)[:, None] * _SHARES
+        inside = begins[:, None] + (ends - begins)[:, None] * _SHARES[None]
         drives = jnp.exp(dense_output(RODAS5P, level, new, stages, inside))
         _, stretches = jax.vmap(jax.vmap(slide.ground))(x + size * inside)
         widths = 0.5 * size * (ends - begins)
-        gained = slide.pull * widths * jnp.sum(_W * stretches / drives, axis=1)
+        gained = slide.pull * widths * jnp.sum(_W[None] * stretches / drives, axis=1)
         grounds, _ = jax.vmap(slide.ground)(x + size * ends)
         forces = grounds + jnp.exp(dense_output(RODAS5P, level, new, stages, ends))
         new = jnp.where(there, new, level)

@@ -36,13 +36,14 @@ def _sensitivities(
     law: AbstractLaw, cos: Array, sin: Array, free: Array, shares: Array | None
 ) -> Array:
     found = peaks(waves_of_heights(*_seen(cos, sin, shares)))
-    turns = 2 * jnp.pi * jnp.arange(1, cos.size + 1)
+    turns = 2 * jnp.pi * jnp.arange(1, cos.size + 1)[None]
 
     def coefficients(unknowns: Array) -> Array:
         c, s = _seen(unknowns[: cos.size], unknowns[cos.size : 2 * cos.size], shares)
         phase = turns * found.places[:, None]
         # The places are where slopes are extreme: their motion adds nothing.
-        plus, low = turns * (jnp.cos(phase) * s - jnp.sin(phase) * c) @ jnp.ones(cos.size)
+        slopes = turns * (jnp.cos(phase) * s[None] - jnp.sin(phase) * c[None])
+        plus, low = slopes @ jnp.ones(cos.size)
         rho = law.coefficients(plus, -low, unknowns[2 * cos.size :])
         return jnp.log(jnp.abs(rho)).ravel()
 

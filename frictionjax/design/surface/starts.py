@@ -75,6 +75,6 @@ def _pressing(task: FitTask, share: Array, own: Array) -> Array:
     """The nearest to `share` on the way from `own` at which bristles press as they do."""
     before = task.law.at(own).alpha
     steps = jnp.linspace(1.0, 0.0, SETTINGS.towards)
-    ways = jnp.clip(own + steps[:, None] * (share - own), *SETTINGS.shares)
+    ways = jnp.clip(own[None] + steps[:, None] * (share - own)[None], *SETTINGS.shares)
     good = jax.vmap(lambda free: jnp.all(task.law.at(free).alpha * before > 0))(ways)
     return ways[jnp.argmax(good)]

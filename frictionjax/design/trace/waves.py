@@ -26,9 +26,10 @@ class WaveProfile(AbstractProfile):
     sin: Float[Array, " harmonics"]
 
     def __call__(self, y: Any) -> Float[Array, "*shape"]:
-        order = jnp.arange(1, self.cos.shape[0] + 1)
+        rows = (jnp.arange(1, self.cos.shape[0] + 1), self.cos, self.sin)
+        order, cos, sin = (jax.lax.broadcast_to_rank(row, jnp.ndim(y) + 1) for row in rows)
         sine, cosine = sin_cos(order * (y - jnp.floor(y))[..., None])
-        return jnp.sum(self.cos * cosine + self.sin * sine, axis=-1)
+        return jnp.sum(cos * cosine + sin * sine, axis=-1)
 
     @property
     def points(self) -> int:

@@ -24,7 +24,8 @@ from .settings import SETTINGS
 class FoldsAtTurns(NamedTuple):
     """Those that tips come to at turns, (..., turns), as in `WiggleFolds`.
 
-    `side` (turns,): 1 where the load turns down, -1 where it turns up, 0 where it does not.
+    `side`, of as many axes: 1 where the load turns down, -1 where it turns up, 0 where it
+    does not.
     """
 
     state: Any

@@ -26,7 +26,7 @@ def nearness_at_turns(
     turns = np.flatnonzero(side) + 1
     if turns.size == 0:
         return found
-    at, its = path.loads[turns], folds_at(folds, side[turns - 1])
+    at, its = path.loads[None, turns], folds_at(folds, side[None, turns - 1])
     edge, lacks = _lacks(its, path.support, at, eps[:, None])
     # Tips rest before that fold only where the path is at the strip's edge.
     held = its.side * (path.states[turns] - edge) < SETTINGS.beside * eps[:, None]
@@ -36,7 +36,7 @@ def nearness_at_turns(
     if cell.size == 0:
         return found
     drag = (viscosity * eps)[cell] * its.stretch[some]
-    width = _widths(path, turns[turn], its.side[turn], its.bend[some], drag)
+    width = _widths(path, turns[turn], its.side[0, turn], its.bend[some], drag)
     apart += its.rounding(at, path.width)
     found[cell, turns[turn] - 1] = np.sqrt(apart[some] + width**2)
     return found

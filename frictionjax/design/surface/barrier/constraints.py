@@ -96,7 +96,7 @@ def basis_at(y: Any, harmonics: int, order: int = 0) -> np.ndarray:
 
 
 def _basis(y, harmonics: int, order: int, xp):
-    turns = 2 * np.pi * np.arange(1, harmonics + 1)
+    turns = 2 * np.pi * np.arange(1, harmonics + 1).reshape((1,) * y.ndim + (-1,))
     phase = turns * y[..., None] + 0.5 * np.pi * order
     size = math.sqrt(2.0) * turns ** (order - 1.0)
     return xp.concatenate([size * xp.cos(phase), size * xp.sin(phase)], axis=-1)

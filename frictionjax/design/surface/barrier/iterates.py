@@ -144,7 +144,7 @@ def newton() -> optax.GradientTransformationExtraArgs:
     ) -> tuple[Array, Any]:
         hessian = barrier.hessian(params)
         scale = 1 / jnp.sqrt(jnp.abs(jnp.diag(hessian)))
-        values, vectors = jnp.linalg.eigh(hessian * scale * scale[:, None])
+        values, vectors = jnp.linalg.eigh(hessian * scale[None] * scale[:, None])
         values = jnp.maximum(jnp.abs(values), SETTINGS.flattest * values[-1])
         along = (vectors.T @ (scale * updates)) / values
         return -scale * (vectors @ along), state
