@@ -172,17 +172,18 @@ def _best_window(x: np.ndarray, y: np.ndarray) -> tuple[int, Asymptote]:
     starts = np.unique(
         np.linspace(0, shortest, SETTINGS.windows).round().astype(int)
     ).tolist()
-    last = _asymptote(x, y, starts[-1])
+    every = _scatter(x, y)
+    last = _asymptote(x, y, starts[-1], every)
     for start in starts[:-1]:
-        found = _asymptote(x, y, start)
+        found = _asymptote(x, y, start, every)
         if _fits(found, last):
             return start, found
     return starts[-1], last
 
 
-def _asymptote(x: np.ndarray, y: np.ndarray, start: int) -> Asymptote:
-    """Of a window. It scatters as all points do, unless that is unlikely (99%)."""
-    own, every = _scatter(x[start:], y[start:]), _scatter(x, y)
+def _asymptote(x: np.ndarray, y: np.ndarray, start: int, every: float) -> Asymptote:
+    """Of a window. It scatters as all points do, by `every`, unless unlikely (99%)."""
+    own = _scatter(x[start:], y[start:])
     freedom = x.size - start - _CUBIC, x.size - _CUBIC
     if freedom[0] > 0 and every > 0 and fdtr(*freedom, (own / every) ** 2) < SETTINGS.rare:
         every = own

@@ -1,12 +1,12 @@
 """Slope of a curve far to the left, where corrections have decayed: what data can say."""
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 from scipy.special import stdtrit  # scipy.stats takes 0.2 s to import
 
-from ..numerics import concatenated
 from .settings import SETTINGS
 
 _LOGARITHMS = np.geomspace(*SETTINGS.logarithms)
@@ -40,6 +40,27 @@ class _Curves(NamedTuple):
     price: np.ndarray
 
 
+class _Points(NamedTuple):
+    """Points (x, y) with all that curves through them ask for anew.
+
+    `unit`: orthonormal rows that span the lines; `spread`: root of the sum of squares of
+    x - mean(x); `free`: y - mean(y); `before`: x - max(x).
+    """
+
+    unit: np.ndarray
+    spread: float
+    free: np.ndarray
+    before: np.ndarray
+
+    @classmethod
+    def of(cls, x: np.ndarray, y: np.ndarray) -> "_Points":
+        middle = x - x.mean()
+        spread = np.sqrt(middle @ middle)
+        unit = np.stack([np.ones(x.size), middle / spread])
+        unit[0] /= np.sqrt(x.size)
+        return cls(unit, spread, y - y.mean(), x - x.max())
+
+
 class _Judged(NamedTuple):
     """How far the curves are from the best one in chi^2, and within what they may be."""
 
@@ -70,30 +91,31 @@ def asymptote(
     49%; 21, 27, 33%. One linear term e^(q x) in the narrowest window: 76, 46, 10%; 11, 18,
     17%; 7, 0, 0%. The width on pure powers is 0.95, 1.08 and 1.2 times the first one's.
     """
-    powers = _powers(x, y, np.ones(1), np.zeros(1))
+    points = _Points.of(x, y)
+    powers = _powers(points, np.ones(1), np.zeros(1))
     line = powers.misfit[0]
     q, c = (
         np.log([SETTINGS.slowest, SETTINGS.fastest]),
         _to_even(np.array([SETTINGS.smallest, SETTINGS.largest])),
     )
     for _ in range(SETTINGS.zooms):
-        grid = np.meshgrid(
-            np.exp(np.linspace(q[0], q[1], SETTINGS.cells_q)),
-            np.linspace(c[0], c[1], SETTINGS.cells_c),
-        )
-        new = _powers(x, y, grid[0].ravel(), _from_even(grid[1].ravel()))
-        powers = concatenated([powers, new])
+        some_q = np.exp(np.linspace(q[0], q[1], SETTINGS.cells_q))
+        some_c = _from_even(np.linspace(c[0], c[1], SETTINGS.cells_c))
+        every_q, every_c = np.tile(some_q, some_c.size), np.repeat(some_c, some_q.size)
+        new = _powers(points, every_q, every_c)
+        # (Trees of JAX took twice as long.)
+        powers = _Curves(*map(np.concatenate, zip(powers, new, strict=True)))
         judged = _judged(powers, x.size, line, scatter)
         near = judged.away <= judged.limit
         q = _around(np.log(powers.q[near]), q, SETTINGS.cells_q)
         c = _around(_to_even(powers.c[near]), c, SETTINGS.cells_c)
     best = judged.best
-    low, high = _hull(powers, judged.away, judged, x)
+    low, high = _hull(powers, judged.away, judged, points)
     if x.size > SETTINGS.line_only:
-        logarithms = _logarithms(x, y)
+        logarithms = _logarithms(points)
         cost = logarithms.misfit / judged.variance + judged.limit + SETTINGS.evidence
         away = np.maximum(cost - _cost(powers, judged)[best], 0.0)
-        further = _hull(logarithms, away, judged, x)
+        further = _hull(logarithms, away, judged, points)
         low, high = min(low, further[0]), max(high, further[1])
     return Asymptote(float(powers.slope[best]), low, high, powers.left[best])
 
@@ -112,35 +134,32 @@ def _around(values: np.ndarray, ends: np.ndarray, cells: int) -> np.ndarray:
     return np.clip([values.min() - cell, values.max() + cell], ends[0], ends[1])
 
 
-def _powers(x: np.ndarray, y: np.ndarray, q: np.ndarray, c: np.ndarray) -> _Curves:
-    bends = c[:, None] * np.exp(q[:, None] * (x - x.max()))
-    end = c * np.exp(q * (x.min() - x.max()))
+def _powers(points: _Points, q: np.ndarray, c: np.ndarray) -> _Curves:
+    bends = c[:, None] * np.exp(q[:, None] * points.before)
+    end = c * np.exp(q * points.before.min())
     price = np.where(
         np.abs(end) > SETTINGS.at_the_end,
         np.inf,
         np.minimum((c / SETTINGS.hidden) ** 2, 1.0),
     )
-    return _curves(x, y, np.log1p(bends), q, c, q * end / (1 + end), price)
+    return _curves(points, np.log1p(bends), q, c, q * end / (1 + end), price)
 
 
-def _logarithms(x: np.ndarray, y: np.ndarray) -> _Curves:
+def _logarithms(points: _Points) -> _Curves:
     """Curves whose logarithm the data must show; their form is exact, nothing is beyond."""
-    bends = np.log1p(_LOGARITHMS[:, None] * (x.max() - x))
+    bends = np.log1p(_LOGARITHMS[:, None] * -points.before)
     c = np.concatenate([_LOGARITHMS, -_LOGARITHMS])
     none = np.zeros(c.size)
-    return _curves(x, y, np.concatenate([bends, -bends]), none, c, none, none + 1)
+    return _curves(points, np.concatenate([bends, -bends]), none, c, none, none + 1)
 
 
-def _curves(x, y, bends, q, c, beyond, price) -> _Curves:
-    middle = x - x.mean()
-    unit = np.stack([np.ones(x.size), middle / np.sqrt(middle @ middle)])
-    unit[0] /= np.sqrt(x.size)
-    left = y - y.mean() - bends
-    part = left @ unit.T
-    left -= part @ unit
-    misfit = np.maximum((left**2).sum(axis=1), x.size * SETTINGS.rounding**2)
-    slope = part[:, 1] / np.sqrt(middle @ middle)
-    return _Curves(q, c, slope, left, misfit, beyond, price)
+def _curves(points: _Points, bends, q, c, beyond, price) -> _Curves:
+    left = points.free - bends
+    part = left @ points.unit.T
+    left -= part @ points.unit
+    least = points.free.size * SETTINGS.rounding**2
+    misfit = np.maximum((left**2).sum(axis=1), least)
+    return _Curves(q, c, part[:, 1] / points.spread, left, misfit, beyond, price)
 
 
 def _judged(curves: _Curves, n: int, line: float, scatter: float) -> _Judged:
@@ -161,15 +180,16 @@ def _cost(curves: _Curves, judged: _Judged) -> np.ndarray:
     return curves.misfit / judged.variance + price
 
 
+@functools.cache
 def _limit(freedom: int) -> float:
     return float(stdtrit(freedom, 0.5 + 0.5 * SETTINGS.level)) ** 2
 
 
 def _hull(
-    curves: _Curves, away: np.ndarray, judged: _Judged, x: np.ndarray
+    curves: _Curves, away: np.ndarray, judged: _Judged, points: _Points
 ) -> tuple[float, float]:
     left = np.sqrt(np.maximum(judged.limit - away, 0.0) * judged.variance)
-    width = left / np.sqrt(np.sum((x - x.mean()) ** 2)) + np.abs(curves.beyond)
+    width = left / points.spread + np.abs(curves.beyond)
     near = away <= judged.limit
     if not near.any():
         return np.inf, -np.inf
