@@ -68,7 +68,7 @@ def keep_in(folder: Path) -> Path | None:
     where it cannot be written: what is in it is used, and one warning says so.
     """
     global _place, _writes
-    _place, _writes = folder / _stamp(), True
+    _place, _writes = folder / _stamp_at_first(), True
     _listen()
     _try_to_write(_place / f"probe-{os.getpid()}", bytes(_PROBE))
     with contextlib.suppress(OSError):
@@ -102,6 +102,12 @@ def _stamp() -> str:
     versions = sys.version, jax.__version__, eqx.__version__
     found.update(repr((versions, sorted(p.name for p in installed))).encode())
     return found.hexdigest()[:32]
+
+
+@functools.cache
+def _stamp_at_first() -> str:
+    """Of the source that this process runs: 50 ms for each command of a test."""
+    return _stamp()
 
 
 class _ForeignError(Exception):
