@@ -25,6 +25,7 @@ from .results import by_name as by_name
 from .results import nested as nested
 from .results import record as record
 from .results import several as several
+from .scene_files import default_numbers as default_numbers
 from .scene_files import default_study as default_study
 from .scene_files import load_scene as load_scene
 from .scene_files import load_study as load_study

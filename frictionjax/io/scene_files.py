@@ -113,8 +113,17 @@ def _encoding(problem: UnicodeDecodeError) -> str:
 
 def default_study() -> SceneFile:
     """The embedded scene, for commands that name none."""
+    return parse_scene(_embedded(), "default_scene.toml")
+
+
+def default_numbers() -> dict[str, Any]:
+    """Of its study alone, for those of a scene that names none."""
+    return _study_of(tomllib.loads(_embedded())["study"])
+
+
+def _embedded() -> str:
     source = resources.files(__package__) / "default_scene.toml"
-    return parse_scene(source.read_text(encoding="utf-8"), source.name)
+    return source.read_text(encoding="utf-8")
 
 
 def parse_scene(

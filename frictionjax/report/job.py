@@ -10,7 +10,7 @@ import numpy as np
 
 from .._checks import require
 from ..bristles import AbstractBristle, AngularSpring, SlantedSpring, pulling_note
-from ..io import default_study, load_study
+from ..io import default_numbers, default_study, load_study
 from ..measured import Measured, RowCoefficients, fit_profile, heights_of, row_coefficients
 from ..model import Scene
 from ..profiles import SlopesUndetermined
@@ -131,7 +131,7 @@ def _read_job(
     **file: Any,
 ) -> Job:
     known = default_study() if path is None else load_study(path)
-    study = {**default_study().study, **known.study}
+    study = known.study if path is None else {**default_numbers(), **known.study}
     chosen = known.scene.bristle if bristle is None else named_bristle(bristle)
     needs = "[profile] and [bristle], of which commands are: its scene is Python's"
     require(chosen is not None, f"{path}: [potential]", "given", needs)
@@ -142,9 +142,8 @@ def _read_job(
         fit = {"period": period, "harmonics": harmonics, "row": row, "smoothing": smoothing}
         for name, value in {**file, **fit}.items():
             require(value is None, name, value, "--heights FILE beside it")
-        return Job(
-            with_surface(known.scene, known.scene.profile, chosen), study, warned, None
-        )
+        scene = known.scene if bristle is None else known.scene.replace(bristle=chosen)
+        return Job(scene, study, warned, None)
     measured = heights_of(heights, **file)
     harmonics = 8 if harmonics is None else harmonics
     try:
