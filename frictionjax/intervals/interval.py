@@ -1,5 +1,6 @@
 """Intervals of real numbers, as NumPy arrays of their ends."""
 
+import functools
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -98,15 +99,24 @@ def sub(a: Interval, b: Interval) -> Interval:
 
 def mul(a: Interval, b: Interval) -> Interval:
     """Products; 0 times an unbounded end is 0, as that end itself is no member."""
-    ends = [x * y for x in a for y in b]
-    none = np.isnan(a.lo) | np.isnan(b.lo)
-    if any(np.isnan(end).any() for end in ends):
-        ends = [np.where(np.isnan(end) & ~none, 0.0, end) for end in ends]
-    lo = np.minimum(np.minimum(ends[0], ends[1]), np.minimum(ends[2], ends[3]))
-    hi = np.maximum(np.maximum(ends[0], ends[1]), np.maximum(ends[2], ends[3]))
+    xs, ys = _ends(a), _ends(b)
+    ends = [x * y for x in xs for y in ys]
+    lo, hi = _extremes(ends)
+    if np.isnan(lo).any():  # as it is where any end is
+        none = np.isnan(a.lo) | np.isnan(b.lo)
+        lo, hi = _extremes([np.where(np.isnan(end) & ~none, 0.0, end) for end in ends])
     if _keeps_digits(a) or _keeps_digits(b) or (is_whole(a) and is_whole(b)):
         return Interval(lo, hi)
     return wider(lo, hi)
+
+
+def _ends(a: Interval) -> tuple[np.ndarray, ...]:
+    """Both, or the one of a point: half the products."""
+    return (a.lo,) if a.lo is a.hi else (a.lo, a.hi)
+
+
+def _extremes(ends: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    return functools.reduce(np.minimum, ends), functools.reduce(np.maximum, ends)
 
 
 def _keeps_digits(a: Interval) -> bool:
