@@ -1,5 +1,6 @@
 """Profiles given as functions, in pieces that meet w''."""
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -71,22 +72,33 @@ def test_pieces_end_at_kinks(name):
         assert np.min(np.abs(left - kink)) < 1e-10  # of a weak one, in w'' 2e-14
 
 
-def kinks_at(places):
-    """Beside a sine, one kink at each place."""
-    at = jnp.asarray(places)
+class KinksAt(eqx.Module):
+    """Beside a sine and a level, one kink at each place; leaves, so that one trace does."""
 
-    def fn(y):
-        each = jnp.abs(jnp.sin(jnp.pi * (y[..., None] - at))) ** 3
-        return 0.01 * jnp.sin(2 * jnp.pi * y) + 0.002 * jnp.sum(each, axis=-1)
+    places: jax.Array
+    level: float | jax.Array = 0.0
 
-    return fn
+    def __call__(self, y):
+        each = jnp.abs(jnp.sin(jnp.pi * (y[..., None] - self.places))) ** 3
+        waves = 0.01 * jnp.sin(2 * jnp.pi * y) + 0.002 * jnp.sum(each, axis=-1)
+        return self.level + waves
+
+
+class BeginsAt(eqx.Module):
+    """0 up to a place, a polynomial from there on."""
+
+    place: jax.Array
+
+    def __call__(self, y):
+        rise = 0.5 * (y - self.place) ** 3 * (1 - y) ** 3
+        return jnp.where(y < self.place, 0.0, rise)
 
 
 @pytest.mark.parametrize("count", [1, 6])
 def test_kinks_are_found_wherever_they_are(count):
     """The middle of the shortest piece is none: a third of six kinks had no table."""
     for places in np.random.default_rng(count).uniform(0, 1, (12, count)):
-        table = profile_in_pieces(fx.profiles.Custom(kinks_at(places)))
+        table = profile_in_pieces(fx.profiles.Custom(KinksAt(jnp.asarray(places))))
         assert table is not None, places
         left = np.asarray(table.rows[:, 0])
         assert np.max(np.min(np.abs(left[:, None] - places), axis=0)) < 1e-10
@@ -95,18 +107,15 @@ def test_kinks_are_found_wherever_they_are(count):
 def test_what_begins_anywhere_is_met():
     """w'' to two roundings, from one piece of half a period on, is w to 5e-14 only."""
     for begins in np.random.default_rng(0).uniform(0.1, 0.9, 12):
-
-        def fn(y, a=begins):
-            return jnp.where(y < a, 0.0, 0.5 * (y - a) ** 3 * (1 - y) ** 3)
-
-        assert profile_in_pieces(fx.profiles.Custom(fn)) is not None, begins
+        profile = fx.profiles.Custom(BeginsAt(jnp.asarray(begins)))
+        assert profile_in_pieces(profile) is not None, begins
 
 
 @pytest.mark.parametrize("level", [0.0, -10.0, 1e4, 1e7])
 def test_a_height_that_all_share_changes_nothing(level):
     """Rounding of it was taken for waves, and met as closely as all of it."""
-    fn = kinks_at([0.2])
-    profile = fx.profiles.Custom(lambda y: level + fn(y))
+    place = jnp.array([0.2])
+    fn, profile = KinksAt(place), fx.profiles.Custom(KinksAt(place, jnp.asarray(level)))
     tables = profile_tables(profile)
     assert tables.is_table
     places = RNG.uniform(0, 1, 500)
