@@ -50,6 +50,9 @@ if os.environ.get("SHAPES_CHECKED"):
     install_import_hook(SHAPES_CHECKED, "shape_checks.shapes_checked")
 
 jax.config.update("jax_enable_x64", True)
+# As test suites have it of libraries that users build on: what is traced here tells every
+# rank, or raises.
+jax.config.update("jax_numpy_rank_promotion", "raise")
 share_contexts()
 
 # What JAX traces is many small objects, few of them garbage. (Looking through them took 4%

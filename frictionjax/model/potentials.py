@@ -143,6 +143,8 @@ def _floats(potential: AbstractPotential, *values):
 
 @eqx.filter_jit
 def _elementwise(fn: Callable, potential: AbstractPotential, *values):
+    rank = max(value.ndim for value in values)
+    values = tuple(jax.lax.broadcast_to_rank(value, rank) for value in values)
     return jnp.vectorize(lambda *scalars: fn(potential, *scalars))(*values)
 
 

@@ -175,7 +175,7 @@ class AngleFit(ShownNumbers, SelfDrawn, DesignResult, CodedResult, eqx.Module):
         """The number and the quantity over the admissible intervals, shapes (pieces, n)."""
         require_whole("points", points, 2)
         low, high = self.admissible[:, :1], self.admissible[:, 1:]
-        values = low + (high - low) * jnp.linspace(1e-6, 1 - 1e-6, points)
+        values = low + (high - low) * jnp.linspace(1e-6, 1 - 1e-6, points)[None, :]
         part = self.bristle if self.code.ndim == 0 else self[0].bristle
         which = np.asarray(QUANTITIES.index(self.quantity))
         free = free_parameter(part, self.free)

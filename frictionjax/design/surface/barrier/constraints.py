@@ -121,7 +121,7 @@ def heights_of_waves(waves: Array) -> tuple[Array, Array]:
     """`cos` and `sin` of the heights `w`, as a `Fourier` profile takes them."""
     count = waves.shape[-1] // 2
     turns: Any = 2 * np.pi * np.arange(1, count + 1)
-    size = math.sqrt(2.0) / turns**2
+    size = (math.sqrt(2.0) / turns**2)[(None,) * (waves.ndim - 1)]
     return -size * waves[..., count:], size * waves[..., :count]
 
 

@@ -48,7 +48,7 @@ def settle(layout: FitShape, task: FitTask, x: Array) -> Settled:
     scale = jnp.concatenate([wanted[:2], ease])
 
     def gauss_newton(_: Any, z: Array) -> Array:
-        pull = jax.jacfwd(misfit)(z) * scale
+        pull = jax.jacfwd(misfit)(z) * scale[None, :]
         return z - scale * (jnp.linalg.pinv(pull, rtol=SETTINGS.rank) @ misfit(z))
 
     best = jax.lax.fori_loop(0, SETTINGS.polish_steps, gauss_newton, wanted)
