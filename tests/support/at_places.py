@@ -10,7 +10,7 @@ import numpy as np
 
 def at_places(fn, places):
     """Values, (n,)."""
-    return np.asarray(part_at(fn, places))
+    return np.asarray(part_at(fn, np.asarray(places)))
 
 
 def each_at_places(fns, places):
@@ -26,7 +26,7 @@ def part_at(part, places):
 
 def with_derivatives(fn, places):
     """Values, slopes and second derivatives, (3, n)."""
-    return np.array(_derivatives(fn, places))
+    return np.array(_derivatives(fn, np.asarray(places)))
 
 
 @eqx.filter_jit
