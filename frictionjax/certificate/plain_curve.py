@@ -51,36 +51,35 @@ def certificate_under(
     residual = float(np.sum(on.residual))
     folds = folds_of(force)
     missing = missing_forces(force, folds, at)
-    bend = _most_bent(force, viscosity, at, ts, z)
-    system = CurveSystem(eps, viscosity, 0.5 * scale / eps, bend)
-    by_windows = distances_by_windows(ts, z, at, on, system)
     columns = at.well, at.inside, at.force, at.stretch, at.pace
     curve = FollowedCurve(ts, z, *columns, stops)
     rests = distances_from_rests(force, viscosity, curve, most_forgetful(folds, at))
-    surely = rests.most <= SETTINGS.surely
+    least = nearby = rests.least
+    if not rests.most <= SETTINGS.surely:
+        bend = _most_bent(force, viscosity, at, ts, z)
+        system = CurveSystem(eps, viscosity, 0.5 * scale / eps, bend)
+        by_windows = distances_by_windows(ts, z, at, on, system)
+        least, nearby = (max(one, rests.least) for one in by_windows)
     thinned = every_second(ts.size)
     at_half, on_half = along_curve(force, viscosity, ts[thinned], z[thinned])
     fast = fast_parts(folds, ts, z, at, on)
     fast_half = fast_parts(folds, ts[thinned], z[thinned], at_half, on_half)
     ratio, coarse = (viscosity_ratio(f, viscosity, eps) for f in (fast, fast_half))
     measured = CurveMeasures(
-        distance=rests.least if surely else max(by_windows.nearby, rests.least),
+        distance=nearby,
         within=rests.most,
         missing_force=float(np.max(missing, initial=-np.inf)),
         viscosity=ratio,
         spacing=float(np.max(np.abs(np.diff(z)))) / eps,
     )
-    status = verdict(measured, abs(coarse - ratio))
-    if not surely:
-        measured = measured._replace(distance=max(by_windows.least, rests.least))
     return Certificate(
         residual=residual,
         residual_error=residual_error(on_half, residual),
         scale=scale,
         slips=missing.size,
         skipped=int(np.sum(missing > SETTINGS.missing_force)),
-        status=status,
-        **measured._asdict(),
+        status=verdict(measured, abs(coarse - ratio)),
+        **measured._replace(distance=least)._asdict(),
     )
 
 

@@ -29,13 +29,13 @@ class FromWindows(NamedTuple):
 def distances_by_windows(
     ts, z, at: CurveSamples, on: Intervals, system: CurveSystem
 ) -> FromWindows:
-    """Of weighted impulses.
+    """Bounds from weighted impulses over windows.
 
     A curve within delta of a solution has, for every weight omega and window,
     `|int omega (eps^gamma z' - f) dt| <= delta (eps^gamma (|omega_i| + |omega_j|)
     + int |eps^gamma omega' + omega f_z| dt) + delta^2/2 int |omega f_zz| dt`: that bounds
     delta from below, whatever the perturbation. (Where `eps^gamma omega' + omega f_z`
-    about vanishes, a shift by eps/10 was 31 eps without the second order.) Three weights,
+    about vanishes, a shift by eps/10 was 1.02 eps without the second order.) Three weights,
     for three kinds of motion: 1 for rests; `f_z` for slides near the folds; 1/f, that is
     the time a well takes, where the motion never comes near to rest.
     """

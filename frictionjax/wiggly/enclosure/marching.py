@@ -161,9 +161,10 @@ class BracketContext(NamedTuple):
         left = SETTINGS.patience - self.effort.waited[jobs.cell]
         left[self._alone(plan)] = np.inf
         left[self._known(plan) & self.ground.is_far(self.path)[jobs.cell]] = 0.0
-        cell = jobs.cell[plan.owner]
+        owner = plan.owner
+        cell = jobs.cell[owner]
         wells = np.abs(segments.guide1 - segments.guide0) / self.ground.eps[cell]
-        allowed = left[plan.owner] + self._share[cell] * wells
+        allowed = left[owner] + self._share[cell] * wells
         segments = segments._replace(budget=np.minimum(segments.budget, allowed))
         # In all on the way no more than that, where little is forgotten.
         many = SETTINGS.lane_steps * self._forgets[jobs.cell] * self._wells(plan)

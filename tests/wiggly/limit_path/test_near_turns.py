@@ -57,7 +57,8 @@ def test_a_slip_takes_what_a_parabola_takes(eps, gamma, share, slips):
 @pytest.mark.parametrize(("beyond", "wells"), [(-1e-8, 19.837), (1e-8, 20.820)])
 def test_a_load_with_a_kink_near_a_fold_makes_the_slip_that_it_should(beyond, wells):
     """From 0.300522446130530 N on: SciPy's Radau at rtol 1e-12, without the slip 1e-10 N
-    below and with it 1e-10 N above. Steps at the default accuracy see it 1.6e-9 N early.
+    below and with it 1e-10 N above. Steps at the default accuracy see it 1.6e-9 N early
+    (both by hand).
     """
     eps, most = 1e-2, 0.300522446130530 + beyond
     load = fx.loads.PiecewiseLinear([0.0, 1.0, 2.0], [0.0, most, most - 0.1])
