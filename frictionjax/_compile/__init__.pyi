@@ -3,6 +3,7 @@ from .flags import keep_compiled as keep_compiled
 from .flags import use_fast_cpu as use_fast_cpu
 from .interpreted import CALLS as CALLS
 from .interpreted import Interpreted as Interpreted
+from .interpreted import scan_counts as scan_counts
 from .interpreted import values_at as values_at
 from .programs import ARRAYS as ARRAYS
 from .programs import Program as Program

@@ -117,7 +117,7 @@ def _step(eqn: Any) -> Callable[..., list]:
     if name == "while":
         return _while(params)
     if name == "scan" and 0 < params["length"] <= _SHORT:
-        return _scan(params)
+        return _scan(eqn)
     rule = RULES.get(name)
     if rule is not None:
         dtype = eqn.outvars[0].aval.dtype
@@ -146,10 +146,27 @@ def _while(params: dict) -> Callable[..., list]:
     return run
 
 
-def _scan(params: dict) -> Callable[..., list]:
+def scan_counts(eqn: Any) -> tuple[int, int]:
+    """How many operands of a scan stay what they are, and how many are carried on.
+
+    By their ranks, as rows are given and gathered with an axis more: the parameters that
+    tell have other names from one version of JAX to the next.
+    """
+    body = getattr(eqn.params["jaxpr"], "jaxpr", eqn.params["jaxpr"])
+    rows = _deeper(eqn.invars, body.invars)
+    carried = len(eqn.outvars) - _deeper(eqn.outvars, body.outvars)
+    return len(eqn.invars) - carried - rows, carried
+
+
+def _deeper(outside: list, inside: list) -> int:
+    pairs = zip(outside, inside, strict=True)
+    return sum(one.aval.ndim > other.aval.ndim for one, other in pairs)
+
+
+def _scan(eqn: Any) -> Callable[..., list]:
+    params, (fixed, count) = eqn.params, scan_counts(eqn)
     body, order = _in_steps(params["jaxpr"]), range(params["length"])
-    fixed, carried = params["num_consts"], params["num_consts"] + params["num_carry"]
-    count = params["num_carry"]
+    carried = fixed + count
 
     def run(*operands: Any) -> list:
         carry, rows = list(operands[fixed:carried]), []

@@ -7,7 +7,7 @@ import jax
 import numpy as np
 from jax.extend.core import Literal
 
-from .._compile import CALLS
+from .._compile import CALLS, scan_counts
 from . import jet as jets
 from .functions import ELEMENTARY, cos, integer_power, sin
 from .interval import Interval
@@ -86,7 +86,7 @@ def _results(eqn: Any, operands: list[Jet]) -> list[Jet]:
         known = _known_call(params[CALLS[name]], operands)
         return known or _call(params[CALLS[name]], operands)
     if name == "scan":
-        return _scan(params, operands)
+        return _scan(eqn, operands)
     if name == "cond":
         return _branches(params["branches"], *operands)
     if any(_is_short(atom.aval) for atom in eqn.outvars):
@@ -167,9 +167,10 @@ def _call(closed: Any, operands: list[Jet]) -> list[Jet]:
     return run(getattr(closed, "jaxpr", closed), constants, operands)
 
 
-def _scan(params: Any, operands: list[Jet]) -> list[Jet]:
+def _scan(eqn: Any, operands: list[Jet]) -> list[Jet]:
     """A loop of known length, step by step."""
-    fixed, carried, length = params["num_consts"], params["num_carry"], params["length"]
+    params, (fixed, carried) = eqn.params, scan_counts(eqn)
+    length = params["length"]
     if length > SETTINGS.longest:
         raise NoRuleError(f"scan of {length} steps")
     held, carry = operands[:fixed], operands[fixed : fixed + carried]
