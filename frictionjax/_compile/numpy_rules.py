@@ -1,5 +1,6 @@
 """Steps of a traced program, by their names, in NumPy."""
 
+import functools
 import math
 from collections.abc import Callable
 from typing import Any
@@ -162,6 +163,7 @@ _TERMWISE: dict[str, Callable] = {name: getattr(np, name) for name in _ALIKE} | 
     "is_finite": np.isfinite,
     "copy": lambda x: x,
     "stop_gradient": lambda x: x,
+    "polynomial": lambda x, *terms: functools.reduce(lambda t, c: t * x + c, terms[::-1]),
     "rem": np.fmod,
     "clamp": lambda low, x, high: np.minimum(np.maximum(x, low), high),
 }

@@ -1,5 +1,6 @@
 """Elementary functions of jets: ranges of each one and of its two derivatives."""
 
+import functools
 import math
 from collections.abc import Callable
 
@@ -273,6 +274,13 @@ def remainder(a: Jet, b: Jet) -> Jet:
     return jets.chosen(same & np.isfinite(size), held, found)
 
 
+def polynomial(x: Jet, *terms: Jet) -> Jet:
+    """`terms[0] + terms[1] x + ...`, as `jnp.polyval` is written from JAX 0.12 on."""
+    return functools.reduce(
+        lambda total, term: jets.add(jets.mul(total, x), term), terms[::-1]
+    )
+
+
 ELEMENTARY: dict[str, Rule] = {
     "abs": absolute,
     "add": jets.add,
@@ -298,6 +306,7 @@ ELEMENTARY: dict[str, Rule] = {
     "min": minimum,
     "mul": jets.mul,
     "neg": jets.negated,
+    "polynomial": polynomial,
     "pow": real_power,
     "rem": remainder,
     "round": rounded,

@@ -197,3 +197,12 @@ def test_floats_have_one_order(name):
     pairs = [np.ravel(side) for side in np.meshgrid(row, row)]
     step = getattr(jax.lax, f"{name}_p")
     np.testing.assert_array_equal(RULES[name]({}, *pairs), step.bind(*pairs))
+
+
+def test_polynomials_are_evaluated_from_the_constant_term_up():
+    """One step of a program from JAX 0.12 on, where older ones write its products out."""
+    terms = [1.0, -2.0, 0.5]
+    found = RULES["polynomial"]({}, X, *terms)
+    np.testing.assert_allclose(found, np.polyval(terms[::-1], X), rtol=1e-15)
+    written = Interpreted(lambda x: jnp.polyval(jnp.array(terms[::-1]), x))(X)
+    np.testing.assert_allclose(found, written, rtol=1e-15)

@@ -9,6 +9,8 @@ from jax.scipy.special import erf, erfc
 
 import frictionjax as fx
 from frictionjax.intervals import NoRuleError, enclosure_of
+from frictionjax.intervals.functions import ELEMENTARY
+from frictionjax.intervals.jet import number, variable
 
 TABLE = jnp.array([0.0, 1.0, 2.0, 5.0]), jnp.array([0.0, 1.0, 0.0, 3.0])
 WEIGHTS = jnp.asarray(np.random.default_rng(0).normal(size=(4, 3)))
@@ -70,6 +72,17 @@ def test_bounds_hold_values_and_two_derivatives(name):
     found = bounds(lo[:8], lo[:8])
     np.testing.assert_allclose(found.value.middle, values, rtol=1e-12, atol=1e-12)
     assert np.all(found.value.width <= 1e-11 * (1 + np.abs(values)))
+
+
+def test_a_polynomial_that_is_one_step_is_bounded_as_its_products_are():
+    """JAX writes `jnp.polyval` so from 0.12 on."""
+    lo, hi = np.array([0.2, 1.0]), np.array([0.3, 2.5])
+    terms = [number(np.asarray(term)) for term in (0.5, -2.0, 1.0)]
+    found = ELEMENTARY["polynomial"](variable(lo, hi), *terms)
+    for one, other in zip(
+        found[:3], enclosure_of(FUNCTIONS["horner"])(lo, hi), strict=False
+    ):
+        np.testing.assert_allclose(one, other, rtol=1e-14, atol=1e-14)
 
 
 @pytest.mark.parametrize("name", ["polynomial", "powers", "errors", "gaussians", "loop"])
