@@ -143,3 +143,26 @@ def test_the_wheel_runs_on_other_pythons_with_the_latest_of_all(wheel, tmp_path,
     assert "no cell failed" in there.run(
         "frictionjax", "study", "--eps", "0.1:0.01:4", "--gamma", "1", "--no-progress"
     )
+    assert there.run("python", "-c", STEPS_OF_PROGRAMS).split() == ["True"] * 3
+
+
+STEPS_OF_PROGRAMS = """
+import jax
+import jax.numpy as jnp
+jax.config.update("jax_enable_x64", True)
+import frictionjax as fx
+many = jnp.zeros(24).at[0].set(0.01)  # in blocks, which a loop goes through
+bristle = fx.bristles.SlantedSpring(1.0, 2.2, 1.0, 0.5)
+found = fx.friction(fx.profiles.Fourier(cos=0 * many, sin=many), bristle)
+plain = fx.friction(fx.profiles.Sine(0.02 * jnp.pi), bristle)
+print(abs(float(found.rho_plus - plain.rho_plus)) < 1e-12)
+spring = fx.supports.Spring(1.0)
+def load(t):
+    step = lambda total, k: (total + jnp.sin(k * t) / k**2, k)
+    waves, _ = jax.lax.scan(step, 0.0 * t, 1.0 + jnp.arange(3))
+    return 0.1 * waves + jnp.polyval(jnp.array([0.1, 0.2, 0.0]), t)
+whole = fx.loads.Custom(load)
+scene = fx.Scene(fx.profiles.Sine(0.1), bristle, spring, whole, duration=4.0)
+print(fx.solve_limit(scene, [4.0]).status.name == "OK")
+print(fx.solve(scene, 0.1, 1.0, [4.0]).status.name == "OK")
+"""

@@ -1,12 +1,14 @@
 """Functions of parts that are gone through step by step, uncompiled."""
 
+from types import SimpleNamespace
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax._compile import Interpreted
+from frictionjax._compile import Interpreted, scan_counts
 from frictionjax._compile.numpy_rules import RULES
 
 X = np.linspace(0.05, 0.95, 7)
@@ -206,3 +208,24 @@ def test_polynomials_are_evaluated_from_the_constant_term_up():
     np.testing.assert_allclose(found, np.polyval(terms[::-1], X), rtol=1e-15)
     written = Interpreted(lambda x: jnp.polyval(jnp.array(terms[::-1]), x))(X)
     np.testing.assert_allclose(found, written, rtol=1e-15)
+
+
+def test_what_a_loop_carries_is_told_without_names_of_parameters():
+    """JAX 0.12 has other ones than 0.10."""
+
+    def looped(held, start, rows):
+        def step(carry, row):
+            total, count = carry
+            return (total + held * row[0], count + 1), (row, total)
+
+        return jax.lax.scan(step, (start, 0), rows)
+
+    def told(fn, *args):
+        (eqn,) = [e for e in jax.make_jaxpr(fn)(*args).eqns if e.primitive.name == "scan"]
+        params = {"jaxpr": eqn.params["jaxpr"]}
+        return scan_counts(
+            SimpleNamespace(invars=eqn.invars, outvars=eqn.outvars, params=params)
+        )
+
+    assert told(looped, X, X, np.ones((3, 2))) == (1, 2)
+    assert told(jax.vmap(looped), X, X, np.ones((7, 3, 2))) == (1, 2)
