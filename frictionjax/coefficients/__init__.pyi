@@ -1,3 +1,6 @@
+from .conditions import Condition as Condition
+from .conditions import condition_of as condition_of
+from .conditions import note_condition as note_condition
 from .friction_numbers import Coefficients as Coefficients
 from .friction_numbers import with_errors as with_errors
 from .named_numbers import COEFFICIENTS as COEFFICIENTS

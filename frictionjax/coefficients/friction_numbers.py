@@ -11,6 +11,7 @@ import numpy as np
 from .._checks import Real, as_text, has_numbers, require
 from .._text import ResultTable, SelfDrawn
 from ..bristles import pulling_text
+from .conditions import condition_of
 from .named_numbers import coefficient_table
 
 OfBristle = Any
@@ -72,9 +73,12 @@ class Coefficients(SelfDrawn, eqx.Module):
         known = [(k, v) for k, v in vars(self).items() if v is not None]
         numbers = ", ".join(f"{k}={as_text(v)}" for k, v in known)
         pulls = "" if self.alpha is None else pulling_text(self.alpha)
+        condition = condition_of(self)
+        said = [pulls] if pulls else []
+        said += [condition.words] if condition else []
         shape = np.shape(self.rho_plus)
         batch = f"batch {shape}: " if shape else ""
-        return f"Coefficients({batch}{numbers}{f': {pulls}' if pulls else ''})"
+        return f"Coefficients({batch}{numbers}{''.join(f': {one}' for one in said)})"
 
     def table(self) -> ResultTable:
         """Each coefficient with its unit and what it means, and its error where known.

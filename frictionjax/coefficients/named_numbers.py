@@ -6,6 +6,7 @@ from typing import Any
 from .._checks import as_text
 from .._text import ResultTable
 from ..bristles import pulling_text
+from .conditions import condition_of
 
 COEFFICIENTS = (
     ("rho_plus", "N", "friction against motion to the right"),
@@ -91,7 +92,8 @@ def coefficient_table(found: Any, error: dict[str, float] | None = None) -> Resu
     added = ("+-",) if error else ()
     header = "coefficient", "value", *added, "unit", "meaning"
     note = pulling_text(numbers.get("alpha", 0.0))
-    notes = "\n".join(f"({note})" for note in (_taken_text(found), note) if note)
+    said = _taken_text(found), note, _condition_text(found)
+    notes = "\n".join(f"({note})" for note in said if note)
     return ResultTable(header, tuple(rows), note=notes, meanings=2)
 
 
@@ -102,6 +104,14 @@ def _taken_text(found: Any) -> str:
         return ""
     plus, minus = float(plus), float(minus)
     return f"+-: of omega_plus {plus:.2g}, of omega_minus {minus:.2g} by smoothing"
+
+
+def _condition_text(found: Any) -> str:
+    """Whose coefficients they are, where not the scene's as it moves."""
+    condition = condition_of(found)
+    if condition is None:
+        return ""
+    return f"friction {condition.words}: {condition.elsewhere}"
 
 
 def meaning_of(name: str, meaning: str, pulls: bool) -> str:

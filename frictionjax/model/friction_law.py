@@ -8,12 +8,18 @@ from jaxtyping import Array, ArrayLike, Float
 
 from .._checks import checked, kind_of, note_origin, require, require_x64, with_nan
 from ..bristles import AbstractBristle
-from ..coefficients import Coefficients, with_errors
+from ..coefficients import Coefficients, Condition, note_condition, with_errors
+from ..effects import NapFlip, Noise
 from ..profiles import AbstractSampled
 from .admissibility import admissible_coefficients
 from .composition import composed
 from .potentials import AbstractPotential, BristlePotential, potential
 from .scene import Scene
+
+_LEFT_OUT: dict[Any, Condition] = {
+    NapFlip: Condition("if the rod kept its nap", "`nap` has that of it turned over"),
+    Noise: Condition("without noise", "`friction_curve` has that with it"),
+}
 
 
 @with_nan
@@ -29,6 +35,10 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
     every parameter of the parts (`jax.grad` through `rho_plus`). Of a surface known by
     samples `omega_plus_error`, `rho_plus_error` and the like say how well the samples
     determine them.
+
+    Of a scene with `effects.NapFlip` they are those of the rod if it kept its nap (`nap`
+    has friction of it turned over), with `effects.Noise` those without noise
+    (`friction_curve` has friction with it); tables of them say so.
 
     Raises `ValueError` naming the hypothesis of the paper that fails: `omega_plus > 0 >
     omega_minus`, `alpha != 0`, `1 + a omega > 0` at both ends, the bristle's own bounds.
@@ -56,6 +66,9 @@ def friction(scene_or_profile: Any, bristle: AbstractBristle | None = None) -> C
     # A copy: a potential's own coefficients are a note on it, which must not hold it.
     found = dataclasses.replace(found)
     note_origin(found, wiggle)
+    for effect in getattr(scene_or_profile, "effects", ()):
+        if type(effect) in _LEFT_OUT:
+            note_condition(found, _LEFT_OUT[type(effect)])
     return found
 
 

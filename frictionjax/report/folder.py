@@ -4,14 +4,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import jax.numpy as jnp
 import numpy as np
 
 from .. import plot
 from .._checks import naming, write_whole
 from ..coefficients import Coefficients
 from ..effects import NapFlip, nap_flip_among
-from ..model import Scene, friction
+from ..model import Scene
 from ..studies import Study
 from ..turning import flipping_rod
 from ..wiggly import solve
@@ -27,7 +26,10 @@ _SLIPS = 50  # while a rod slides as far as it reaches
 def study_figures(
     found: Study, scene: Scene, law: Coefficients
 ) -> "Iterator[tuple[str, Figure]]":
-    """The pictures of a study by file name, those that its data allow."""
+    """The pictures of a study by file name, those that its data allow.
+
+    `law`: friction of the scene's slides.
+    """
     data = found.dataset
     if found.spread is not None:
         yield "convergence", found.plot()
@@ -36,23 +38,11 @@ def study_figures(
     if bool((data.status == 0).any()):
         yield "trajectories", plot.draw_trajectories(data)
         turning = nap_flip_among(scene.effects)
-        loop_law = law if turning is None else slide_friction(scene)
-        yield "loop", plot.draw_loop(data, scene.support, loop_law)
+        yield "loop", plot.draw_loop(data, scene.support, law)
         if "dissipation" in data:
             yield "dissipation", plot.draw_dissipation(data)
         if turning is not None:
             yield from _turning_figures(data, scene, turning)
-
-
-def slide_friction(scene: Scene) -> Coefficients:
-    """Of slides in the limit: a rod that turns over goes with its nap both ways."""
-    effect = nap_flip_among(scene.effects)
-    if effect is None:
-        return friction(scene)
-    found = flipping_rod(scene, effect)
-    return Coefficients(
-        jnp.asarray(found.standing.rho_with), jnp.asarray(-found.turned.rho_with)
-    )
 
 
 def _turning_figures(

@@ -8,7 +8,12 @@ import numpy as np
 
 from .._checks import write_whole
 from ..bristles import AngularSpring
-from ..coefficients import coefficient_table, coefficients_by_name, errors_by_name
+from ..coefficients import (
+    coefficient_table,
+    coefficients_by_name,
+    condition_of,
+    errors_by_name,
+)
 from ..contact import Nap, nap
 from ..effects import NapFlip, nap_flip_among
 from ..io import scene_document
@@ -16,6 +21,7 @@ from ..limit import solve_limit
 from ..model import Scene, friction
 from ..profiles import AbstractProfile
 from .job import Job, joined
+from .sections import friction_of_slides, friction_sentence
 from .tables import row_table
 
 if TYPE_CHECKING:
@@ -31,6 +37,9 @@ def friction_text(job: Job) -> str:
     sections = [("", line) for line in job.notes]
     table = str(coefficient_table(friction(job.scene), job.error))
     sections.append(("Friction coefficients", table))
+    if nap_flip_among(job.scene.effects) is not None and _nap_of(job, None).turns_over:
+        slides = friction_sentence(friction_of_slides(job.scene))
+        sections.append(("Of the rod that turns over", slides))
     if job.rows is not None:
         sections.append(("Over the rows of the map", row_table(job.rows, job.row)))
     return joined(sections)
@@ -43,6 +52,9 @@ def friction_document(job: Job) -> dict[str, Any]:
     if law.alpha is not None:
         numbers["pulling"] = bool(law.alpha < 0)
     error = errors_by_name(law, job.error)
+    condition = condition_of(law)
+    if condition is not None:
+        numbers["condition"] = condition.words
     if job.rows is not None or error:
         finite = {name: e if math.isfinite(e) else None for name, e in error.items()}
         numbers["error"] = finite
@@ -118,9 +130,10 @@ def _write_report(
 
     assert job.report is not None
     toml = scene_document(job.scene, job.study)
-    coefficients = coefficient_table(friction(job.scene), job.error)
-    stiffness = _stiffness(job, asked)
-    facts = NapFacts(job, _nap_of(job, asked), stiffness, coefficients, pictures, toml)
+    scene, stiffness = turning_scene(job, asked), _stiffness(job, asked)
+    laws = friction(scene), friction_of_slides(scene)
+    table = coefficient_table(laws[0], job.error)
+    facts = NapFacts(job, _nap_of(job, asked), stiffness, *laws, table, pictures, toml)
     write_whole(folder / "scene.toml", toml)
     write_whole(folder / "report.html", nap_page(facts, job.report))
     return ["scene.toml", "report.html"]

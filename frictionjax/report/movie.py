@@ -13,9 +13,9 @@ from ..contact import mechanics
 from ..limit import solve_limit
 from ..model import Scene
 from ..wiggly import solve
-from .folder import slide_friction
 from .friction import turning_scene
 from .job import Job
+from .sections import friction_of_slides
 
 _TIMES = 4001  # of the solution, of which frames are chosen
 _FRAMES = 80
@@ -73,7 +73,7 @@ def _nearest(scene: Scene, known: list[float], gamma: float) -> tuple[float, Any
     With its solution, and by how much of that friction its forces go beyond it.
     """
     ts = np.linspace(0.0, float(scene.duration), _TIMES)
-    law = slide_friction(scene)
+    law = friction_of_slides(scene)
     tried: list[tuple[float, Any, float]] = []
     for eps in known:
         found = solve(scene, eps, gamma, ts)

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .._text import ResultTable
+from ..coefficients import Coefficients
 from ..contact import Nap
-from ..model import friction
 from .job import Job, ReportRequest
 from .page import (
     Captioned,
@@ -33,11 +33,17 @@ from .sections import (
 
 
 class NapFacts(NamedTuple):
-    """What was found of a bristle; `stiffness` of its rod in N m^2, where it has one."""
+    """What was found of a bristle; `stiffness` of its rod in N m^2, where it has one.
+
+    `law`: of the table `coefficients`, `slides`: of the bristle's slides, which may turn
+    it over.
+    """
 
     job: Job
     found: Nap
     stiffness: float | None
+    law: Coefficients
+    slides: Coefficients
     coefficients: ResultTable
     pictures: Mapping[str, Figure]
     toml: str
@@ -90,7 +96,6 @@ _NO_PICTURE = (
 def nap_page(facts: NapFacts, asked: ReportRequest) -> str:
     """The page: both directions, pictures, the scene, where numbers come from."""
     job, found = facts.job, facts.found
-    law = friction(job.scene)
     seconds = time.perf_counter() - asked.started
     told = [("bending stiffness", _stiffness_text(facts.stiffness))]
     origin = Origin(asked.command, seconds, told)
@@ -107,8 +112,8 @@ def nap_page(facts: NapFacts, asked: ReportRequest) -> str:
             sections=[
                 _directions(facts),
                 _pictures(facts),
-                scene_section(job.scene, law, eps, gamma),
-                coefficient_section(law, facts.coefficients),
+                scene_section(job.scene, facts.law, eps, gamma),
+                coefficient_section(facts.slides, facts.coefficients),
                 Section("What proves it, and what failed", [paragraph(_ALL_FORMULAS)]),
                 origin_section(origin),
                 reproduction_section(origin, facts.toml, [again], _files(facts)),

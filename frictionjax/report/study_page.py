@@ -51,10 +51,14 @@ from .tables import row_table
 
 
 class StudyFacts(NamedTuple):
-    """What a study has found, and how: `seconds` of its sweep, `pictures` by file name."""
+    """What a study has found, and how: `seconds` of its sweep, `pictures` by file name.
+
+    `law`: of the table `coefficients`, `slides`: of the scene's slides.
+    """
 
     job: Job
     law: Coefficients
+    slides: Coefficients
     found: Study
     coefficients: ResultTable
     pictures: Mapping[str, Figure]
@@ -109,7 +113,7 @@ def study_page(facts: StudyFacts, asked: ReportRequest) -> str:
         Page(
             title="From viscosity to dry friction: a convergence study",
             about=_ABOUT,
-            verdict=verdict_sentence(found, facts.law),
+            verdict=verdict_sentence(found, facts.slides),
             first=[items(notes)] if notes else [],
             sections=[one for one in sections if one.blocks],
             made_by=f"Written by {facts.data.attrs.get('source', 'frictionjax')}. "
@@ -179,7 +183,7 @@ def _range(values: np.ndarray) -> str:
 
 
 def _friction(facts: StudyFacts) -> Section:
-    section = coefficient_section(facts.law, facts.coefficients)
+    section = coefficient_section(facts.slides, facts.coefficients)
     if facts.job.rows is None:
         return section
     table = row_table(facts.job.rows, facts.job.row)
@@ -196,7 +200,7 @@ def _motion(facts: StudyFacts) -> list[Section]:
 
 def _picture(facts: StudyFacts, name: str, figure: Figure) -> Html:
     told, caption = picture_of(
-        name, facts.found, facts.law, _shown_gamma(facts.data), len(figure.axes)
+        name, facts.found, facts.slides, _shown_gamma(facts.data), len(figure.axes)
     )
     return shown(Captioned(figure, told, caption), name.replace("_", " "))
 

@@ -19,6 +19,7 @@ from ..studies import (
 )
 from .folder import study_figures, write_study
 from .job import Job, joined
+from .sections import friction_of_slides
 from .study_page import StudyFacts, study_page
 from .study_words import verdict_sentence
 from .tables import row_table
@@ -50,12 +51,12 @@ def write_results(
     `seconds`: that the sweep took. `progress`: as of `study`.
     """
     scene = job.scene
-    law = friction(scene)
+    law, slides = friction(scene), friction_of_slides(scene)
     found = study(data, progress=progress)
     sections = [("", line) for line in job.notes]
     if "left_out" in data.attrs:
         sections.append(("", f"Effects left out: {data.attrs['left_out']}"))
-    sections.append(("What came out", fill(verdict_sentence(found, law), _WIDE)))
+    sections.append(("What came out", fill(verdict_sentence(found, slides), _WIDE)))
     coefficients = coefficient_table(law, job.error)
     sections.append(("Friction coefficients", str(coefficients)))
     if job.rows is not None:
@@ -70,16 +71,15 @@ def write_results(
             ("Orders of convergence", f"{order_table(found.orders)}\n{_COVERS}"),
             ("Lemmas 7 to 9", str(lemma_table(found.orders))),
         ]
-    if "inertia" in found.orders.attrs:
-        sections.append(("Inertia", found.orders.attrs["inertia"]))
-    if "turning" in found.orders.attrs:
-        sections.append(("Turning over", found.orders.attrs["turning"]))
+    titles = {"inertia": "Inertia", "noise": "Noise", "turning": "Turning over"}
+    told = found.orders.attrs
+    sections += [(title, told[name]) for name, title in titles.items() if name in told]
     sections.append(("Failed cells", failed_table(found.failed)))
     text = joined(sections)
     toml = scene_document(scene, job.study)
-    pictures = dict(study_figures(found, scene, law))
+    pictures = dict(study_figures(found, scene, slides))
     write_study(folder, found, pictures, toml, text)
     if job.report is not None:
-        facts = StudyFacts(job, law, found, coefficients, pictures, toml, seconds)
+        facts = StudyFacts(job, law, slides, found, coefficients, pictures, toml, seconds)
         write_whole(folder / "report.html", study_page(facts, job.report))
     return text

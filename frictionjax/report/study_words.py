@@ -6,6 +6,7 @@ import xarray as xr
 from ..coefficients import Coefficients
 from ..convergence import Verdict
 from ..studies import Study
+from .sections import friction_sentence, under_condition
 
 _NOTHING = {
     Verdict.DIVERGES: "the errors grow as eps falls",
@@ -16,7 +17,10 @@ _NOTHING = {
 
 
 def verdict_sentence(found: Study, law: Coefficients) -> str:
-    """The order beside the predicted one, friction, and how many cells failed."""
+    """The order beside the predicted one, friction, and how many cells failed.
+
+    `law`: of the scene's slides.
+    """
     count, failed = found.dataset.status.size, len(found.failed)
     told = f"{failed} of {count} computations failed" if failed else _none_failed(count)
     if found.spread is not None:
@@ -24,12 +28,13 @@ def verdict_sentence(found: Study, law: Coefficients) -> str:
     line = _nearest(found.orders)
     known = Verdict(int(line.verdict)) not in _NOTHING
     meant = f" {_halved(float(line.order))}" if known else ""
-    ratio = -float(law.rho_plus) / float(law.rho_minus) if law.rho_minus else np.nan
-    return (
-        f"{_order_sentence(line)}{meant} {told}. Friction becomes "
-        f"{float(law.rho_plus):.4g} N to the right and {-float(law.rho_minus):.4g} N to "
-        f"the left: {ratio:.4g} to 1."
-    )
+    friction = friction_sentence(law, _massless(line))
+    return f"{_order_sentence(line)}{meant} {told}. {friction}"
+
+
+def _massless(line: xr.Dataset) -> str:
+    """Where mass does not fall fast enough with eps friction need not come to rho."""
+    return "" if int(line.get("overdamped", 1)) else " without inertia"
 
 
 def _none_failed(count: int) -> str:
@@ -145,7 +150,7 @@ def picture_of(
         told = (
             f"Loop of friction force against state at gamma = {gamma:.4g}. The limit holds "
             f"{float(law.rho_plus):.4g} N on the way to the right and "
-            f"{float(law.rho_minus):.4g} N on the way to the left. "
+            f"{float(law.rho_minus):.4g} N on the way to the left{under_condition(law)}. "
             f"{_smallest_told(data, gamma)}"
         )
     elif name == "convergence":

@@ -39,8 +39,9 @@ def test_the_command_that_makes_it_again_has_the_stiffness(stiffness):
     job = read_job(None, bristle="angular")
     request = ReportRequest("frictionjax nap", time.perf_counter())
     found = nap(job.scene.profile, job.scene.bristle, stiffness)
-    table = coefficient_table(fx.friction(job.scene))
-    facts = NapFacts(job, found, stiffness, table, {}, 'kind = "x"')
+    law = fx.friction(job.scene)
+    table = coefficient_table(law)
+    facts = NapFacts(job, found, stiffness, law, law, table, {}, 'kind = "x"')
     text = checked_page(nap_page(facts, request)).text
     assert ("--bending-stiffness 0.1 " in text) == (stiffness is not None)
     for number in (found.rho_with, found.rho_against, found.axial_with):

@@ -5,6 +5,9 @@ from .origin import reproduction_section as reproduction_section
 from .shared_sections import coefficient_section as coefficient_section
 from .shared_sections import scene_section as scene_section
 from .shared_sections import scene_sentence as scene_sentence
+from .slide_friction import friction_of_slides as friction_of_slides
+from .slide_friction import friction_sentence as friction_sentence
+from .slide_friction import under_condition as under_condition
 from .words import status_legend as status_legend
 from .words import verdict_legend as verdict_legend
 from .words import words_section as words_section

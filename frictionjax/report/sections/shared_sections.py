@@ -11,6 +11,7 @@ from ...explain import composed_equation
 from ...io import part_rows
 from ...model import Scene
 from ..page import Captioned, Html, Section, equation, paragraph, shown, table_region
+from .slide_friction import under_condition
 
 _TIMES = 1201
 _EQUATION = (
@@ -41,13 +42,14 @@ def scene_sentence(scene: Scene) -> str:
 def scene_section(scene: Scene, law: Coefficients, eps: float, gamma: float) -> Section:
     """Drawn, as an equation, and in numbers; the equation at one eps (m) and gamma."""
     text = composed_equation(scene, eps, gamma).text()
+    forces = f"{_FORCES}{under_condition(law)}."
     blocks: list[Html] = [
         paragraph(scene_sentence(scene)),
         shown(Captioned(plot.draw_parts(scene), _parts_told(scene), _PARTS), "the scene"),
         equation(text),
         paragraph(f"{_EQUATION} {_GEOMETRY}" if "A(eps w(y))" in text else _EQUATION),
         shown(
-            Captioned(plot.draw_forces(scene), _forces_told(scene, law), _FORCES), "forces"
+            Captioned(plot.draw_forces(scene), _forces_told(scene, law), forces), "forces"
         ),
         table_region(part_rows(scene), "Numbers of the scene"),
     ]
@@ -61,7 +63,7 @@ _PARTS = (
 _FORCES = (
     "Left: the load over time. Right: the force with which the surface holds the bristle, "
     "over one bump, for eps -> 0. Its largest and its smallest value are what friction "
-    "becomes, `rho_plus` to the right and `rho_minus` to the left."
+    "becomes, `rho_plus` to the right and `rho_minus` to the left"
 )
 
 
@@ -97,11 +99,14 @@ def _forces_told(scene: Scene, law: Coefficients) -> str:
 
 
 def coefficient_section(law: Coefficients, table: ResultTable, more: str = "") -> Section:
-    """Friction in each direction, in words and as a table; `more` to be said."""
+    """Friction in each direction, in words and as a table; `more` to be said.
+
+    `law`: of slides, which need not be that of the table, which says its own condition.
+    """
     right, left = float(law.rho_plus), -float(law.rho_minus)
     said = (
         f"Pulled slowly to the right the bristle holds against {right:.4g} N, pulled to "
-        f"the left against {left:.4g} N"
+        f"the left against {left:.4g} N{under_condition(law)}"
     )
     if left:
         said += f": {right / left:.4g} times as much to the right as to the left"
