@@ -56,6 +56,8 @@ class _Told(tqdm):
             self.set_postfix_str(f"{spent:.0f} s of it compiling", refresh=False)
 
     def update(self, n: float | None = 1) -> bool | None:
+        if n is not None and self.total is not None:
+            n = min(n, self.total - self.n)  # shares of 1 add up to more, by rounding
         if not self.disable:
             self.tell_compilation()
         return super().update(n)

@@ -47,6 +47,19 @@ def test_compilation_is_told_apart(hurried, monkeypatch, capsys):
     assert "s of it compiling" in capsys.readouterr().err
 
 
+def test_a_bar_ends_where_it_is_full(capsys):
+    """Shares of 1 add up to more, by rounding: bars warned, and were done in -00:00."""
+    with progress.progress_bar("runs", True) as bar:
+        for _ in range(48):
+            bar.update(1 / 48)
+        assert bar.n == pytest.approx(1.0, rel=1e-12)
+        assert bar.n <= 1.0
+    told = capsys.readouterr().err
+    assert "clamping" not in told
+    assert "-00:00" not in told
+    assert "100%" in told
+
+
 @pytest.mark.parametrize("shown", [True, False])
 def test_what_is_done_at_once_says_nothing(shown, capsys):
     with progress.waiting("work", shown) as tell:
