@@ -231,9 +231,10 @@ def work_precision(
     takes longer tighter accuracies are not tried; SciPy's runs are ended then, diffrax's
     after a million steps for each second, ours, which cannot be, go on. `total`: seconds
     of all together after which no run is begun, but those of the first of ours, which come
-    before all others, in all cells; what is left out is NOT_TRIED. None: no bound, and all
-    of ours come first. `anyway`: of `methods`, those of SciPy's that are run at the loosest
-    accuracy after `total` too, so that ours are held against one.
+    before all others, in all cells; these follow in their order, each in all cells; what is
+    left out is NOT_TRIED. None: no bound, and all of ours come first. `anyway`: of
+    `methods`, those of SciPy's that are run at the loosest accuracy after `total` too, so
+    that ours are held against one.
     `progress`: a line on standard error until there are references, then a bar.
 
     Returns a data set with dims (gamma, eps, solver, accuracy): times `seconds` (median),
@@ -294,7 +295,8 @@ def _all_cells(
     """Runs in the order of the data set, and a reference for each (gamma, eps).
 
     Made in another order: our methods in all cells before the others, which may take all
-    the time there is; where that is bounded, only the one that is measured in any case.
+    the time there is; where that is bounded, only the one that is measured in any case, and
+    then method by method, so that no slow one of a cell takes the time of all in the next.
     """
     grid = list(itertools.product(gamma.tolist(), eps.tolist()))
     columns: dict[tuple[int, int], _Column] = {}
@@ -315,7 +317,11 @@ def _all_cells(
         def told() -> None:
             bar.update(share)
 
-        for place in sorted(columns, key=lambda at: not effort.goes_first(names[at[1]])):
+        def turn(place: tuple[int, int]) -> tuple[bool, int, int]:
+            row, index = place
+            return not effort.goes_first(names[index]), index, row
+
+        for place in sorted(columns, key=turn):
             found[place] = _measured(columns[place], effort, first[place], told)
     cells = [run for place in columns for run in found[place]]
     return cells, [columns[row, 0].truth for row in range(len(grid))]

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..wiggly import ENDED, is_ours
+from ..wiggly import ENDED, Status, is_ours
 from .style import LIMIT, colour, marker
 
 MOST = 1e3  # eps: further off is as wrong
@@ -50,6 +50,11 @@ def runs_of(line: xr.Dataset) -> DrawnRuns:
 def failed_runs(runs: xr.Dataset) -> np.ndarray:
     """Which runs did not come to their end, whatever their errors are."""
     return ~np.isin(runs.status.values, ENDED)
+
+
+def untried_runs(runs: xr.Dataset) -> np.ndarray:
+    """Which of these were not begun: too slow before, or no time was left."""
+    return runs.status.values == int(Status.NOT_TRIED)
 
 
 def floor_of(cells: xr.Dataset) -> np.ndarray:

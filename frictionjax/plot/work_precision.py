@@ -26,6 +26,7 @@ from .cost_runs import (
     mark_failed,
     runs_of,
     set_places,
+    untried_runs,
 )
 from .style import LIMIT, Picture, choose_eps, choose_gamma, styled
 
@@ -187,9 +188,7 @@ def _legends(figure: Any, dataset: xr.Dataset) -> None:
     """Methods above the panels; what else there is to see, below them."""
     methods = []
     for index, name in enumerate(map(str, dataset.solver.values)):
-        failed = int(failed_runs(dataset.sel(solver=name)).sum())
-        count = dataset.sel(solver=name).status.size
-        label = f"{name} ({failed} of {count} not done)" if failed else name
+        label = f"{name}{_undone(dataset.sel(solver=name))}"
         methods.append(Line2D([], [], label=label, **look(name, index)))
     figure.legend(handles=methods, loc="outside upper center", ncols=4)
     signs: list[Any] = [
@@ -204,12 +203,20 @@ def _legends(figure: Any, dataset: xr.Dataset) -> None:
     if np.any(dataset.error > MOST):
         signs.append(Line2D([], [], **_CAP, label="1000 $\\epsilon$ and more"))
     if np.any(failed_runs(dataset)):
-        sign = Line2D(
-            [], [], color=LIMIT, **NOT_DONE, label="not done: too slow, or failed"
-        )
-        signs.append(sign)
+        why = "too slow, or failed"
+        if np.any(untried_runs(dataset)):
+            why = "too slow, failed, or not tried"
+        signs.append(Line2D([], [], color=LIMIT, **NOT_DONE, label=f"not done: {why}"))
     signs += [
         Patch(color=TOO_LITTLE, label="less accurate than asked for"),
         Patch(color=UNKNOWN, label="below the error of the reference"),
     ]
     figure.legend(handles=signs, loc="outside lower center", ncols=3)
+
+
+def _undone(runs: xr.Dataset) -> str:
+    """How many runs of a method are not done, and how many of all were not tried."""
+    failed, untried = int(failed_runs(runs).sum()), int(untried_runs(runs).sum())
+    counts = {"not done": failed - untried, "not tried": untried}
+    told = [f"{n} of {runs.status.size} {what}" for what, n in counts.items() if n]
+    return f" ({', '.join(told)})" if told else ""

@@ -139,9 +139,10 @@ def verdict_of_cost(data: xr.Dataset) -> str:
 
 
 def _trust(data: xr.Dataset) -> str:
-    """How many runs reported success and were wrong, and how many are not done."""
+    """How many runs reported success and were wrong, how many are not done or tried."""
     count, wrong = data.status.size, int(np.sum(data.wrong.values > 0))
-    undone = int(np.sum(data.status.values != int(Status.OK)))
+    untried = int(np.sum(data.status.values == int(Status.NOT_TRIED)))
+    undone = int(np.sum(data.status.values != int(Status.OK))) - untried
     said = (
         f"Of {count} runs {wrong or 'none'} reported success and {_were(wrong)} half an "
         "eps or more off"
@@ -153,7 +154,10 @@ def _trust(data: xr.Dataset) -> str:
             if np.any(data.wrong.sel(solver=name).values > 0)
         ]
         said += f" ({', '.join(named)})"
-    return f"{said}, and {undone or 'none'} {_were(undone)} too slow or failed."
+    slow = f"{undone or 'none'} {_were(undone)} too slow or failed"
+    if untried:
+        return f"{said}, {slow}, and {untried} {_were(untried)} not tried."
+    return f"{said}, and {slow}."
 
 
 def _were(count: int) -> str:
@@ -205,7 +209,7 @@ def _failures(data: xr.Dataset) -> Section:
     if rows:
         header = ("gamma", "eps/m", "solver", "asked", "status", "why")
         table = ResultTable(header, tuple(rows), left=3, meanings=1)
-        blocks.append(table_region(table, "Runs that failed"))
+        blocks.append(table_region(table, "Runs that failed or were not tried"))
     codes = data.status.values.ravel().tolist()
     legend = table_region(status_legend(codes), "What statuses mean", as_csv=False)
     return Section("What failed", [*blocks, legend])

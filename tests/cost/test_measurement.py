@@ -136,6 +136,24 @@ def test_a_solver_is_held_against_ours_where_no_time_is_left(scene):
     assert cost.attrs["advice"].endswith("not run, for want of time: BDF.")
 
 
+def test_after_ours_methods_follow_each_in_all_cells(scene, monkeypatch):
+    """Slow ones of the first cell took the time of all in the second."""
+    order = []
+
+    def noted(column, *_):
+        order.append((column.eps, column.method))
+        return [dict.fromkeys(cost_of_accuracy.RUN, 0.0)]
+
+    monkeypatch.setattr(cost_of_accuracy, "_first_calls", lambda *a: [None] * len(a[4]))
+    monkeypatch.setattr(cost_of_accuracy, "reference", lambda *_: None)
+    monkeypatch.setattr(cost_of_accuracy, "_measured", noted)
+    effort = cost_of_accuracy._Effort(np.array([0.1]), 1, 1.0, 9.0, "auto", ())
+    names, grid = ["LSODA", "auto", "BDF"], (np.array([0.1, 0.05]), np.array([1.0]))
+    cost_of_accuracy._all_cells(scene, *grid, TIMES, names, effort, False)
+    by_method = [(eps, name) for name in ("auto", "LSODA", "BDF") for eps in grid[0]]
+    assert order == by_method
+
+
 def test_within_a_total_others_of_ours_wait_their_turn(scene, monkeypatch):
     """Only the first is measured in any case, and compiles before the reference."""
     first, begun = [], []

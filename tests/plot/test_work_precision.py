@@ -183,6 +183,16 @@ def test_what_is_not_done_stands_above_the_upper_edge():
     assert "Radau (12 of 12 not done)" in legend_of(figure)
 
 
+def test_runs_that_nobody_has_begun_are_counted_apart():
+    cells = cells_like([0.1], [1.0])
+    cells.status[..., 6, :] = int(fx.Status.NOT_TRIED)
+    cells.status[..., 7, 1:] = int(fx.Status.NOT_TRIED)
+    legend = legend_of(fx.plot.draw_work_precision(cells))
+    assert "BDF (3 of 3 not tried)" in legend
+    assert "Radau (1 of 3 not done, 2 of 3 not tried)" in legend
+    assert "not done: too slow, failed, or not tried" in legend
+
+
 def test_runs_are_counted_as_not_done_by_their_status():
     """An error of 0, or of NaN where no time is outside slips, is no failure."""
     cells = cells_like([0.1], [1.0])

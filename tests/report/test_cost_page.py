@@ -9,7 +9,7 @@ from html_pages import cells_of_table, checked_page
 
 import frictionjax as fx
 from frictionjax.cost.advice import advice
-from frictionjax.report.cost import measured_cells, run_cost
+from frictionjax.report.cost import ASKED, measured_cells, run_cost
 from frictionjax.report.cost_page import verdict_of_cost
 from frictionjax.report.job import ReportRequest, read_job
 
@@ -102,6 +102,19 @@ def test_where_nothing_is_accurate_enough_it_says_so():
     data.attrs["advice"] = advice(data)
     assert "No method was measured to keep 1e-03 eps" in verdict_of_cost(data)
     assert "none reported success" in verdict_of_cost(data.assign(wrong=0 * data.wrong))
+
+
+def test_runs_that_nobody_has_begun_are_counted_apart():
+    """They were told as too slow or failed."""
+    data = measured()
+    data.status[0, 0, 2, 1] = int(fx.Status.NOT_TRIED)
+    said = verdict_of_cost(data)
+    assert "(`LSODA` 2), 3 were too slow or failed, and 1 was not tried." in said
+
+
+def test_methods_that_take_all_the_time_come_after_ours():
+    ours = [ASKED.index(name) for name in ("auto", "resolved", "windowed")]
+    assert max(ours) < min(ASKED.index(name) for name in ("BDF", "Radau", "Kvaerno5"))
 
 
 def test_one_run_is_no_plural():
