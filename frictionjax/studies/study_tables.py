@@ -107,7 +107,7 @@ def spread_table(spread: xr.Dataset) -> ResultTable:
             name,
             f"{gamma:.4g}",
             _ranged(spread[f"{prefix}order"].sel(gamma=gamma), "{:.3f}"),
-            _ranged(spread[f"{prefix}order_predicted"].sel(gamma=gamma), "{:.3f}"),
+            *_predicted_cells(spread.sel(gamma=gamma), prefix),
             _ranged(spread[f"{prefix}constant"].sel(gamma=gamma), "{:.3g}"),
             f"{int(spread.scenes.sel(gamma=gamma))}",
         )
@@ -115,12 +115,20 @@ def spread_table(spread: xr.Dataset) -> ResultTable:
         if f"{prefix}order" in spread
         for gamma in spread.gamma.values
     ]
-    header = ("error", "gamma", "order [5%, 95%]", "predicted", "constant", "rows")
+    header = ("error", "gamma", "order [5%, 95%]", "predicted", "in", "constant", "rows")
     note = (
         "(Median, and between which values 90% of the rows lie. Orders and constants of\n"
-        "each row are for eps -> 0, by its law where its errors follow one.)"
+        "each row are for eps -> 0, by its law where its errors follow one. in: how many\n"
+        "of the rows the law predicts an order of; of the others, free, it says none.)"
     )
     return ResultTable(header, tuple(rows), left=1, note=note)
+
+
+def _predicted_cells(spread: xr.Dataset, prefix: str) -> tuple[str, str]:
+    """Of one gamma: what laws predict, and in how many rows."""
+    count = int(spread[f"{prefix}predicted_scenes"])
+    told = _ranged(spread[f"{prefix}order_predicted"], "{:.3f}") if count else "-"
+    return told, f"{count}"
 
 
 def _ranged(quantiles: xr.DataArray, form: str) -> str:

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import frictionjax as fx
-from frictionjax.studies.scene_spread import QUANTILES
+from frictionjax.studies import spread_table
+from frictionjax.studies.scene_spread import QUANTILES, spread_over_scenes
 
 EPS, GAMMA = np.geomspace(0.05, 1e-3, 7), [0.5, 2.0]
 
@@ -53,6 +54,22 @@ def test_spreads_are_quantiles_over_the_scenes(found):
     for name in ("order", "dissipation_constant", "strip_order_seen", "C0"):
         values = np.sort(found.orders[name].values, axis=0)
         np.testing.assert_array_equal(spread[name].isel(quantile=[0, 3, 6]), values)
+
+
+def test_scenes_behind_a_prediction_are_counted(found):
+    """Rows of which a law says nothing stood for it too."""
+    columns = ("error", "gamma", "order [5%, 95%]", "predicted", "in", "constant", "rows")
+    orders = found.orders.copy(deep=True)
+    orders.strip_order_predicted[0, :] = np.nan
+    orders.dissipation_order_predicted[:] = np.nan
+    spread = spread_over_scenes(orders)
+    assert spread.strip_predicted_scenes.values.tolist() == [2, 2]
+    table = spread_table(spread)
+    assert table.header == columns
+    cells = {(row[0], row[1]): row[3:5] for row in table.rows}
+    assert cells["from the strip", "2"][1] == "2"
+    assert cells["state", "2"][1] == "3"
+    assert cells["dissipation", "2"] == ("-", "0")
 
 
 def test_scenes_without_an_order_are_left_out_of_its_spread(data):
