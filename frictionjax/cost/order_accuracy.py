@@ -23,7 +23,8 @@ class EpsGrid(NamedTuple):
     `half_width`: half of the 95% interval of the order of sup_error, the widest of those of
     `laid` different grids of this kind in the pilot; `low`, `high`: ends of all of them;
     `order`: their median; `seconds`: predicted, of `sweep` at its own times. `confirmed`:
-    whether grids of the pilot that reach to smaller eps agree with it.
+    whether grids of the pilot that reach to smaller eps agree with it, or, where the range
+    ends, there are none.
     """
 
     eps_max: float

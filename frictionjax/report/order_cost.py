@@ -14,14 +14,17 @@ def run_order_cost(job: Job, within: float) -> str:
     for gamma in gammas:
         found = order_cost(job.scene, eps, gamma, within, job.study["accuracy"])
         sections.append((f"gamma = {gamma:.4g}: {found.message}", _grid_table(found)))
-    sections.append(("", _GRIDS))
+    sections.append(("", _GRIDS.format(within=within)))
     return joined(sections)
 
 
 _GRIDS = (
-    "Grids that smaller eps confirm and no cheaper one beats. interval: half of the 95%\n"
-    "interval of the order of sup |z_eps - z| as eps -> 0, the widest of as many grids of\n"
-    "this kind as `of` says; s: predicted for this machine."
+    "Grids that no cheaper one beats, of those that all smaller eps confirm, or that end\n"
+    "where the range does, with no smaller eps. interval: half of the 95% interval of the\n"
+    "order of sup |z_eps - z| as eps -> 0, the widest of as many grids of this kind as\n"
+    "`of` says; s: predicted for this machine. Above the table stands, of the grids\n"
+    "within +-{within:g} that take at most a quarter longer than the cheapest of them,\n"
+    "which predictions do not tell apart, the one of the narrowest interval."
 )
 
 
