@@ -9,6 +9,7 @@ import numpy as np
 from .._checks import Asked, Real, as_real, is_known, require, require_real
 from .._compile import Interpreted
 from .bristle import AbstractBristle, Rod, SlopeBounds, Stance
+from .radians import in_radians
 
 
 class AngularSpring(AbstractBristle):
@@ -45,7 +46,8 @@ class AngularSpring(AbstractBristle):
 
     def __check_init__(self):
         self._require_positive()
-        require_real("bristle.rest_angle", self.rest_angle, "rest_angle > -pi/2")
+        allowed = in_radians("rest_angle > -pi/2", self.rest_angle)
+        require_real("bristle.rest_angle", self.rest_angle, allowed)
         if not is_known(self):
             return
         length, height = float(self.length), float(self.height)
@@ -54,7 +56,7 @@ class AngularSpring(AbstractBristle):
             length > height, "bristle.length", length, f"length > height = {height:.6g}"
         )
         limit = float(_angle_of(self, np.float64(0.0)))
-        allowed = f"theta_lim = {limit:.6g} > rest_angle > -pi/2"
+        allowed = in_radians(f"theta_lim = {limit:.6g} > rest_angle > -pi/2", rest)
         require(-0.5 * np.pi < rest < limit, "bristle.rest_angle", rest, allowed)
 
     @property

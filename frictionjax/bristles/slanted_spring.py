@@ -7,6 +7,7 @@ import jax.numpy as jnp
 
 from .._checks import Asked, Real, as_real, require_real
 from .bristle import AbstractBristle, SlopeBounds, Stance
+from .radians import in_radians
 
 
 class SlantedSpring(AbstractBristle):
@@ -43,7 +44,7 @@ class SlantedSpring(AbstractBristle):
 
     def __check_init__(self):
         self._require_positive()
-        allowed = "-pi/2 < angle < pi/2"
+        allowed = in_radians("-pi/2 < angle < pi/2", self.angle)
         require_real("bristle.angle", self.angle, allowed, lambda v: abs(v) < 0.5 * jnp.pi)
 
     def offset(self, eta: Real) -> Real:

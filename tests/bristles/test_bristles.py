@@ -1,5 +1,7 @@
 """The two functions of every bristle, against the paper's geometry."""
 
+import re
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -164,3 +166,17 @@ def test_an_offset_of_ones_own_starts_at_0_but_for_rounding():
         Mine(1.0)
     assert Mine(1e-16).energy(0.0) == 1.0
     assert jax.vmap(lambda x: Mine(x).offset(0.0))(jnp.ones(2)).tolist() == [1.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("angle", "told"),
+    [(60.0, "in rad (60 degrees are 1.047 rad)"), (1.6, "in rad"), (1e5, "in rad")],
+)
+def test_angles_are_asked_for_in_rad(angle, told):
+    end = re.escape(told) + "$"
+    with pytest.raises(ValueError, match=f"needs -pi/2 < angle < pi/2 {end}"):
+        fx.bristles.SlantedSpring(1.0, 2.4, 1.0, angle)
+    with pytest.raises(ValueError, match=f"= 0.775193 > rest_angle > -pi/2 {end}"):
+        fx.bristles.AngularSpring(1.0, 1.4, 1.0, angle)
+    with pytest.raises(ValueError, match=r"rest_angle > -pi/2 in rad \(-60 deg"):
+        fx.bristles.AngularSpring(1.0, 1.4, 1.0, -60.0)
