@@ -45,8 +45,8 @@ def write_movie(
 ) -> str:
     """A GIF of the bristle of a job as it slides; what it shows, in a line.
 
-    `eps` in m; None: of the scene's list one whose slips can be told apart, and whose
-    forces are within 20% of friction in the limit where there is one; gamma is the largest
+    `eps` in m; None: of the scene's list one whose slips can be told apart, the first whose
+    forces are within 20% of friction in the limit, else the nearest; gamma is the largest
     of its list. The line says where forces are farther off. The rod turns over where
     `bending_stiffness` (N m^2), or that of the scene, makes it.
 
@@ -63,12 +63,13 @@ def write_movie(
         write_whole(path, whole.read_bytes())
     told = f"{path}: {_FRAMES} frames, eps = {eps:.4g} m, gamma = {gamma:.4g}"
     if beyond > _FAR:
-        told += f"; forces go up to {beyond:.0%} beyond friction as eps -> 0"
+        told += f"; forces go up to {beyond:.0%} beyond friction as eps -> 0: a smaller eps"
+        told += " comes nearer"
     return told if found.ok else f"{told}; not to be trusted: {found.message}"
 
 
 def _nearest(scene: Scene, known: list[float], gamma: float) -> tuple[float, Any, float]:
-    """The first eps whose forces are near friction in the limit, else the first at all.
+    """The first eps whose forces are near friction in the limit, else the nearest.
 
     With its solution, and by how much of that friction its forces go beyond it.
     """
@@ -82,7 +83,7 @@ def _nearest(scene: Scene, known: list[float], gamma: float) -> tuple[float, Any
         tried.append((eps, found, float(max(ways)) - 1.0))
         if tried[-1][2] <= _FAR:
             return tried[-1]
-    return tried[0]
+    return min(tried, key=lambda one: one[2])
 
 
 def _seen_best(scene: Scene, known: Any) -> list[float]:

@@ -44,6 +44,8 @@ def test_of_those_the_first_whose_forces_are_near_the_limits():
     assert (eps, beyond <= 0.2) == (0.02, True)
     eps, found, beyond = movie._nearest(HOMOTHETIC, [0.1], 1.0)
     assert (eps, beyond > 0.2) == (0.1, True)
+    eps, _, nearest = movie._nearest(HOMOTHETIC, [0.2, 0.1], 1.0)
+    assert (eps, nearest) == (0.1, beyond)  # else the nearest
     load = jax.vmap(HOMOTHETIC.load)(found.ts)
     assert beyond == pytest.approx(float(abs(load - found.z).max()) / 0.1 - 1.0, rel=1e-9)
 
