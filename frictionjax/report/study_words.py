@@ -93,7 +93,10 @@ _CAPTIONS = {
         "the limit, dry friction; the shaded strip holds all states at which friction "
         "can hold the bristle."
     ),
-    "close trajectories": "Right: a few slips from hollow to hollow, framed on the left.",
+    "close trajectories": (
+        "Right: a few slips from hollow to hollow, framed on the left. Dots stand for an "
+        "eps whose slips the stored times are too few to follow."
+    ),
     "loop": (
         "The friction force against the state, once to and fro. The smaller eps, the "
         "nearer the loop is to the two levels of dry friction. Dots stand for an eps whose "

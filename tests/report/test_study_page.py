@@ -78,6 +78,7 @@ def test_where_none_failed_it_says_so(tmp_path):
     resolved["status"] = resolved.status.astype(np.int8)
     text = checked_page(report_of(tmp_path, resolved)).text
     assert "Right: a few slips from hollow to hollow" in text
+    assert "on the left. Dots stand for an eps whose slips the stored times" in text
     assert "None of the 12 computations failed" in text
     assert "No cell failed, of 12." in text
     assert "Failed cells" not in text
