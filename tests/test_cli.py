@@ -140,9 +140,22 @@ def test_nap(tmp_path):
     assert numbers["window"] is None
     assert "nap.png" in run("nap", *options, "--out", tmp_path).stdout
     assert (tmp_path / "nap.png").stat().st_size > 10_000
-    refused = run("nap", "--out", tmp_path / "none")
-    assert "bristle = 'SlantedSpring': needs an AngularSpring" in refused.stderr
-    assert refused.exit_code == 2
+
+
+def test_nap_of_a_bristle_without_its_picture_is_its_table_and_a_line(tmp_path):
+    """It was refused, without a word of `--out` or of the bristle that has one."""
+    plain = run("nap", "--out", tmp_path / "none")
+    assert plain.exit_code == 0
+    line = "No nap.png: that is of rods on an angular spring (--bristle angular), not "
+    assert f"{line}SlantedSpring\n" in plain.stdout
+    assert "against/with = 0.73" in plain.stdout
+    assert not (tmp_path / "none").exists()
+    numbers = run("nap", "--json", "--out", tmp_path / "none")
+    assert json.loads(numbers.stdout)["window"] is None
+    assert line in numbers.stderr
+    reported = run("nap", "--report", "--out", tmp_path / "made")
+    assert f"report.html\n{line}" in reported.stdout
+    assert not (tmp_path / "made" / "nap.png").exists()
 
 
 def test_nap_says_what_of_a_scene_it_leaves_out(tmp_path):
@@ -356,7 +369,7 @@ def test_help_without_a_command():
         (["study", "none.toml"], "none.toml: cannot be read (No such file"),
         (["study", "--heights", "none.txt"], "none.txt: No such file"),
         (["study", "--row", "1"], "row = 1: needs --heights FILE"),
-        (["study", "--rows"], "rows = True: needs --heights FILE with a map, and no --row"),
+        (["study", "--rows"], "--rows: needs --heights FILE with a map, and no --row"),
         (["study", "--rows", "--budget", "9"], "--budget: not with --rows"),
         (["friction", "--bristle", "soft"], "'soft' is not one of 'slanted', 'angular'"),
         (["cost", "--order-within", "0.1", "--methods", "auto"], "not with --order-within"),
@@ -365,7 +378,12 @@ def test_help_without_a_command():
             ["cost", "--order-within", "0.1", "--out", "x", "--seconds", "7"],
             "--seconds, --out: not with --order-within",
         ),
-        (["cost", "--order-within", "0.1", "--progress"], "--progress: not with"),
+        (["cost", "--order-within", "0.1", "--progress"], ": --progress: not with"),
+        (["cost", "--order-within", "0.1", "--no-progress"], "--no-progress: not with"),
+        (
+            ["nap", "--bending-stiffness", "0.1"],
+            "--bending-stiffness = 0.1: needs a rod on an angular spring (--bristle a",
+        ),
         (["cost", "--order-within", "0.1", "--eps", ""], "eps = '': needs numbers > 0"),
         (["cost", "--eps", ""], "eps = '': needs numbers > 0"),
         (["cost", "--gamma", ""], "gamma = '': needs numbers > 0"),
@@ -396,6 +414,32 @@ def test_a_file_in_the_way_is_named_before_anything_runs(tmp_path):
     (tmp_path / "out").touch()
     line = error_line(run("study", "--out", tmp_path / "out"))
     assert "needs a folder" in line
+
+
+def test_descriptions_of_commands_are_whole():
+    """At 80 columns, where five of eight were cut."""
+    text = run("--help", terminal_width=80)
+    listed = text.stdout.partition("Commands:\n")[2].splitlines()
+    assert len(listed) == 8
+    assert all(line.endswith(".") and not line.endswith("...") for line in listed)
+
+
+def test_units_that_a_trace_lacks_are_named_as_options(tmp_path):
+    file = tmp_path / "length_unit.txt"
+    x = np.linspace(0.0, 50.0, 200)
+    np.savetxt(file, np.stack([x, 10 * np.sin(x)], axis=1))
+    line = error_line(run("friction", "--heights", file))
+    assert "needs --length-unit and --height-unit (or --height-scale): the file" in line
+    assert f"{file}: " in line
+    line = error_line(run("friction", "--heights", file, "--length-unit", "um"))
+    assert "needs --height-unit or --height-scale, beside --length-unit" in line
+
+
+def test_an_angle_in_degrees_is_told_in_rad(tmp_path):
+    text = scene_document(*default_study())
+    (tmp_path / "mine.toml").write_text(text.replace("angle = 1.0", "angle = 60.0"))
+    line = error_line(run("friction", tmp_path / "mine.toml"))
+    assert "needs -pi/2 < angle < pi/2 in rad (60 degrees are 1.047 rad)" in line
 
 
 def test_help_waits_for_no_library():

@@ -70,7 +70,7 @@ def cost(
     progress: bool,
     **surface: Any,
 ) -> None:
-    """What accuracy costs in time: this library's methods and general solvers."""
+    """What accuracy costs in time: our methods and general solvers."""
     started = time.perf_counter()
     start()
     from ..report import chosen_eps, read_job, require_folder, run_cost, run_order_cost

@@ -40,8 +40,8 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
 @click.option(
     "--out",
     metavar="DIR",
-    help="Also nap.png there, over angles of the rod; of one that turns over also "
-    "turning.png and nap_loops.png.",
+    help="Also nap.png there, over angles of a rod on an angular spring; of one that turns "
+    "over also turning.png and nap_loops.png.",
 )
 @click.option(
     "--report",
@@ -54,7 +54,8 @@ def friction(scene: str | None, as_json: bool, **surface: Any) -> None:
 @click.option(
     "--eps",
     type=POSITIVE,
-    help="Of the movie, in m. [of the scene's: slips seen, forces near the limit's]",
+    help="Of the movie, in m. [of the scene's with slips that are seen, the one whose "
+    "forces are nearest to the limit's]",
 )
 def nap(
     scene: str | None,
@@ -66,13 +67,14 @@ def nap(
     eps: float | None,
     **surface: Any,
 ) -> None:
-    """Friction with and against the nap, and whether the bristle turns over."""
+    """Friction with and against the nap, and whether rods turn over."""
     started = time.perf_counter()
     start()
     from ..report import (
         nap_document,
         nap_figures,
         nap_text,
+        no_nap_pictures,
         read_job,
         require_folder,
         require_gif,
@@ -85,8 +87,11 @@ def nap(
     if file is None and eps is not None:
         raise click.UsageError("--eps: needs --movie FILE.gif beside it")
     job = read_job(scene, **surface)._replace(report=report_asked(report, started))
-    if folder is not None:
+    skipped = [] if folder is None else no_nap_pictures(job)
+    if folder is not None and (report or not skipped):
         write_folder(folder, lambda place: nap_figures(job, bending_stiffness, place))
+    elif skipped:
+        click.echo("\n".join(skipped), err=as_json)
     if file is not None:
         film = file
         told = interruptible(lambda: write_movie(job, bending_stiffness, eps, film))
@@ -107,7 +112,7 @@ def nap(
 )
 @click.option("--accuracy", type=float, default=1e-3, show_default=True, help="In eps.")
 def explain(scene: str | None, eps: float, gamma: float, accuracy: float) -> None:
-    """The composed equation of a scene, and which effects its accuracy calls for."""
+    """A scene's equation, and which effects its accuracy calls for."""
     start()
     from ..explain import explain as explained
     from ..report import read_job

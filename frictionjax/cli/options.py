@@ -127,5 +127,12 @@ def refuse_beside(beside: str, *names: str) -> None:
     by_user = click.core.ParameterSource.COMMANDLINE
     given = [n for n in names if context.get_parameter_source(n) is by_user]
     if given:
-        listed = ", ".join(f"--{name}" for name in given)
+        listed = ", ".join(_as_given(context, name) for name in given)
         raise click.UsageError(f"{listed}: not with {beside}")
+
+
+def _as_given(context: click.Context, name: str) -> str:
+    """An option as the user has typed it: `--no-progress`, `--order-within`."""
+    option = next(one for one in context.command.params if one.name == name)
+    refused = context.params[name] is False and option.secondary_opts
+    return option.secondary_opts[0] if refused else option.opts[0]

@@ -15,7 +15,7 @@ from .running import start, write_folder
     "--out", metavar="FILE", help="Write the scene there instead, over no other file."
 )
 def scenes(name: str | None, schema: bool, out: str | None) -> None:
-    """Scenes that ship: all of them, a line each, or the file of one to start from."""
+    """Scenes that ship: a line each, or the file of one to start from."""
     if out is not None and (schema or name is None):
         needs = "not with --schema" if schema else "needs NAME beside it"
         raise click.UsageError(f"--out: {needs}")
@@ -45,7 +45,7 @@ def scenes(name: str | None, schema: bool, out: str | None) -> None:
 @click.command()
 @out_option("figures")
 def figures(out: str) -> None:
-    """Figures of the paper: coefficients against the angle of the bristle."""
+    """Figures of the paper: coefficients against a bristle's angle."""
     start()
     from ..report import paper_figures, require_folder, write_figures
 

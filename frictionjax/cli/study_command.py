@@ -70,7 +70,10 @@ def study(
     progress: bool,
     **surface: Any,
 ) -> None:
-    """Convergence to the limit: tables, NetCDF data and pictures in a folder."""
+    """Convergence to the limit: tables, data and pictures in a folder.
+
+    Data are NetCDF.
+    """
     started = time.perf_counter()
     start()
     from ..report import (

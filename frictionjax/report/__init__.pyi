@@ -10,6 +10,7 @@ from .friction import friction_text as friction_text
 from .friction import nap_document as nap_document
 from .friction import nap_figures as nap_figures
 from .friction import nap_text as nap_text
+from .friction import no_nap_pictures as no_nap_pictures
 from .job import ReportRequest as ReportRequest
 from .job import number_list as number_list
 from .job import read_job as read_job

@@ -77,8 +77,10 @@ def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
     """
     wanted = {name: value for name, value in asked.wanted.items() if value is not None}
     both = set(wanted) == {"rho_plus", "rho_minus"}
-    allowed = "one of --ratio, --difference, --rho-plus, --rho-minus, or the last two"
-    require(both or len(wanted) == 1, "targets", ", ".join(wanted) or "none", allowed)
+    if not both and len(wanted) != 1:
+        given = [f"--{name.replace('_', '-')}" for name in wanted]
+        allowed = "one of --ratio, --difference, --rho-plus, --rho-minus, or the last two"
+        raise ValueError(f"{', '.join(given) or 'no target'}: needs {allowed}")
     design = _surface(job, asked, wanted) if both else _bristle(job, asked, wanted)
     scene = design.scene
     profile, bristle = _parts(scene)

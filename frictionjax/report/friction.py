@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._checks import write_whole
+from .._checks import require, write_whole
 from ..bristles import AngularSpring
 from ..coefficients import (
     coefficient_table,
@@ -108,18 +108,29 @@ def nap_figures(job: Job, bending_stiffness: float | None, folder: Path) -> str:
 
     Of one that turns over under the load of the scene also how it does, and the loops of
     both effects, all in the limit. With a report where one is asked for, which other
-    bristles have too, without these pictures.
+    bristles have too, without these pictures: then a line says why.
     """
     from .folder import write_figures
 
     pictures: dict[str, Figure] = {}
-    notes: list[str] = []
-    if job.report is None or isinstance(job.scene.bristle, AngularSpring):
+    notes = no_nap_pictures(job)
+    if not notes:
         pictures, notes = _nap_pictures(job, bending_stiffness)
     names = [path.name for path in write_figures(folder, iter(pictures.items()))]
     if job.report is not None:
         names += _write_report(job, bending_stiffness, pictures, folder)
     return "\n".join(names + notes)
+
+
+def no_nap_pictures(job: Job) -> list[str]:
+    """Why a bristle has none of these pictures, in a line; nothing where it has."""
+    bristle = job.scene.bristle
+    if isinstance(bristle, AngularSpring):
+        return []
+    kind = type(bristle).__name__
+    return [
+        f"No nap.png: that is of rods on an angular spring (--bristle angular), not {kind}"
+    ]
 
 
 def _write_report(
@@ -183,6 +194,10 @@ def turning_scene(job: Job, bending_stiffness: float | None) -> Scene:
 def _stiffness(job: Job, asked: float | None) -> float | None:
     """The bending stiffness asked for, else that of the scene, where it has one."""
     effect = nap_flip_among(job.scene.effects)
+    bristle = job.scene.bristle
+    rod = asked is None or isinstance(bristle, AngularSpring)
+    needs = f"a rod on an angular spring (--bristle angular), not {type(bristle).__name__}"
+    require(rod, "--bending-stiffness", asked, needs)
     if asked is not None or effect is None:
         return asked
     return float(effect.bending_stiffness)

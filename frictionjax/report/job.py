@@ -20,6 +20,7 @@ _SHELL_ADVICE = (  # what theirs says, for whoever writes no Python
     'Straight flanks with corners are kind = "Polyline" in [profile] of a scene file; '
     "noise asks for smoothing of a stated length: --smoothing LENGTH beside --heights"
 )
+_ARGUMENTS = re.compile(r"(?<![\w./-])(length_unit|height_unit|height_scale)(?![\w./-])")
 _BRISTLES: dict[str, tuple[Any, dict[str, float]]] = {  # as the command line names them
     "slanted": (
         SlantedSpring,
@@ -85,16 +86,25 @@ def read_job(
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SlopesUndetermined)
-        job = _read_job(path, bristle, heights, **surface)
+        try:
+            job = _read_job(path, bristle, heights, **surface)
+        except ValueError as error:
+            raise ValueError(_with_options(str(error))) from error
     if rows:
         job = _with_rows(job)
-    return job._replace(notes=job.notes + _said_of(caught))
+    return job._replace(notes=[*map(_with_options, job.notes), *_said_of(caught)])
+
+
+def _with_options(text: str) -> str:
+    """Arguments of `read_heights` as the command line has them."""
+    return _ARGUMENTS.sub(lambda found: "--" + found[0].replace("_", "-"), text)
 
 
 def _with_rows(job: Job) -> Job:
     """With a scene for each row that the bristle admits."""
     many = job.rows is not None and job.row is None
-    require(many, "rows", True, "--heights FILE with a map, and no --row")
+    if not many:
+        raise ValueError("--rows: needs --heights FILE with a map, and no --row")
     bristle = job.scene.bristle
     assert job.rows is not None
     assert bristle is not None

@@ -5,8 +5,8 @@ from click.testing import CliRunner
 from frictionjax.cli import main
 
 
-def run(*arguments):
-    return CliRunner().invoke(main, list(map(str, arguments)))
+def run(*arguments, **settings):
+    return CliRunner().invoke(main, list(map(str, arguments)), **settings)
 
 
 def error_line(result):
