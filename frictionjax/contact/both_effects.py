@@ -32,8 +32,8 @@ def nap_loops(scene: Scene, ts: Any = None) -> Any:
     assert profile is not None
     assert rod is not None
     ts = require_times(scene, ts)
+    bent = solve_limit(scene, ts)  # first: it refuses more
     stiff = solve_limit(scene.replace(effects=()), ts)
-    bent = solve_limit(scene, ts)
     law = nap(profile, rod, effect.bending_stiffness)
     import xarray as xr  # 0.4 s
 

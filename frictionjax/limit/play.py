@@ -208,8 +208,17 @@ def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSo
 
 
 def require_start_in_strip(scene: Scene) -> None:
-    """Check that z0 lies in the strip at t = 0, as Theorem 1 asks (eq. 2.10)."""
+    """Check that z0 lies in the strip at t = 0, as Theorem 1 asks (eq. 2.10).
+
+    Of a rod that turns over, in what it withstands as it stands at first: that is less.
+    """
     if not is_concrete(scene):
+        return
+    turning = nap_flip_among(scene.effects)
+    if turning is not None:
+        from ..turning import limit_course  # nothing else needs it
+
+        limit_course(scene, turning)
         return
     found = coefficients_jit(scene.potential)
     strips = strips_at(scene, float(found.rho_plus), float(found.rho_minus), np.zeros(1))

@@ -39,3 +39,9 @@ def test_around_a_loop_the_work_is_what_is_lost(loops):
 def test_a_scene_without_the_effect_is_refused():
     with pytest.raises(ValueError, match=r"scene\.effects = .none of NapFlip"):
         nap_loops(turning_scene().replace(effects=()))
+
+
+def test_a_start_is_held_against_what_the_rod_withstands():
+    """Not against the strip of the rod that keeps its nap, which is larger."""
+    with pytest.raises(ValueError, match=r"scene\.z0 = 5: needs what the rod withstands"):
+        nap_loops(turning_scene().replace(z0=5.0))

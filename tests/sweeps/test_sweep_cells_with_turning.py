@@ -1,5 +1,7 @@
 """Sweeps of scenes whose rods turn over."""
 
+import re
+
 import numpy as np
 import pytest
 from rods_that_turn import jumping_scene, turning_scene
@@ -173,3 +175,13 @@ def test_it_comes_back_from_a_file(jumping, tmp_path):
 def test_windows_are_refused():
     with pytest.raises(ValueError, match="does not do NapFlip: needs method="):
         fx.sweep(jumping_scene(), EPS, [1.0], method="windowed")
+
+
+def test_starts_outside_are_refused_as_the_limit_does():
+    """Outside the strip of the rod that keeps its nap, and outside of less only."""
+    for z0 in (5.0, 0.3, -0.3):
+        scene = turning_scene().replace(z0=z0)
+        with pytest.raises(ValueError, match="what the rod withstands") as limit:
+            fx.solve_limit(scene)
+        with pytest.raises(ValueError, match=re.escape(str(limit.value))):
+            fx.sweep(scene, EPS[:1], [1.0])
