@@ -31,7 +31,7 @@ class PeriodicDensity(NamedTuple):
 
     `mean_force` in N; `change`: how much mass differs a period later; `lost`: mass that
     left the window or was lost to rounding, in one period. `reached` (cells,): the larger
-    of the densities at both ends of the period.
+    of the densities at both ends of the period. `rounds`: periods marched in all.
     """
 
     window: Window
@@ -40,6 +40,7 @@ class PeriodicDensity(NamedTuple):
     mean_force: float
     change: float
     lost: float
+    rounds: int
 
     @property
     def cells_a_period(self) -> int:
@@ -48,21 +49,28 @@ class PeriodicDensity(NamedTuple):
 
 
 def periodic_density(
-    rises: np.ndarray, steps: int, drive: Drive, window: Window, start: np.ndarray
+    rises: np.ndarray,
+    steps: int,
+    drive: Drive,
+    window: Window,
+    start: np.ndarray,
+    rounds: int | None = None,
 ) -> PeriodicDensity:
     """The fixed point of a period, by Anderson's acceleration of marching on and on.
 
-    `rises`: as `march_period` takes them; `start` (cells,): a guess. Where densities forget
-    within a few periods marching alone does it; where the support is fast or soft,
-    combinations of the last ones do.
+    `rises`: as `march_period` takes them; `start` (cells,): a guess; `rounds`: the most
+    periods to march, below the settings'. Where densities forget within a few periods
+    marching alone does it; where the support is fast or soft, combinations of the last
+    ones do.
 
     Source: D. G. Anderson, J. ACM 12, 547 (1965).
     """
     history: list[tuple[np.ndarray, np.ndarray]] = []
     density = start / np.sum(start)
-    for _ in range(SETTINGS.most_periods):
+    most = SETTINGS.most_periods
+    for done in range(most if rounds is None else min(rounds, most)):
         end = march_period(density, rises, window.first, steps, drive)
-        found = _compared(density, end, window)
+        found = _compared(density, end, window, done + 1)
         if not found.change > SETTINGS.periodic:  # or NaN
             break
         moved, _ = moved_on(np.asarray(end.density), rises.size)
@@ -72,7 +80,9 @@ def periodic_density(
     return found
 
 
-def _compared(density: np.ndarray, end: PeriodEnd, window: Window) -> PeriodicDensity:
+def _compared(
+    density: np.ndarray, end: PeriodEnd, window: Window, rounds: int
+) -> PeriodicDensity:
     after = np.asarray(end.density)
     moved, gone = moved_on(after, density.size // window.periods)
     return PeriodicDensity(
@@ -82,6 +92,7 @@ def _compared(density: np.ndarray, end: PeriodEnd, window: Window) -> PeriodicDe
         mean_force=float(end.mean_force),
         change=float(np.sum(np.abs(moved - density))),
         lost=max(abs(gone), float(end.leak), float(after[-1])),
+        rounds=rounds,
     )
 
 

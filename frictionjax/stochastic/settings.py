@@ -29,7 +29,13 @@ class Settings(NamedTuple):
     least_cells: int = 32  # of a period
     most_carried: float = 4.0  # drag times a cell over temperature: cells diffuse beyond 2
     steps: int = 64  # of a period in time, on the coarsest grid
-    most_work: int = 2**23  # cells times steps of a period: 1 s for all of its rounds
+    most_work: int = 2**23  # cells times steps of one period: 1 s for each of its rounds
+    # The same of all periods that a slide marches, on all of its grids, 50 s, and a third
+    # of what is left for a grid that has no other to be held against. Fast slides in soft
+    # springs forget slowly: of 45 that end well, at 1e-4 to 50 m/s and with 1e-2 to 1e-8 J,
+    # the slowest takes 48 times most_work.
+    most_marched: int = 7 * 2**26
+    share_of_one: float = 1 / 3
     grids: int = 5  # each of twice the cells and steps of the last
     rougher: int = 8  # than the first: where mass is
     tail: float = 1e-12  # of Gaussian mass outside of the window

@@ -39,7 +39,7 @@ class SmoluchowskiStatus(Outcome):
     ROUGH_GRID = 1, "the error that two grids show is larger than the accuracy"
     NOT_PERIODIC = 2, "the density had not become periodic: too fast for so soft a spring"
     LOST_MASS = 3, "probability left the window, or was lost to rounding: too slow"
-    TOO_MANY_CELLS = 4, "wells are too many, or too cold, for the cells that there may be"
+    TOO_MANY_CELLS = 4, "wells are too many, cold or fast for the cells that there may be"
     NOT_FINITE = 5, "not finite"
 
 
@@ -162,17 +162,47 @@ def smoluchowski_friction(
     return SmoluchowskiFriction(asked, mean_force, drag, mean_force - drag, error, codes)
 
 
+class _March:
+    """Densities of one slide, for as long as there is work left for it."""
+
+    def __init__(self, wells: _Wells, drive: Drive) -> None:
+        self._wells, self._drive = wells, drive
+        self._left = SETTINGS.most_marched  # cells times steps
+
+    def periodic(
+        self, window: Window, guess: np.ndarray, steps: int, share: float
+    ) -> PeriodicDensity:
+        """By a `share` of what is left at most, but by one period always."""
+        rises = self._wells.rises(guess.size // window.periods)
+        rounds = max(1, int(share * self._left) // (guess.size * steps))
+        found = periodic_density(rises, steps, self._drive, window, guess, rounds)
+        self._left -= found.rounds * guess.size * steps
+        return found
+
+    def allows(self, work: int, coarse: PeriodicDensity | None) -> bool:
+        """Whether a grid of so much `work` a period may come to its end: that of one that
+        sets off from a coarser grid's density is half as many periods away at best."""
+        fewest = 0.0 if coarse is None else 0.5 * coarse.rounds
+        return work <= SETTINGS.most_work and fewest * work <= self._left
+
+
 def _slide(wells: _Wells, drive: Drive, accuracy: float) -> _Slide:
     """To the right, on grids that are refined until two of them agree."""
-    window, guess = _start(wells, drive)
-    coarse, steps = None, SETTINGS.steps
     result = _Slide(np.nan, np.nan, SmoluchowskiStatus.TOO_MANY_CELLS)
+    march = _March(wells, drive)
+    start = _start(wells, drive, march)
+    if start is None:
+        return result
+    window, guess = start
+    coarse, steps = None, SETTINGS.steps
     wanted = accuracy * max(wells.highest, -wells.lowest)
     for _ in range(SETTINGS.grids):
-        if guess.size * steps > SETTINGS.most_work:
+        if not march.allows(guess.size * steps, coarse):
             break
-        rises = wells.rises(guess.size // window.periods)
-        fine = periodic_density(rises, steps, drive, window, guess)
+        share = SETTINGS.share_of_one if coarse is None else 1.0
+        fine = march.periodic(window, guess, steps, share)
+        if coarse is not None and _is_cut_short(fine):
+            break
         if not _is_good(fine):
             return _Slide(fine.mean_force, np.nan, _trouble(fine))
         result = _compared(coarse, fine, wanted)
@@ -195,20 +225,35 @@ def _compared(
     return _Slide(fine.mean_force + correction, abs(correction), status)
 
 
-def _start(wells: _Wells, drive: Drive) -> tuple[Window, np.ndarray]:
+def _start(wells: _Wells, drive: Drive, march: _March) -> tuple[Window, np.ndarray] | None:
     """Window and guess for the first grid. Where that has many cells, a rougher one tells
-    which of the periods have mass: of a cold slide in a soft spring, few."""
+    which of the periods have mass: of a cold slide in a soft spring, few. None where not
+    even those few may be marched.
+    """
     window, count = _window(wells, drive), _coarsest_cells(wells, drive)
+    if window is None:
+        return None
     rough = max(SETTINGS.least_cells, count // SETTINGS.rougher)
+    fewest = count * with_room(0, 0).periods
+    # Asked before there are cells: they would not go into memory.
+    if SETTINGS.steps * max(rough * window.periods, fewest) > SETTINGS.most_work:
+        return None
     guess = _first_guess(wells, drive, window, rough)
-    if count == rough or guess.size * SETTINGS.steps > SETTINGS.most_work:
-        return window, _first_guess(wells, drive, window, count)
-    located = periodic_density(wells.rises(rough), SETTINGS.steps, drive, window, guess)
+    if count == rough:
+        return window, guess
+    located = march.periodic(window, guess, SETTINGS.steps, SETTINGS.share_of_one)
     return on_finer_cells(located, count // rough)
 
 
 def _is_good(found: PeriodicDensity) -> bool:
     return found.change <= SETTINGS.periodic and found.lost <= SETTINGS.lost
+
+
+def _is_cut_short(found: PeriodicDensity) -> bool:
+    """By the work that was left for it, not by what it is."""
+    known = np.isfinite(found.mean_force + found.change) and found.lost <= SETTINGS.lost
+    few = found.rounds < SETTINGS.most_periods
+    return bool(known) and few and found.change > SETTINGS.periodic
 
 
 def _trouble(found: PeriodicDensity) -> SmoluchowskiStatus:
@@ -225,15 +270,17 @@ def _coarsest_cells(wells: _Wells, drive: Drive) -> int:
     _, force = sampled_potential(wells.potential, wells.eps, np.arange(1024) / 1024)
     curvature = 1024 / wells.eps * float(np.max(np.abs(np.diff(force)))) + drive.stiffness
     deviation = np.sqrt(drive.temperature / curvature)
-    count = SETTINGS.cells_a_deviation * wells.eps / deviation
+    with np.errstate(divide="ignore"):  # as cold as floats have it
+        count = SETTINGS.cells_a_deviation * wells.eps / deviation
     drag = drive.viscosity * drive.speed
     carried = drag * drive.eps / (SETTINGS.most_carried * drive.temperature)
     count = min(max(count, carried, SETTINGS.least_cells), 1e9)
     return 1 << (int(np.ceil(count)) - 1).bit_length()
 
 
-def _window(wells: _Wells, drive: Drive) -> Window:
-    """Periods of z between which the density lives while the support goes from 0 to eps.
+def _window(wells: _Wells, drive: Drive) -> Window | None:
+    """Periods of z between which the density lives while the support goes from 0 to eps;
+    None where floats do not hold them.
 
     Without noise the force `k (v t - z)` ends between `drag + min V'` and `drag + max V'`,
     and a slip, which descends in energy at a fixed load, ends 3/2 periods beyond the
@@ -243,8 +290,11 @@ def _window(wells: _Wells, drive: Drive) -> Window:
     tail = np.sqrt(-2 * np.log(SETTINGS.tail) * drive.temperature / drive.stiffness)
     behind = (drag + wells.highest) / drive.stiffness + tail
     ahead = min(1.5 * drive.eps, -(drag + wells.lowest) / drive.stiffness) + tail
-    first = int(np.floor(-behind / drive.eps))
-    return with_room(first, int(np.ceil(ahead / drive.eps)) + 1)
+    with np.errstate(over="ignore"):
+        first, end = np.floor(-behind / drive.eps), np.ceil(ahead / drive.eps) + 1
+    if not np.isfinite(end - first):
+        return None
+    return with_room(int(first), int(end))
 
 
 def _first_guess(wells: _Wells, drive: Drive, window: Window, count: int) -> np.ndarray:

@@ -133,3 +133,44 @@ def test_numbers_out_of_range_are_named(change, message):
     given = {"speeds": 0.1, "temperature": 0.1} | change
     with pytest.raises(ValueError, match=message):
         friction(**given)
+
+
+@pytest.mark.parametrize(
+    ("speed", "temperature"), [(1e5, 1e-4), (1e300, 1e-4), (1e-3, 1e-13), (1e-3, 5e-324)]
+)
+def test_too_many_cells_are_told_before_they_are_made(monkeypatch, speed, temperature):
+    guess = module._first_guess
+
+    def within_work(wells, drive, window, count):
+        assert SETTINGS.steps * count * window.periods <= SETTINGS.most_work
+        return guess(wells, drive, window, count)
+
+    monkeypatch.setattr(module, "_first_guess", within_work)
+    found = friction(speed, temperature)
+    assert found.status == SmoluchowskiStatus.TOO_MANY_CELLS
+    assert np.isnan(found.mean_force)
+
+
+@pytest.mark.parametrize(
+    ("most", "status"),
+    [
+        (600_000, SmoluchowskiStatus.NOT_PERIODIC),
+        (1_000_000, SmoluchowskiStatus.ROUGH_GRID),
+        (2_400_000, SmoluchowskiStatus.ROUGH_GRID),
+    ],
+)
+def test_work_of_all_grids_together_has_an_end(monkeypatch, most, status):
+    """A first grid cut short has no error; a third, not begun or cut, changes nothing."""
+    spent = []
+    march = fixed_point.march_period
+
+    def noted(density, rises, first, steps, drive):
+        spent.append(density.size * steps)
+        return march(density, rises, first, steps, drive)
+
+    monkeypatch.setattr(fixed_point, "march_period", noted)
+    monkeypatch.setattr(module, "SETTINGS", SETTINGS._replace(most_marched=most))
+    found = friction(0.1, 1e-4, accuracy=1e-9)
+    assert found.status == status
+    assert sum(spent) <= most
+    assert np.isfinite(found.error) == (status == SmoluchowskiStatus.ROUGH_GRID)
