@@ -8,6 +8,7 @@ from .._checks import require_flags, with_nan
 from .._compile import waiting
 from ..effects import Engine, noise_among
 from ..model import Scene, scene_for
+from .path_steps import PathSteps
 from .paths import PathStatus, mean_interval, noisy_paths
 from .random_keys import path_keys
 from .settings import SETTINGS
@@ -24,6 +25,7 @@ _MEANING = {
     "work": ("J", "energy Phi - l z + V added by the load until then, -int l' z"),
     "path": (None, "number of the path"),
     "time": ("s", "time"),
+    "step_time": ("s", "time of the nearest step, whose values are told"),
     "status": (None, "how a path ended"),
 }
 
@@ -48,9 +50,15 @@ def ensemble(
 
     Returns a data set over `path` and `time`: `z`, `work` (`-int l' z`, what the load has
     added to `Phi - l z + V_eps`); over `time` `z_mean` and the 95% interval `z_low`,
-    `z_high` of the mean, infinite for one path; over `path` `status`. The interval holds
-    what numbers of paths leave open; values are those of the step nearest to each time, of
-    steps (attribute `step`, s) as long as `stochastic/settings.py` says.
+    `z_high` of the mean, infinite for one path, and `step_time` (s); over `path` `status`.
+
+    The interval holds what numbers of paths leave open, and not the error of fixed explicit
+    steps (attribute `step`, s). Values are those of the nearest step, at `step_time`, up to
+    half a step from `time`; and a mean that a load moves is off there too, by up to the
+    share `step curvature/viscosity` (at most 0.05; curvature: the largest of Phi + V_eps,
+    N/m) of what it moves in the time `viscosity/curvature`. In a well of 1.3 N/m, under a
+    load of 1 N and 3 s, at eps = 0.1, gamma = 1, T = 1e-3: 0.012 eps at `step_time`, 0.032
+    beside `time`, where the interval of 20,000 paths is +- 0.0012.
 
     `progress`: a line on standard error where it takes more than two seconds.
 
@@ -78,7 +86,7 @@ def ensemble(
 def _data_set(found: Any, numbers: dict[str, float]) -> "xr.Dataset":
     import xarray as xr
 
-    known = mean_interval(found.z)
+    known, plan = mean_interval(found.z), PathSteps(found.step, found.steps)
     data = xr.Dataset(
         {
             "z": (("path", "time"), found.z),
@@ -86,6 +94,7 @@ def _data_set(found: Any, numbers: dict[str, float]) -> "xr.Dataset":
             "z_mean": ("time", known.mean),
             "z_low": ("time", known.low),
             "z_high": ("time", known.high),
+            "step_time": ("time", found.step * plan.nearest(found.ts)),
             "status": ("path", np.asarray(found._codes, dtype=np.int8)),
         },
         coords={"path": np.arange(found.z.shape[0]), "time": found.ts},

@@ -63,8 +63,7 @@ def noisy_path(
     """
     scene, cell, times = checked_cell(scene, noise, eps, gamma, ts)
     force, plan, bath = cell_loop(cell)
-    steps = np.minimum(np.rint(times / plan.step).astype(int), plan.total)
-    tiles = _laid_out(steps)
+    tiles = _laid_out(plan.nearest(np.asarray(times)))
     starts = tiles.begin * SETTINGS.block * plan.step
     z0 = _guesses(scene, cell, starts)
     load, rounds, known = load_table(cell.load), 0, False

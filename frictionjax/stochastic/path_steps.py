@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float, Int
 
 from .._checks import as_text
 from .force_table import TabulatedForce
@@ -18,6 +19,10 @@ class PathSteps(NamedTuple):
 
     step: float
     total: int
+
+    def nearest(self, ts: Float[np.ndarray, " times"]) -> Int[np.ndarray, " times"]:
+        """Numbers of the steps nearest to times in s: how many were taken until then."""
+        return np.minimum(np.rint(ts / self.step).astype(int), self.total)
 
 
 def steps_of_paths(

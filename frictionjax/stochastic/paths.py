@@ -124,7 +124,7 @@ def run_paths(
     the same bits in any company.
     """
     force, plan, bath = cell_loop(cell)
-    nearest = np.minimum(np.rint(ts / plan.step).astype(int), plan.total)
+    nearest = plan.nearest(ts)
     # Rooms for times: another number of them compiles nothing.
     wanted = np.full(padded_size(ts.size, SETTINGS.times), nearest[-1])
     wanted[: ts.size] = nearest

@@ -50,6 +50,16 @@ def test_columns_say_what_they_are():
     assert found.attrs["step"] * found.attrs["steps"] == pytest.approx(4.0)
 
 
+def test_values_are_those_at_the_times_of_steps():
+    ts = np.array([0.0, 0.3, 1.7, 4.0])
+    found = fx.ensemble(SCENE, 0.05, 1.0, ts, 2, 0)
+    at = found.step_time.values
+    assert np.all(np.abs(at - ts) <= 0.5 * found.step)
+    assert at[[0, -1]] == pytest.approx([0.0, 4.0], rel=1e-12)
+    assert at[1] != ts[1]
+    assert np.array_equal(fx.ensemble(SCENE, 0.05, 1.0, at[:-1], 2, 0).z, found.z[:, :-1])
+
+
 def test_effects_on_the_potential_come_first():
     whole, leading = (
         fx.ensemble(scene_with(*effects, NOISE), 0.05, 1.0, TS, 2, 0)
