@@ -9,7 +9,7 @@ import frictionjax as fx
 
 _COUNT = 16001  # of all curves: a kind of scene compiles once
 _FINE = 0.08  # of eps between two samples, of wells as wide as a sine's
-_FINER = {"rod lying flat": 0.02}
+_FINER = {"rod upright": 0.02}
 # Slips of 1e-15 s and less at times near 1 s: no two floats in one.
 _TOO_SHORT = ("eps 1e-8", "slips shorter than floats")
 _WINDOW = 12  # slip periods of a long slide

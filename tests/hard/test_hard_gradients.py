@@ -16,7 +16,7 @@ _QUICK = ("two folds", "alpha < 0", "far above", "slow part", "on a summit")
 _STATES_ALONE = HARD["far from the origin"]
 _EVERY = [
     name for name in HARD if name in FEW_WELLS or HARD[name].truth.__name__ == "plain"
-] + ["rod upright", "rod lying flat"]
+] + ["rod lying flat", "rod upright"]
 
 
 @eqx.filter_jit

@@ -108,8 +108,10 @@ _SAWTOOTH = Spring(
 )
 
 OTHER_PARTS = {
-    "rod lying flat": _rod("theta_lim near 0: tan = 0.11, slope 0.1", 0.11, 0.1, 1.0, 1e-3),
-    "rod upright": _rod("theta_lim near pi/2: cot = 0.12, slope 0.1", 1.45, 0.1, 0.2, 1e-3),
+    "rod upright": _rod("theta_lim near 0: tan = 0.11, slope 0.1", 0.11, 0.1, 1.0, 1e-3),
+    "rod lying flat": _rod(
+        "theta_lim near pi/2: cot = 0.12, slope 0.1", 1.45, 0.1, 0.2, 1e-3
+    ),
     "L - h = 1e-9 L": _rod("a rod all but vertical", math.acos(1 - 1e-9), 2e-5, 0.5, 2e-5),
     "rod hardly admissible": _rod(
         "1 + a omega = 1e-3", math.atan(0.1 * (1 + 1e-3)), 0.1, 1.0, 1e-4
