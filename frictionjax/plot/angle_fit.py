@@ -14,6 +14,7 @@ QUANTITY_LABELS = {
     "rho_minus": "friction to the left $\\rho_-$ (N)",
     "difference": "difference $\\rho_+ + \\rho_-$ (N)",
 }
+_NO_FORCE = 1e-3  # of the largest alpha, a millionth of the interval from its end
 _ABOVE = 4.0  # times the target, and the middle of the curve: poles go on out of sight
 
 
@@ -21,9 +22,9 @@ _ABOVE = 4.0  # times the target, and the middle of the curve: poles go on out o
 def draw_angle_fit(fit: Any, ax: Any = None) -> Any:
     """Draw a `fit_angle`: the quantity over all admissible values, target and solutions.
 
-    One line for each admissible interval; between them alpha = 0, or nothing is
-    admissible. Filled: the bristle returned; hollow: the other solutions. A Figure, or `ax`
-    where it is drawn into that.
+    One line for each admissible interval; where one ends as alpha does, a line says so,
+    elsewhere bounds end it, or nothing is admissible. Filled: the bristle returned; hollow:
+    the other solutions. A Figure, or `ax` where it is drawn into that.
 
     Raises `ValueError` for a batch: pick one with `fit[i]`.
 
@@ -35,6 +36,7 @@ def draw_angle_fit(fit: Any, ax: Any = None) -> Any:
     drawn, axes = axes_of(ax, 6.4, 4.6)
     target = float(fit.target)
     family_on(axes, fit, [target], "admissible bristles")
+    _ends_on(axes, fit)
     axes.axhline(target, color=GUIDE, linestyle="--", label=f"wanted: {target:.4g}")
     others = [v for v in np.asarray(fit.solutions) if v != float(fit.value)]
     look: dict[str, Any] = {"color": LIMIT, "linestyle": "none", "marker": "o", "zorder": 3}
@@ -48,6 +50,25 @@ def draw_angle_fit(fit: Any, ax: Any = None) -> Any:
     axes.set_title("Inverse design of the bristle")
     axes.legend(loc="best")
     return drawn
+
+
+def _ends_on(axes: Any, fit: Any) -> None:
+    """Lines where the bristle no longer presses, or pulls: alpha = 0."""
+    forces = np.abs(np.asarray(fit.normal_forces(3)))  # at both ends and between
+    none = forces[:, ::2] < _NO_FORCE * forces.max(axis=1, keepdims=True)
+    for number in np.unique(np.asarray(fit.admissible)[none]):
+        axes.axvline(number, color=GUIDE, linewidth=0.9, linestyle="--", zorder=1)
+        axes.annotate(
+            "$\\alpha$ = 0",
+            (number, 0.5),
+            xycoords=axes.get_xaxis_transform(),
+            xytext=(-3, 0),
+            textcoords="offset points",
+            rotation=90,
+            ha="right",
+            va="center",
+            color="#666666",
+        )
 
 
 def family_on(axes: Any, fit: Any, shown: list[float], label: str) -> None:

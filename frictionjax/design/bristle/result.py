@@ -173,14 +173,22 @@ class AngleFit(ShownNumbers, SelfDrawn, DesignResult, CodedResult, eqx.Module):
 
     def curve(self, points: int = 400) -> tuple[Real, Real]:
         """The number and the quantity over the admissible intervals, shapes (pieces, n)."""
-        require_whole("points", points, 2)
-        low, high = self.admissible[:, :1], self.admissible[:, 1:]
-        values = low + (high - low) * jnp.linspace(1e-6, 1 - 1e-6, points)[None, :]
-        part = self.bristle if self.code.ndim == 0 else self[0].bristle
+        part, values = self._family(points)
         which = np.asarray(QUANTITIES.index(self.quantity))
         free = free_parameter(part, self.free)
         found = _curve(free, part, self.slopes, which, values)
         return values, self.scene.of_all(found, self.quantity)
+
+    def normal_forces(self, points: int = 400) -> Real:
+        """alpha in N at the numbers of `curve`, shape (pieces, n); NaN where those are."""
+        part, values = self._family(points)
+        return _alphas(free_parameter(part, self.free), part, self.slopes, values)
+
+    def _family(self, points: int) -> tuple[AbstractBristle, Real]:
+        require_whole("points", points, 2)
+        low, high = self.admissible[:, :1], self.admissible[:, 1:]
+        values = low + (high - low) * jnp.linspace(1e-6, 1 - 1e-6, points)[None, :]
+        return self.bristle if self.code.ndim == 0 else self[0].bristle, values
 
     @property
     def sensitivities(self) -> Sensitivities:
@@ -247,6 +255,14 @@ def intervals_text(pairs: Any) -> str:
     known = known[~np.isnan(known[:, 0])]
     texts = {f"({as_text(low)}, {as_text(high)})": None for low, high in known}
     return " or ".join(texts)
+
+
+@once_a_scene
+def _alphas(free: FreeParameter, bristle, slopes, values):
+    def one(value: Real) -> Real:
+        return on_slopes(free.put(bristle, value), slopes).alpha
+
+    return jax.vmap(jax.vmap(one))(values)
 
 
 @once_a_scene
