@@ -39,7 +39,7 @@ def _loop(axes: Any, found: Explored) -> None:
     axes.plot(found.z, found.force, color=colour(0), linewidth=1, label="wiggly")
     axes.plot(found.z_limit, found.force_limit, "--", color=_INK, label="limit")
     axes.set(xlabel="z (m)", ylabel="$\\ell - \\Phi'(z)$ (N)", title="Friction loop")
-    axes.legend(loc="center")
+    axes.legend(loc="center", bbox_to_anchor=(0.29, 0.5))  # beside where it sets off
 
 
 def _bars(axes: Any, found: Explored) -> None:

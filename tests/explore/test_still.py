@@ -18,3 +18,13 @@ def test_the_picture_shows_the_arrays_of_the_page():
     numbers = found.coefficients
     assert widths == [numbers["rho_plus"], -numbers["rho_minus"], numbers["ratio"]]
     assert "why not" in wells.figure.get_suptitle()
+
+
+def test_the_legend_is_beside_the_way_from_the_start():
+    _, loop, _ = draw_still(explored_at(PageSetting())).axes
+    loop.figure.draw_without_rendering()
+    box = loop.get_legend().get_window_extent().transformed(loop.transData.inverted())
+    for line in loop.lines:
+        z, force = line.get_data()
+        inside = (z > box.x0) & (z < box.x1) & (force > box.y0) & (force < box.y1)
+        assert not inside.any()
