@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from ...contact import nap_loops
@@ -12,6 +13,7 @@ _TITLES = {
     "geometric": "Geometric effect: a stiff rod",
     "energetic": "Energetic effect: a rod that turns over",
 }
+_BESIDE = 1e-3  # of the height of a loop: rounding is not beyond a level
 _LEVELS = {
     "geometric": (("rho_with", 1, "with"), ("rho_against", -1, "against")),
     "energetic": (("rho_with", 1, "with"), ("rho_flipped", -1, "flipped")),
@@ -53,7 +55,9 @@ def draw_nap_loops(scene: Scene, ts: Any = None) -> Figure:
             axes.plot(one.z, between, "--", color=colour(index), label="bent over its tip")
             axes.legend(loc="best")
         for level, side, word in _LEVELS[name]:
-            _level(axes, side * data.attrs[level], side, word)
+            value = side * data.attrs[level]
+            place = _free_place(one.z.values, side * (one.force.values - value))
+            _level(axes, value, side, word, place)
         lost = float(one.dissipation[-1])
         axes.set(title=f"{title}, {lost:.4g} J lost", xlabel="z (m)")
         axes.set_ylabel("friction force $\\ell - \\Phi'(z)$ (N)")
@@ -64,12 +68,23 @@ def draw_nap_loops(scene: Scene, ts: Any = None) -> Figure:
     return figure
 
 
-def _level(axes: Any, value: float, side: int, word: str) -> None:
+def _free_place(z: np.ndarray, beyond: np.ndarray) -> float:
+    """Share of the width, from the left, farthest from where a loop goes `beyond` a level
+    (N, outwards), the middle where it does not."""
+    past = z[beyond > _BESIDE * np.ptp(beyond)]
+    if past.size == 0:
+        return 0.5
+    places = np.linspace(0.25, 0.75, 51)
+    apart = np.abs(places[:, None] - (past - z.min()) / np.ptp(z)).min(axis=1)
+    return float(places[np.argmax(apart)])
+
+
+def _level(axes: Any, value: float, side: int, word: str, place: float) -> None:
     axes.axhline(value, color=GUIDE, linewidth=0.9, zorder=1)
     sign = "" if side > 0 else "-"
     axes.annotate(
         f"${sign}\\rho_{{{word}}}$ = {value:.3g} N",
-        (0.5, value),
+        (place, value),
         xycoords=axes.get_yaxis_transform(),
         xytext=(0, 6 * side),
         textcoords="offset points",

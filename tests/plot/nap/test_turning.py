@@ -105,3 +105,17 @@ def test_loops_of_both_effects_are_beside_each_other():
     assert slides.sum() > 10
     assert stiff.get_ylim() == bent.get_ylim()
     assert "geometric" in stiff.get_title(loc="left").lower()
+
+
+def test_labels_of_levels_are_beside_what_goes_beyond_them():
+    """A rod that is bent over its tip pulls more than it does as it slides."""
+    figure = fx.plot.draw_nap_loops(turning_scene())
+    figure.draw_without_rendering()
+    axes = figure.axes[1]
+    label = axes.texts[1]
+    box = label.get_window_extent().transformed(axes.transData.inverted())
+    z, force = np.asarray(axes.lines[1].get_data(), dtype=float)
+    beyond = z[force < 1.01 * label.xy[1]]
+    room = 0.1 * box.width
+    assert beyond.size > 10
+    assert not np.any((beyond > box.x0 - room) & (beyond < box.x1 + room))
