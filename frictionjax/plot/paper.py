@@ -95,7 +95,7 @@ def draw_nap() -> Figure:
     axes.set_title("With and against the nap: k = 1 N m/rad, h = 1 m, $\\omega$ = 0.1")
     axes.set(xlim=(0, 0.5 * np.pi), ylim=(0, None))
     axes.legend(loc="upper right", bbox_to_anchor=(0.93, 1.0))
-    _edge(axes, _NAP, "only above $\\theta_{with}$", "left")
+    _edge(axes, _NAP, "only above $\\theta^{rest}$ = 0.3 rad", "left")
     _edge(axes, _STEEPEST, "only up to arccot 0.1", "right")
     return figure
 

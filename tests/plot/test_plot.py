@@ -291,6 +291,8 @@ def test_nap_of_the_paper():
         angle, rho = data(labelled(axes, name))
         mu = 0.1 / (1 + 0.1 / np.tan(angle))
         assert rho == pytest.approx((angle - rest) / np.tan(angle) * mu)
+    name = labelled(axes, "with").get_label().split(",")[1].strip()
+    assert axes.texts[0].get_text() == f"only above {name}"  # as the legend calls it
 
 
 def test_nap_of_a_rod_of_ones_own():
