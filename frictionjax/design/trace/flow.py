@@ -102,14 +102,29 @@ def _march(field: TipField, plan: StepPlan, tip: Real, stops: Array) -> tuple[Ar
     return tips, last.steps
 
 
-def _states(profile: AbstractProfile, scene, eps, gamma, ts, plan):
-    """`z` at the times, and beside it the speed and the steps."""
+def _start(profile: AbstractProfile, scene, eps, gamma) -> Real:
+    """The tip at z0."""
+    return field_of(with_profile(scene, profile), eps, gamma).start(scene.z0)
+
+
+def _led(field: TipField, tip: Real) -> Real:
+    """A tip at a fixed state: one Newton step that moves nothing carries its derivative.
+
+    By the root's own rule JAX 0.12 takes a start for one that depends on the way, and so
+    integrates once for each.
+    """
+    state, stretch = jax.jvp(field.state, (tip,), (jnp.ones_like(tip),))
+    return tip - (state - jax.lax.stop_gradient(state)) / stretch
+
+
+def _states(profile: AbstractProfile, start: Real, scene, eps, gamma, ts, plan):
+    """`z` at the times, and beside it the speed and the steps. `start`: of the tip."""
     scene = with_profile(scene, profile)
     field = field_of(scene, eps, gamma)
     turns = jnp.clip(scene.turning_points(), 0.0, ts[-1])
     times = jnp.concatenate([ts, turns])
     order = jnp.argsort(times)
-    tips, steps = _march(field, plan, field.start(scene.z0), times[order])
+    tips, steps = _march(field, plan, _led(field, start), times[order])
     tips = tips[jnp.argsort(order)[: ts.shape[0]]]
     force, _ = jax.vmap(field.driving_force)(ts, tips)
     return jax.vmap(field.state)(tips), (force / field.viscosity, steps)
@@ -130,10 +145,11 @@ def waves_of_numbers(numbers: Array) -> WaveProfile:
 @Program
 def flow(numbers, scene, eps, gamma, ts, plan) -> Flow:
     """The trajectory and its derivative by the coefficients of the series."""
+    start = _start(waves_of_numbers(numbers), scene, eps, gamma)
 
     def along(way: Array) -> tuple:
         def states(numbers: Array) -> tuple:
-            return _states(waves_of_numbers(numbers), scene, eps, gamma, ts, plan)
+            return _states(waves_of_numbers(numbers), start, scene, eps, gamma, ts, plan)
 
         return jax.jvp(states, (numbers,), (way,), has_aux=True)
 
@@ -146,11 +162,13 @@ def flow(numbers, scene, eps, gamma, ts, plan) -> Flow:
 @Program
 def bumped_flow(centres, width, numbers, scene, eps, gamma, ts, plan) -> Flow:
     """The trajectory and its derivative by the sizes of local bumps at the centres."""
+    waves = waves_of_numbers(numbers)
+    start = _start(waves, scene, eps, gamma)
 
     def along(centre: Array) -> tuple:
         def states(size: Array) -> tuple:
-            profile = Bumped(waves_of_numbers(numbers), size, centre, width)
-            return _states(profile, scene, eps, gamma, ts, plan)
+            profile = Bumped(waves, size, centre, width)
+            return _states(profile, start, scene, eps, gamma, ts, plan)
 
         return jax.jvp(states, (jnp.zeros(()),), (jnp.ones(()),), has_aux=True)
 

@@ -12,7 +12,7 @@ from at_places import at_places, part_at
 import frictionjax as fx
 from frictionjax._compile import padded_size
 from frictionjax.design.trace.fit import _louder
-from frictionjax.design.trace.flow import _states, bumped_flow, flow, plan_of
+from frictionjax.design.trace.flow import _start, _states, bumped_flow, flow, plan_of
 from frictionjax.design.trace.gauss_newton import Descent
 from frictionjax.design.trace.problem import _cut, in_tables, trace_problem
 from frictionjax.design.trace.report import _patterned, explains, report_trace
@@ -133,8 +133,15 @@ def _longer_run(gamma):
     """z at the times on surfaces of 32 harmonics."""
     scene = scene_of()
     plan = plan_of(NUMBERS, scene, EPS, gamma, np.asarray(1e-6))
-    parts = scene, EPS, gamma, jnp.asarray(TIMES), plan
-    return jax.jit(lambda numbers: _states(WaveProfile(*jnp.split(numbers, 2)), *parts)[0])
+    known = scene, EPS, gamma
+
+    def run(numbers):
+        profile = WaveProfile(*jnp.split(numbers, 2))
+        return _states(profile, _start(profile, *known), *known, jnp.asarray(TIMES), plan)[
+            0
+        ]
+
+    return jax.jit(run)
 
 
 def test_passages_bound_the_surface_from_the_other_side():
