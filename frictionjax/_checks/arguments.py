@@ -290,7 +290,8 @@ def require_function(name: str, fn: Any, what: str, smooth: bool = True) -> None
     require(callable(fn), name, fn, what)
     require(_can_be_hashed(fn), name, fn, f"{what}, with a hash: programs are kept by it")
     require(_takes_one(fn), name, fn, f"{what} alone, which is its one argument")
-    number, wrong = jax.ShapeDtypeStruct((), float), []
+    # Of the width that there is: where that is 32 bits, JAX 0.12 warns of 64.
+    number, wrong = jax.ShapeDtypeStruct((), jnp.result_type(float)), []
 
     def value(x: Real) -> Array:
         given = fn(x)

@@ -27,8 +27,12 @@ from .._compile import Interpreted
 from .course import Course, course_of
 from .settings import SETTINGS
 
-_NUMBER = jax.ShapeDtypeStruct((), float)
 _LOOKED_AT = ByIdentity()  # until when, in s
+
+
+def _number() -> jax.ShapeDtypeStruct:
+    """Of the width that there is: where that is 32 bits, JAX 0.12 warns of 64."""
+    return jax.ShapeDtypeStruct((), jnp.result_type(float))
 
 
 class UnprovedLoad(UserWarning):
@@ -54,7 +58,7 @@ def require_rate(name: str, fn: Callable[[Real], Real]) -> None:
         return jax.jvp(lambda t: jnp.asarray(fn(t), float), (t,), (jnp.ones_like(t),))
 
     try:
-        jax.eval_shape(rate, _NUMBER)
+        jax.eval_shape(rate, _number())
     except (TypeError, ValueError, NotImplementedError) as error:
         known = f"without jax.jvp, as {str(error).splitlines()[0]}"
         mend = "a function of t that jax.jvp can differentiate"
@@ -122,7 +126,7 @@ def require_methods(load: Any) -> None:
     require_rate(f"{kind}.__call__", load)
     name, allowed = f"{kind}.turning_points", "times, shape (count,)"
     try:
-        found = jax.eval_shape(lambda end: load.turning_points(end, 2), _NUMBER)
+        found = jax.eval_shape(lambda end: load.turning_points(end, 2), _number())
     except jax.errors.JAXTypeError:
         needs = f"{allowed}, written with jax.numpy"
         require(False, name, load.turning_points, needs)

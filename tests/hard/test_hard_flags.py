@@ -17,7 +17,8 @@ from frictionjax._compile.flags import fast_cpu_flags
 
 USERS = " ".join(fast_cpu_flags())
 """Those of the suite too, see conftest.py."""
-QUICK = "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false"
+_EMITTERS = [flag for flag in fast_cpu_flags() if "fusion_emitters" in flag]
+QUICK = " ".join(["--xla_backend_optimization_level=0", *_EMITTERS])
 _HERE = Path(__file__).parent
 _MODULES = os.pathsep.join([str(_HERE), str(_HERE.parent / "support")])
 

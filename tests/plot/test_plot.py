@@ -10,6 +10,7 @@ from sweep_like import EPS, sweep_like
 
 import frictionjax as fx
 from frictionjax.convergence.order import Verdict
+from frictionjax.plot.style import follows_slips
 
 LAW = fx.friction(fx.profiles.Sine(0.1), fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0))
 SPRING = fx.supports.Spring(2.0)
@@ -219,6 +220,14 @@ def test_the_close_up_joins_no_states_between_which_slips_are_left_out():
     assert zoom.get_title(loc="left").endswith("dots: too few times to follow slips")
     seen = fx.plot.draw_trajectories(fine, gamma=1.0, eps=0.1)
     assert drawn(seen)[1].get_title(loc="left").endswith("in the frame on the left")
+
+
+def test_rounding_where_two_wells_meet_is_no_slip():
+    """A tip at rest there is in one well or the other by the last digit of its state."""
+    rest = np.where(np.arange(200) % 2, 0.8 + 1e-16, 0.8 - 2e-16)
+    assert follows_slips(rest, 0.1)
+    crossed = np.where(np.arange(200) % 2, 0.8 + 1e-6, 0.8 - 1e-6)
+    assert not follows_slips(crossed, 0.1)
 
 
 def test_unknown_gamma_or_eps_is_an_error():

@@ -3,6 +3,7 @@
 `python tests/support/promised.py` writes it anew, where a promise has grown.
 """
 
+import enum
 import inspect
 import re
 import types
@@ -20,6 +21,8 @@ _FUNCTIONS = {"plot": ("draw_", "animate"), "measured": ("read_",)}
 def _line(name: str, thing) -> str:
     if isinstance(thing, types.ModuleType) or not callable(thing):
         return name
+    if isinstance(thing, enum.EnumMeta):  # whose call is that of Python's version
+        return f"{name}: {', '.join(thing.__members__)}"
     try:
         parameters = inspect.signature(thing).parameters.values()
     except ValueError:

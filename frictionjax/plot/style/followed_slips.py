@@ -12,7 +12,9 @@ TOLD_OF_DOTS = "; dots: too few times to follow slips"
 
 def follows_slips(z: np.ndarray, eps: float) -> bool:
     """Whether most wells that `z` (m), shape (time,), passes hold enough of its times."""
-    passed = np.abs(np.diff(np.floor(z[np.isfinite(z)] / eps)))
+    # Rounded: one at rest where two wells meet would go to and fro in its last digit.
+    wells = np.floor(np.round(z[np.isfinite(z)] / eps, 6))
+    passed = np.abs(np.diff(wells))
     last = np.flatnonzero(passed)
     if not last.size:
         return True
