@@ -13,6 +13,7 @@ _TITLES = {
     "geometric": "Geometric effect: a stiff rod",
     "energetic": "Energetic effect: a rod that turns over",
 }
+_PLATE = {"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 1.0}
 _BESIDE = 1e-3  # of the height of a loop: rounding is not beyond a level
 _LEVELS = {
     "geometric": (("rho_with", 1, "with"), ("rho_against", -1, "against")),
@@ -88,6 +89,7 @@ def _level(axes: Any, value: float, side: int, word: str, place: float) -> None:
         xycoords=axes.get_yaxis_transform(),
         xytext=(0, 6 * side),
         textcoords="offset points",
+        bbox=_PLATE,
         ha="center",
         va="bottom" if side > 0 else "top",
         color="#555555",
