@@ -302,7 +302,7 @@ def test_values_inside_the_others_are_no_sentinels(tmp_path):
 
 def test_the_shell_reads_texts_as_python_does(tmp_path):
     path = written(tmp_path, lines(UM, NM, by=";", decimal=","))
-    assert "needs length_unit" in error_line(run("friction", "--heights", path))
+    assert "needs --length-unit" in error_line(run("friction", "--heights", path))
     units = ["--length-unit", "um", "--height-unit", "nm", "--harmonics", "2"]
     result = run("friction", "--heights", path, *units, "--json")
     assert result.exit_code == 0, result.stderr
