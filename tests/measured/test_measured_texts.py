@@ -313,4 +313,4 @@ def test_the_shell_reads_texts_as_python_does(tmp_path):
     result = run("friction", "--heights", holes, "--harmonics", "2")
     assert "1 of 320 heights missing, first line 101, column 2" in result.stdout
     said = error_line(run("friction", "--length-unit", "um"))
-    assert "length_unit = 'um': needs --heights FILE" in said
+    assert "--length-unit = 'um': needs --heights FILE" in said
