@@ -85,8 +85,10 @@ def write_record(
 ) -> None:
     """Write data sets by name, scene and tables into `folder`."""
     for name, one in data.items():
-        # In memory first: HDF5 ends the process where a disk is full.
-        write_whole(folder / f"{name}.nc", one.to_netcdf(None, engine="h5netcdf"))
+        # In memory first: HDF5 ends the process where a disk is full. A copy: of a view
+        # that an error keeps Python 3.13 complains when the memory is freed.
+        written = bytes(one.to_netcdf(None, engine="h5netcdf"))
+        write_whole(folder / f"{name}.nc", written)
     write_whole(folder / "tables.txt", text + "\n")
     write_whole(folder / "scene.toml", toml)
 
