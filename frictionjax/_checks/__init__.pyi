@@ -14,6 +14,7 @@ from .arguments import known_numbers as known_numbers
 from .arguments import no_less as no_less
 from .arguments import no_more as no_more
 from .arguments import numbers_of as numbers_of
+from .arguments import real_struct as real_struct
 from .arguments import require as require
 from .arguments import require_flags as require_flags
 from .arguments import require_function as require_function

@@ -285,13 +285,20 @@ def require_flags(**flags: Any) -> None:
         require(isinstance(value, bool | np.bool_), name, value, "True or False")
 
 
+def real_struct() -> jax.ShapeDtypeStruct:
+    """A real number for `jax.eval_shape`, of the width that there is.
+
+    Where that is 32 bits, JAX 0.12 warns of 64.
+    """
+    return jax.ShapeDtypeStruct((), jnp.result_type(float))
+
+
 def require_function(name: str, fn: Any, what: str, smooth: bool = True) -> None:
     """Check that `fn` takes one number to one number, and has a derivative if `smooth`."""
     require(callable(fn), name, fn, what)
     require(_can_be_hashed(fn), name, fn, f"{what}, with a hash: programs are kept by it")
     require(_takes_one(fn), name, fn, f"{what} alone, which is its one argument")
-    # Of the width that there is: where that is 32 bits, JAX 0.12 warns of 64.
-    number, wrong = jax.ShapeDtypeStruct((), jnp.result_type(float)), []
+    number, wrong = real_struct(), []
 
     def value(x: Real) -> Array:
         given = fn(x)

@@ -111,7 +111,8 @@ def _condition_text(found: Any) -> str:
     condition = condition_of(found)
     if condition is None:
         return ""
-    return f"friction {condition.words}: {condition.elsewhere}"
+    beside = f": {condition.elsewhere}" if condition.elsewhere else ""
+    return f"friction {condition.words}{beside}"
 
 
 def meaning_of(name: str, meaning: str, pulls: bool) -> str:

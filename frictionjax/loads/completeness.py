@@ -19,6 +19,7 @@ from .._checks import (
     is_foreign,
     is_known,
     kind_of,
+    real_struct,
     require,
     require_function,
     require_whole,
@@ -28,11 +29,6 @@ from .course import Course, course_of
 from .settings import SETTINGS
 
 _LOOKED_AT = ByIdentity()  # until when, in s
-
-
-def _number() -> jax.ShapeDtypeStruct:
-    """Of the width that there is: where that is 32 bits, JAX 0.12 warns of 64."""
-    return jax.ShapeDtypeStruct((), jnp.result_type(float))
 
 
 class UnprovedLoad(UserWarning):
@@ -58,7 +54,7 @@ def require_rate(name: str, fn: Callable[[Real], Real]) -> None:
         return jax.jvp(lambda t: jnp.asarray(fn(t), float), (t,), (jnp.ones_like(t),))
 
     try:
-        jax.eval_shape(rate, _number())
+        jax.eval_shape(rate, real_struct())
     except (TypeError, ValueError, NotImplementedError) as error:
         known = f"without jax.jvp, as {str(error).splitlines()[0]}"
         mend = "a function of t that jax.jvp can differentiate"
@@ -126,7 +122,7 @@ def require_methods(load: Any) -> None:
     require_rate(f"{kind}.__call__", load)
     name, allowed = f"{kind}.turning_points", "times, shape (count,)"
     try:
-        found = jax.eval_shape(lambda end: load.turning_points(end, 2), _number())
+        found = jax.eval_shape(lambda end: load.turning_points(end, 2), real_struct())
     except jax.errors.JAXTypeError:
         needs = f"{allowed}, written with jax.numpy"
         require(False, name, load.turning_points, needs)

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from .._checks import require
-from .style import GUIDE, new_figure, styled
+from .style import GUIDE, PLATE, new_figure, styled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +34,6 @@ _TITLES = {
 _LIMIT = ", limit $\\epsilon \\to 0$"
 _SIGNED = ("ratio", "contrast", "difference", "alpha")
 _RATIOS = (1 / 10, 1 / 5, 1 / 3, 1 / 2, 2 / 3, 1, 1.5, 2, 3, 5, 10)
-_PLATE: Any = {"facecolor": "#ffffff", "edgecolor": "none", "alpha": 0.7, "pad": 0.8}
 # What is left out of a map, and how it is hatched.
 _LEFT = ("////", "not admissible"), ("....", "$\\alpha$ < 0: the bristle pulls")
 
@@ -144,7 +143,7 @@ def _contours(axes: Any, x, y, shown, levels, texts) -> None:
         return texts[min(texts, key=lambda known: abs(known - value))]
 
     for label in axes.clabel(lines, fmt=text, fontsize=8):
-        label.set_bbox(_PLATE)  # or it is lost on the dark ends of the colours
+        label.set_bbox(PLATE)  # or it is lost on the dark ends of the colours
 
 
 def _edges(values: np.ndarray, ratios: bool) -> np.ndarray:

@@ -33,7 +33,7 @@ class Settings(NamedTuple):
     # The same of all periods that a slide marches, on all of its grids, 50 s, and a third
     # of what is left for a grid that has no other to be held against. Fast slides in soft
     # springs forget slowly: of 45 that end well, at 1e-4 to 50 m/s and with 1e-2 to 1e-8 J,
-    # the slowest takes 48 times most_work.
+    # the slowest takes 48 times most_work (by hand).
     most_marched: int = 7 * 2**26
     share_of_one: float = 1 / 3
     grids: int = 5  # each of twice the cells and steps of the last

@@ -7,13 +7,12 @@ from matplotlib.figure import Figure
 
 from ...contact import nap_loops
 from ...model import Scene
-from ..style import GUIDE, colour, new_figure, styled
+from ..style import GUIDE, PLATE, colour, new_figure, styled
 
 _TITLES = {
     "geometric": "Geometric effect: a stiff rod",
     "energetic": "Energetic effect: a rod that turns over",
 }
-_PLATE = {"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 1.0}
 _BESIDE = 1e-3  # of the height of a loop: rounding is not beyond a level
 _LEVELS = {
     "geometric": (("rho_with", 1, "with"), ("rho_against", -1, "against")),
@@ -89,7 +88,7 @@ def _level(axes: Any, value: float, side: int, word: str, place: float) -> None:
         xycoords=axes.get_yaxis_transform(),
         xytext=(0, 6 * side),
         textcoords="offset points",
-        bbox=_PLATE,
+        bbox=PLATE | {"alpha": 0.85},
         ha="center",
         va="bottom" if side > 0 else "top",
         color="#555555",

@@ -6,6 +6,7 @@ from .look import COLOURS as COLOURS
 from .look import GUIDE as GUIDE
 from .look import LIMIT as LIMIT
 from .look import MARKERS as MARKERS
+from .look import PLATE as PLATE
 from .look import STRIP as STRIP
 from .look import Picture as Picture
 from .look import axes_of as axes_of

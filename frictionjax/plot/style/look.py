@@ -27,6 +27,8 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "*")  # another period than the colours
 LIMIT = "#222222"
 GUIDE = "#999999"
 STRIP = "#dfe6ee"
+# Behind a label that curves or colours go under.
+PLATE: Any = {"facecolor": "#ffffff", "edgecolor": "none", "alpha": 0.7, "pad": 0.8}
 _TOLD_APART = 5.0  # of the largest eps: a curve that is still seen beside the limit's
 
 _SETTINGS: Any = {
