@@ -7,8 +7,10 @@ import pytest
 from outside_slips import states_outside_slips, times_about
 
 import frictionjax as fx
+from frictionjax.called_for.plain_system import _rest_of_tip
 from frictionjax.io.example_scenes import example_lines, example_text
 from frictionjax.io.scene_files import parse_scene
+from frictionjax.model import BristlePotential
 
 EPS = 5e-3
 LEADING = (fx.effects.LeadingOrder(),)
@@ -144,6 +146,22 @@ def test_on_straight_flanks_forces_change_by_what_the_higher_order_is(eps):
 @pytest.mark.parametrize("name", NONE)
 def test_without_a_higher_order_nothing_is_told(name):
     assert told_of(scene_that_ships(name), 1.0, 0.1) == 0.0
+
+
+@pytest.mark.parametrize(("eps", "within"), [(0.05, 2e-6), (1e-6, 2e-4)])
+def test_a_rest_by_forces_is_that_by_its_definition(eps, within):
+    """Central differences of Q and W, in phases of a tip that leans."""
+    potential = BristlePotential(fx.profiles.Sine(0.1), SLANTED)
+    phases, h = np.linspace(-0.5, 0.5, 24, endpoint=False), 1e-3
+    found = _rest_of_tip(potential, np.asarray(eps), phases)
+    rows = np.array([phases + k * h for k in (-2, -1, 0, 1, 2)])
+    first, second = np.array([1, -8, 0, 8, -1]) / 12 / h, np.array([-1, 16, -30, 16, -1])
+    third = np.array([-1, 2, 0, -2, 1]) / 2 / h**3
+    rest, leading = potential.Q(eps, rows), potential.W(rows)
+    second = second / 12 / h**2
+    by_rows = first @ rest, second @ rest, second @ leading, third @ leading
+    for mine, theirs, share in zip(found, by_rows, (1, 1, 1, 20), strict=True):
+        np.testing.assert_allclose(mine, theirs, atol=share * within * np.max(np.abs(theirs)))
 
 
 def far_apart(eps, gamma):

@@ -14,20 +14,21 @@ def draw_order_cost(found: Any, ax: Any = None) -> Any:
 
     A Figure, or `ax` where it is drawn into that.
 
-    Filled: grids that those at smaller eps confirm; hollow: the others; the line goes
-    through the front, the confirmed ones that no cheaper one beats; the ring is the choice.
+    Filled: grids that those at smaller eps confirm, or that reach the end of the range, with
+    none to compare with; hollow: the others; the line goes through the front, the filled
+    ones that no cheaper one beats; the ring is the choice.
 
     Raises `ValueError` where no grid gives an order.
 
     >>> cost = fx.order_cost(scene, eps=[1e-2, 1e-4], within=0.1, measure=False)
     >>> figure = fx.plot.draw_order_cost(cost)
     >>> figure.axes[0].get_legend_handles_labels()[1][0]
-    'confirmed by smaller eps'
+    'confirmed, or at the end of the range'
     """
     require(bool(found.grids), "found", found.message, "grids that give an order")
     drawn, axes = axes_of(ax, 6.4, 4.6)
     for confirmed, name, fill in (
-        (True, "confirmed by smaller eps", colour(0)),
+        (True, "confirmed, or at the end of the range", colour(0)),
         (False, "not confirmed", "white"),
     ):
         some = [grid for grid in found.grids if grid.confirmed == confirmed]

@@ -30,15 +30,16 @@ def nearness_at_turns(
     edge, lacks = _lacks(its, path.support, at, eps[:, None])
     # Tips rest before that fold only where the path is at the strip's edge.
     held = its.side * (path.states[turns] - edge) < SETTINGS.beside * eps[:, None]
-    apart = np.abs(lacks) / its.bend
-    some = np.nonzero(held & (apart < near[:, None] ** 2))
+    # Not divided: straight flanks have no bend.
+    some = np.nonzero(held & (np.abs(lacks) < near[:, None] ** 2 * its.bend))
     cell, turn = some
     if cell.size == 0:
         return found
     drag = (viscosity * eps)[cell] * its.stretch[some]
     width = _widths(path, turns[turn], its.side[0, turn], its.bend[some], drag)
-    apart += its.rounding(at, path.width)
-    found[cell, turns[turn] - 1] = np.sqrt(apart[some] + width**2)
+    apart = np.abs(lacks[some]) / its.bend[some]
+    apart += np.broadcast_to(its.rounding(at, path.width), lacks.shape)[some]
+    found[cell, turns[turn] - 1] = np.sqrt(apart + width**2)
     return found
 
 
