@@ -161,7 +161,9 @@ def test_a_rest_by_forces_is_that_by_its_definition(eps, within):
     second = second / 12 / h**2
     by_rows = first @ rest, second @ rest, second @ leading, third @ leading
     for mine, theirs, share in zip(found, by_rows, (1, 1, 1, 20), strict=True):
-        np.testing.assert_allclose(mine, theirs, atol=share * within * np.max(np.abs(theirs)))
+        np.testing.assert_allclose(
+            mine, theirs, atol=share * within * np.max(np.abs(theirs))
+        )
 
 
 def far_apart(eps, gamma):

@@ -15,13 +15,16 @@ from .exchange import (
     BentSurface,
     SurfaceBounds,
     extrema,
+    least_bent_seen,
     least_bent_within,
     plain_slopes,
     steepest_surface,
     with_ends_seen,
 )
+from .flattened import place_of_lowest
 from .multistart import StartRuns, best_first
 from .reachable import followed, slopes_asked
+from .settings import SETTINGS
 
 
 class RoomLeft(NamedTuple):
@@ -43,10 +46,12 @@ def room_left(problem: Any, runs: StartRuns, places: np.ndarray) -> RoomLeft:
     """
     met = np.any(runs.settled.met)
     layout = problem.layout
-    if met or not (layout.sharp or layout.high):
-        return RoomLeft(runs, places, 1.0 if met and not layout.free else None)
     *_, order = best_first(runs, float(problem.task.slope), problem.scale)
     best = int(order[0])
+    if met and not (layout.sharp or layout.high) and problem.asked.apart is None:
+        runs, places = _less_bent(problem, runs, places, best)
+    if met or not (layout.sharp or layout.high):
+        return RoomLeft(runs, places, 1.0 if met and not layout.free else None)
     slopes = slopes_wanted(problem, runs, best)
     uneven = 1.0 if slopes is None else float(np.max(slopes / slopes[::-1]))
     if slopes is None or not uneven < layout.harmonics or not np.any(runs.path.done):
@@ -56,8 +61,37 @@ def room_left(problem: Any, runs: StartRuns, places: np.ndarray) -> RoomLeft:
     row = None if found is None else _row(problem, runs, best, bounds, found)
     if found is None or row is None:
         return RoomLeft(runs, places, share)
+    return RoomLeft(*_with_row(runs, places, row, found.place), share)
+
+
+def _with_row(
+    runs: StartRuns, places: np.ndarray, row: StartRuns, place: float
+) -> tuple[StartRuns, np.ndarray]:
     more = jax.tree_util.tree_map(lambda all_, one: np.concatenate([all_, one]), runs, row)
-    return RoomLeft(more, np.append(places, found.place), share)
+    return more, np.append(places, place)
+
+
+def _less_bent(
+    problem: Any, runs: StartRuns, places: np.ndarray, best: int
+) -> tuple[StartRuns, np.ndarray]:
+    """One start more where the slopes of the best one have a surface less bent.
+
+    Barriers ask for a place of the lowest slope; where it is flattened none is to be asked
+    for. Slopes of free bristles, and of targets that differ, are known only by then.
+    """
+    settled = jax.tree_util.tree_map(lambda rows: rows[best], runs.settled)
+    ends = np.array([settled.reach.plus, settled.reach.minus])
+    energy = float(np.sum(np.square(settled.waves)))
+    if not settled.met or energy <= (1 + SETTINGS.proven) * float(runs.bound[best]):
+        return runs, places
+    found = least_bent_seen(plain_slopes(problem.layout.harmonics), ends)
+    if found is None or not float(np.sum(np.square(found.waves))) < energy:
+        return runs, places
+    place = place_of_lowest(found.waves)
+    plus, minus = ends.tolist()
+    bounds = SurfaceBounds(problem.layout.harmonics, plus, minus, np.inf, np.inf)
+    row = _row(problem, runs, best, bounds, BentSurface(found.waves, place, found.bound))
+    return (runs, places) if row is None else _with_row(runs, places, row, place)
 
 
 def _surface_within(bounds: SurfaceBounds) -> tuple[BentSurface | None, float | None]:

@@ -29,6 +29,7 @@ from ..common import (
 from .array_surface import fit_to_array, require_plain
 from .barrier import FitShape, FitTask, free_energy
 from .fallback import room_left
+from .flattened import flattened, place_of_lowest
 from .least_bent import least_bent
 from .multistart import StartRuns, descended
 from .report import report_fit
@@ -89,9 +90,10 @@ def fit_profile(
 
     Coefficients see only the extreme slopes (Lemmas 2 and 3), so infinitely many surfaces
     fit: this is the one with the least `int_0^1 w''^2`; `.bending_bound` proves how near.
-    `.identifiability` and `.family` say what is left open. Where nothing is flattened and
-    no bound is felt it has a closed form, taken in one step; where the problem is convex,
-    a start whose optimum is proven stands for the others, which do not run. Every iterate
+    `.identifiability` and `.family` say what is left open. Where no bound is felt it has a
+    closed form, or where a slope is flattened is a least distance, taken in one step; where
+    the problem is convex, a start whose optimum is proven stands for the others, which do
+    not run. Every iterate
     is admissible (`1 + a omega > 0`, the bristles' own bounds; free bristles keep 0.1% from
     the steepest slopes that they follow) and keeps the other bounds with a margin of 0.5%.
     Where only surfaces nearer to them have the slopes, the least bent of those, by exchange
@@ -126,7 +128,7 @@ def fit_profile(
     array = problem.asked.apart
     with waiting("fit_profile", progress) as tell:
         if array is None:
-            runs = least_bent(problem.layout, problem.task, starts)
+            runs, apart = _proven(problem, starts, apart)
         else:
             runs = fit_to_array(problem.layout, problem.task, array, starts)
         if runs is None:
@@ -136,6 +138,20 @@ def fit_profile(
         found = room_left(problem, runs, apart)
         tell("what is left open")
         return report_fit(problem, found)
+
+
+def _proven(
+    problem: SurfaceProblem, starts: int, apart: np.ndarray
+) -> tuple[StartRuns | None, np.ndarray]:
+    """The optimum in a step, if one is known, and places of each start's lowest slope."""
+    known = problem.layout, problem.task, starts
+    runs = least_bent(*known)
+    if runs is not None:
+        return runs, apart
+    runs = flattened(*known)
+    if runs is None:
+        return None, apart
+    return runs, np.full(starts, place_of_lowest(runs.settled.waves[0]))
 
 
 def _descended(problem: SurfaceProblem, apart: Any, seed: int, max_steps: int) -> StartRuns:

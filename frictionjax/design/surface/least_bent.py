@@ -6,6 +6,7 @@ In NumPy: nothing to compile, so that a first fit of this kind takes no seconds.
 from functools import cache
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 
 from ..common import FixedLaw, Geometry, coefficients_of, extreme_slopes
@@ -30,26 +31,57 @@ def least_bent(layout: FitShape, task: FitTask, starts: int) -> StartRuns | None
     It is (see `bending`) where the ratio of the extreme slopes flattens nothing, all
     targets agree on them, and the bounds hold with the margin of the rows.
     """
+    ends = slopes_agreed(layout, task)
+    if ends is None or uneven(ends) > kernel_ratio(layout.harmonics):
+        return None
+    waves = _waves(layout.harmonics, *ends)
+    plus, minus = ends
+    bound = free_energy(plus, minus, layout.harmonics)
+    return for_all_starts(layout, task, starts, ends, waves, bound)
+
+
+def slopes_agreed(layout: FitShape, task: FitTask) -> np.ndarray | None:
+    """Slopes (omega_plus, -omega_minus) that all targets ask for.
+
+    None where they ask for different ones, for some that a bristle does not follow, or
+    where other things than slopes bound the surface.
+    """
     if not (has_closed_form(layout) and isinstance(task.law, FixedLaw)):
         return None
-    law = task.law.known
-    ends = _ends(task, law)
-    plus, minus = ends
-    possible = np.all(np.isfinite(ends)) and np.all(ends > 0)
-    if not (possible and np.max(ends / ends[::-1]) <= kernel_ratio(layout.harmonics)):
+    ends = _ends(task, task.law.known)
+    if not (np.all(np.isfinite(ends)) and np.all(ends > 0)):
         return None
-    reached = coefficients_of(law, task.slope * plus, task.slope * minus, np)
-    left = ((reached - np.asarray(task.coefficients)) * task.factors).ravel()
-    waves = _waves(layout.harmonics, plus, minus)
+    left, steep = _left(task, ends)
+    agreed = np.all(np.abs(left) <= SETTINGS.agreed) and steep < 1
+    return ends if agreed else None
+
+
+def uneven(ends: np.ndarray) -> float:
+    """The larger of two slopes over the smaller one."""
+    return float(np.max(ends / ends[::-1]))
+
+
+def for_all_starts(
+    layout: FitShape, task: FitTask, starts: int, ends: np.ndarray, waves: Any, bound: Any
+) -> StartRuns | None:
+    """A surface with the slopes agreed on; None where it is too sharp."""
     sharpest = _curvature(layout, waves)
-    steep = np.stack([plus * task.slope / law.upper, minus * task.slope / -law.lower])
-    met = np.all(np.abs(left) <= SETTINGS.agreed) and np.all(steep < 1)
-    if not (met and sharpest <= BARRIER_SETTINGS.row_margin * task.curvature):
+    if not sharpest <= BARRIER_SETTINGS.row_margin * task.curvature:
         return None
-    room = {"slopes": 1 - np.max(steep)}
+    left, steep = _left(task, ends)
+    room: Any = {"slopes": np.asarray(1 - steep)}
     if layout.sharp:
         room["curvature"] = 1 - sharpest / task.curvature
-    return repeated(starts, _found(task, waves, ends, left, room, sharpest))
+    return repeated(starts, _found(task, waves, ends, left, room, sharpest, bound))
+
+
+def _left(task: FitTask, ends: np.ndarray) -> tuple[np.ndarray, float]:
+    """What slopes leave of the targets, and how far they are of those followed."""
+    law = task.law.known_at(jnp.zeros(0))
+    plus, minus = task.slope * ends
+    reached = coefficients_of(law, plus, minus, np)
+    left = ((reached - np.asarray(task.coefficients)) * task.factors).ravel()
+    return left, float(np.max(np.stack([plus / law.upper, minus / -law.lower])))
 
 
 def has_closed_form(layout: FitShape) -> bool:
@@ -89,7 +121,7 @@ def _curvature(layout: FitShape, waves: np.ndarray) -> float:
 
 
 def _found(
-    task: FitTask, waves: Any, ends: Any, left: Any, room: Any, sharpest: Any
+    task: FitTask, waves: Any, ends: Any, left: Any, room: Any, sharpest: Any, bound: Any
 ) -> StartRuns:
     """One start's row: one step of Newton's method, from anywhere."""
     plus, minus = ends
@@ -108,7 +140,7 @@ def _found(
         settled=Settled(waves, none, reach, ends, left, true),
         path=path,
         room=room,
-        bound=free_energy(plus, minus, waves.size // 2),
+        bound=bound,
         misfit=np.sum(left**2, keepdims=True),
         ran=true,
     )

@@ -140,7 +140,7 @@ def _one(layout, kept, most, task, own, place, key, share) -> StartRuns:
     last = barrier_of(layout, task, place, first)
     final, path = follow_barrier(last, first, kept, most)
     settled = settle(layout, task, final)
-    bound = energy_bound(last, final, settled.reach)
+    bound = energy_bound(last, final, settled.waves, settled.reach)
 
     def misfit(x: Array) -> Array:
         point = layout.split(x)

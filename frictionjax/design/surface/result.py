@@ -67,7 +67,9 @@ class ProfileFit(ShownNumbers, DesignResult):
     `coefficients`: of each target, as `friction` recomputes them (of the scene with its
     `effects`, those of a compliant array of all its bristles). `targets`: (targets, 2)
     in N. `bending_energy`: `int_0^1 w''^2`; `bending_bound`: proven lower bound of it for
-    surfaces with these extreme slopes as far apart as here (0 where nothing is proven).
+    surfaces with these extreme slopes, all of them; with bounds on the surface, with free
+    bristles and for targets that differ, those with them as far apart as here (0 where
+    nothing is proven).
     `residuals`: achieved minus target in N; `largest_error`: the largest of them, relative.
     `chi2`: weighted squares, in units of uncertainties where given, else of the targets;
     `degrees_of_freedom` of them, and `misfit` = sqrt(chi2/residuals). `starts`: best first.

@@ -32,8 +32,6 @@ class Settings(NamedTuple):
     agreed: float = 1e-12  # of the targets, weighted: rounding of coefficients
 
     # Tips at different phases (`array_surface.py`).
-    place: float = 1e-5  # of the grid's width: the lowest slope's own is flat
-    reached: float = 1e-9
     less_uneven: float = 0.9  # of what a ratio is above 1: the next one tried
 
     # What coefficients leave open (`open_directions.py`).

@@ -14,9 +14,9 @@ def draw_order_cost(found: Any, ax: Any = None) -> Any:
 
     A Figure, or `ax` where it is drawn into that.
 
-    Filled: grids that those at smaller eps confirm, or that reach the end of the range, with
-    none to compare with; hollow: the others; the line goes through the front, the filled
-    ones that no cheaper one beats; the ring is the choice.
+    Filled: grids that those at smaller eps confirm, or that reach the end of the range,
+    with none to compare with; hollow: the others; the line goes through the front, the
+    filled ones that no cheaper one beats; the ring is the choice.
 
     Raises `ValueError` where no grid gives an order.
 

@@ -5,18 +5,34 @@ import jax.numpy as jnp
 from jaxtyping import Array
 
 from ...._checks import Real
+from .bending import free_energy
 from .constraints import at, basis
 from .extreme_slopes import Reach
 from .iterates import Barrier
+from .settings import SETTINGS
 
 
-def energy_bound(barrier: Barrier, x: Array, found: Reach) -> Real:
-    """Lower bound of `int v'^2`, in units of the task, by weak duality.
+def energy_bound(barrier: Barrier, x: Array, waves: Array, found: Reach) -> Real:
+    """Lower bound of `int v'^2`, in units of the task.
 
-    Over all surfaces with these harmonics whose extreme slopes are those `found`, the
-    lowest at the barrier's place from the highest, within the bounds as given (without
-    margins). Any multipliers >= 0 prove a bound; those of the barrier after one more Newton
-    step, linearised, balance the energy to rounding, and the bound is sharp.
+    Of all surfaces with the extreme slopes that were `found`, of these `waves`, whose
+    lowest slope is at the barrier's place from the highest, as theirs is. Where theirs is
+    not, as a flattened slope's need not be, of all surfaces with these slopes.
+    """
+    energy = jnp.sum(waves**2)
+    of_place = _bound_at_place(barrier, x, found)
+    there = -at(waves, barrier.place) >= (1 - SETTINGS.there) * found.minus
+    there &= of_place <= (1 + SETTINGS.rounded) * energy
+    of_all = free_energy(found.plus, found.minus, barrier.layout.harmonics)
+    return jnp.where(there, jnp.minimum(of_place, energy), of_all)
+
+
+def _bound_at_place(barrier: Barrier, x: Array, found: Reach) -> Real:
+    """Of surfaces whose lowest slope is at the place, by weak duality.
+
+    Within the bounds as given (without margins). Any multipliers >= 0 prove a bound; those
+    of the barrier after one more Newton step, linearised, balance the energy to rounding,
+    and the bound is sharp.
     """
     layout, task = barrier.layout, barrier.task
     step = jnp.linalg.solve(barrier.hessian(x), -jax.grad(barrier.value)(x))

@@ -36,6 +36,10 @@ class Settings(NamedTuple):
     # Of the largest singular value: directions that targets, or slopes, do not see.
     rank: float = 1e-9
 
+    # The bound of the energy (`lower_bound.py`).
+    there: float = 1e-3  # of the lowest slope: so near to it, a place is its own
+    rounded: float = 1e-6  # of the energy, by which a bound of it may be above
+
     # Extreme slopes (`extreme_slopes.py`).
     fewest_waves: int = 4  # that rows are for
     slope_steps: int = 64

@@ -1,5 +1,6 @@
 from .least_bent import BentSurface as BentSurface
 from .least_bent import least_bent_within as least_bent_within
+from .least_seen import least_bent_seen as least_bent_seen
 from .seen_slopes import SeenSlopes as SeenSlopes
 from .seen_slopes import bumps as bumps
 from .seen_slopes import phases_of as phases_of

@@ -6,7 +6,7 @@ from typing import NamedTuple
 class Settings(NamedTuple):
     """Of slopes seen, of shortest vectors, of linear programs."""
 
-    # Slopes seen (`seen_slopes.py`), shortest vectors (`shortest.py`).
+    # Slopes seen (`seen_slopes.py`, `least_seen.py`), shortest vectors (`shortest.py`).
     unseen: float = 1e-12  # of all weights: what is left of a wave is rounding
     rows_seen: int = 8  # a wave: rows are added where the range is left
     rows_ratio: int = 32
@@ -19,6 +19,8 @@ class Settings(NamedTuple):
     touching: float = 3e-6
     impossible: float = 1e-12
     exchanges: int = 50  # a row
+    place: float = 1e-5  # of the grid's width: the lowest slope's own is flat
+    reached: float = 1e-9  # of the lowest slope
     rank_seen: float = 1e-9  # of the largest singular value
 
     # The steepest surface within bounds (`steepest.py`).
