@@ -1,11 +1,14 @@
 """The command line: what it prints, what it writes, how it fails."""
 
 import json
+import os
 import re
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
+import jax
 import numpy as np
 import pytest
 import xarray as xr
@@ -13,6 +16,7 @@ from command_line import error_line, run
 from html_pages import checked_page
 
 import frictionjax as fx
+from frictionjax._compile import program_cache
 from frictionjax.cli import command_group
 from frictionjax.cost.machine_cost import MachineCost
 from frictionjax.io.scene_files import default_study, scene_document
@@ -177,6 +181,13 @@ def test_what_a_command_does_not_do_is_named_with_its_file(tmp_path):
     assert told.stderr.startswith(named)
     assert "does not do Noise: needs explain" in told.stderr
     assert told.stderr.count("\n") == 1
+
+
+def test_a_command_of_a_test_leaves_nothing_in_the_users_folder():
+    assert run("scenes", "noise").exit_code == 0
+    assert program_cache._place is None
+    folder = Path(jax.config.jax_compilation_cache_dir)
+    assert folder == Path(os.environ["JAX_COMPILATION_CACHE_DIR"])
 
 
 def test_a_study_of_a_scene_with_noise_has_a_seed(tmp_path):
