@@ -10,6 +10,7 @@ from jaxtyping import Array, Bool, Float, Int
 from ..._checks import Real
 from ...model import AbstractPotential
 from ...numerics import periodic_extrema, slope_of
+from .settings import SETTINGS
 
 
 class WiggleFolds(NamedTuple):
@@ -36,8 +37,8 @@ class Landscape(eqx.Module):
 
     `fold_curvature`, `flat_curvature`: |W'''| at the sharper and at the flatter of the two
     extreme folds, in N. `steepest`: max |W''| in N. `branch`: width in periods of the
-    narrowest branch on which `W'` is monotone; a tip must cross a falling one to change
-    wells. `stretch`: largest G.
+    narrowest branch on which `W'` is monotone, corners left out; a tip must cross a falling
+    one to change wells. `stretch`: largest G.
     """
 
     fold_curvature: Real
@@ -92,12 +93,17 @@ def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
 def _narrowest_run(slopes: Float[Array, " n"]) -> Int[Array, ""]:
     """Samples in the shortest run of one sign of the 1-periodic `slopes`, at least 2.
 
-    Rounding noise on flat stretches counts as rising.
+    Rounding noise on flat stretches counts as rising. A run far narrower than those on both
+    its sides is a corner, which a step that goes over it sees from beyond.
     """
-    falling: Bool[Array, " twice"] = jnp.tile(slopes < -1e-9 * jnp.max(jnp.abs(slopes)), 2)
-    index, twice = jnp.arange(falling.shape[0]), falling.shape[0]
+    falling: Bool[Array, " more"] = slopes < -1e-9 * jnp.max(jnp.abs(slopes))
+    falling = jnp.tile(falling, 3)  # so that of each run one has both its neighbours
+    index, count = jnp.arange(falling.shape[0]), falling.shape[0]
     turns = (falling != jnp.roll(falling, 1)) & (index > 0)
     # Sorted to the front (a running maximum instead compiles three times as long).
-    places = jnp.sort(jnp.where(turns, index, 2 * twice))
-    widths = jnp.where(places[1:] < twice, jnp.diff(places), twice)
-    return jnp.maximum(jnp.min(widths), 2)
+    places = jnp.sort(jnp.where(turns, index, 2 * count))
+    widths = jnp.where(places[1:] < count, jnp.diff(places), 0)
+    before, own, after = widths[:-2], widths[1:-1], widths[2:]
+    corner = SETTINGS.corner * own < jnp.minimum(before, after)
+    counts = (before > 0) & (own > 0) & (after > 0) & ~corner
+    return jnp.maximum(jnp.min(jnp.where(counts, own, count)), 2)

@@ -99,6 +99,19 @@ def test_reach_is_a_quarter_of_the_narrowest_branch():
     assert 0.5 / 32 < branch(0.016, *np.zeros(14), 0.002) < 1.1 / 32
 
 
+def test_corners_are_no_branches():
+    """W' falls over a quarter of the radius, between flanks of 0.3 and 0.4."""
+
+    def branch(radius, places=(0.1, 0.4, 0.7), heights=(0.0, 0.02, -0.01)):
+        profile = fx.profiles.Polyline(list(places), list(heights), radius)
+        wiggles = fx.potential(profile, fx.bristles.Homothetic(1.0))
+        return float(eqx.filter_jit(landscape)(wiggles, jnp.asarray(0.01)).branch)
+
+    assert branch(0.002) > 0.25
+    assert branch(0.1) > 0.25
+    assert branch(0.6) == pytest.approx(0.15, abs=4e-3)  # of 0.85 beside it: no corner
+
+
 @pytest.mark.slow
 def test_steps_end_at_kinks_of_the_load():
     """The same load with a kink that no time asked for shows: values on both sides."""
