@@ -76,3 +76,27 @@ def test_few_steps_go_over_a_corner_and_none_goes_over_a_well(gamma, eps, most):
     assert found.steps.item() < most
     off = np.abs(found.z.values.ravel() - states_by_radau(eps, gamma))
     assert np.max(off) < 1e-3 * eps
+
+
+@pytest.mark.parametrize(
+    ("gamma", "eps", "most"),
+    [
+        (0.4, 1e-6, 5e5),  # 2.3e5; open brackets where a corner is not resolved
+        pytest.param(0.3, 1e-5, 5e5, marks=pytest.mark.slow),
+        pytest.param(0.5, 1e-8, 2e6, marks=pytest.mark.slow),
+    ],
+)
+def test_fast_slides_over_corners_are_known_by_slip_maps(gamma, eps, most):
+    found = fx.sweep(scene(), [eps], [gamma], ts=TS)
+    assert found.status.item() == int(Status.OK)
+    assert found.steps.item() < most
+
+
+def test_slip_maps_over_corners_agree_with_every_slip():
+    eps, gamma = 1e-4, 0.4
+    by_map, every = (
+        fx.solve(scene(), eps, gamma, TS, 1e-3, method)
+        for method in ("windowed", "resolved")
+    )
+    assert by_map.stats["steps"] < 0.1 * every.stats["steps"]
+    assert np.max(np.abs(by_map.z - every.z)) < 1e-3 * eps

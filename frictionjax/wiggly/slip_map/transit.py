@@ -17,15 +17,9 @@ from ..._compile import Program, in_chunks
 from ...loads import AbstractPull
 from ...model import TabulatedScene
 from ...supports import AbstractSupport
+from .gauss import GAUSS_NODES, GAUSS_POINTS, GAUSS_WEIGHTS, PRIMITIVE, TO_LEGENDRE
 from .settings import SETTINGS
-from .well_pull import (
-    GAUSS_NODES,
-    GAUSS_POINTS,
-    GAUSS_WEIGHTS,
-    PRIMITIVE,
-    TO_LEGENDRE,
-    WellPull,
-)
+from .well_pull import WellPull
 
 # From values at Gauss nodes to integrals from the left end to each node.
 _TO_NODES = np.polynomial.legendre.legval(GAUSS_NODES, PRIMITIVE).T @ TO_LEGENDRE

@@ -8,14 +8,9 @@ import numpy as np
 from ..._compile import Program, in_chunks
 from ...model import SETTINGS as MODEL_SETTINGS
 from ...model import AbstractPotential
+from .gauss import GAUSS_NODES, GAUSS_POINTS, GAUSS_WEIGHTS, PRIMITIVE, TO_LEGENDRE
+from .halved_panels import halved_panels
 from .settings import SETTINGS
-
-GAUSS_POINTS = 10  # Gauss nodes of a panel
-GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-TO_LEGENDRE = np.linalg.inv(np.polynomial.legendre.legvander(GAUSS_NODES, GAUSS_POINTS - 1))
-
-# From Legendre polynomials to their integrals from -1, one degree higher.
-PRIMITIVE = np.polynomial.legendre.legint(np.eye(GAUSS_POINTS), lbnd=-1, axis=1).T
 
 
 class WellPull(NamedTuple):
@@ -216,7 +211,8 @@ def well_pull_of(
     Nodes for the smallest pull serve larger ones as well at folds with a curvature. Where
     the force is flatter they all lie where it is flat: there they are graded for several
     pulls. (Graded for the smallest one, passages of `W'` like `y^4` under a thousand times
-    the excess were 1e-4 off.)
+    the excess were 1e-4 off.) Corners, between flanks where the force is flat, are nowhere
+    that grading knows of: where it does not do, panels are halved.
     """
     powers = SETTINGS.pull_levels ** np.arange(SETTINGS.pulls)
     excess = some.excess[:, None] * powers
@@ -226,14 +222,40 @@ def well_pull_of(
     if flat.any():
         share = np.where(flat[:, None], 1 / found.under, one.share)
         found = _nodes(potential, some, _Grading(excess, share), rough, slice(None))
-    eps, places = some.eps[:, None], found.places
+    panels = found.places.shape[1] // GAUSS_POINTS
+    pace: np.ndarray = (0.5 * found.whole / panels * some.length)[:, None]
+    places, density = found.places, found.density
+    halved = None
+    if not np.all(found.smooth):
+        halved = _halved(potential, some, excess, rough)
+    if halved is not None:
+        places, widths = halved
+        pace, density = 0.5 * widths * some.length[:, None], np.ones_like(widths)
+    eps = some.eps[:, None]
     force, stretch, offset = wiggles_at(potential, eps, places)
     origin = wiggles_at(potential, some.eps, some.start)[2]
-    panels = places.shape[1] // GAUSS_POINTS
-    pace = 0.5 * found.whole / panels * some.length
     return WellPull(
         way=eps * (places - some.start[:, None]) + offset - origin[:, None],
         against=some.sign[:, None] * force,
-        weight=eps * stretch * pace[:, None] / found.density,
+        weight=eps * stretch * pace / density,
         sign=some.sign,
     )
+
+
+def _halved(potential, some: WellArc, excess: np.ndarray, rough: float):
+    """Places of nodes and widths of their panels, shares of the way, (C, M) both."""
+    larger = np.arange(SETTINGS.pulls) > 0
+    rough = SETTINGS.halved * rough
+
+    def gaps(cell: np.ndarray, shares: np.ndarray) -> np.ndarray:
+        way = some.sign[cell] * some.length[cell]
+        places = some.start[cell][:, None] + way[:, None] * shares
+        return _gaps(potential, some, cell, places)
+
+    found = halved_panels(gaps, excess, np.where(larger, SETTINGS.rougher, 1.0) * rough)
+    if found is None:
+        return None
+    left, width = found
+    cell = np.repeat(np.arange(len(left)), left.shape[1])
+    places = some.places(cell, left.ravel(), width.ravel())
+    return places.reshape(len(left), -1), np.repeat(width, GAUSS_POINTS, axis=1)
