@@ -28,20 +28,15 @@ def halved_panels(
     cell = np.repeat(np.arange(count), 4)
     left, width = np.tile(np.arange(4) / 4, count), np.full(4 * count, 0.25)
     done, past = [], np.zeros((excess.shape[1], count))
-    for _ in range(SETTINGS.depth):
+    for level in range(SETTINGS.depth):
         held = np.maximum(gaps(cell, left[:, None] + width[:, None] * _PLACES), 0.0)
-        values = 1 / (excess[cell].T[..., None] + held)
-        series = values[..., 1:-1] @ TO_LEGENDRE.T
-        ends = values[..., [0, -1]] - series @ np.stack([_LEFT, _LEFT**2]).T
-        last = np.sum(np.abs(series[..., -2:]), axis=-1)
-        rough = width * np.maximum(
-            last, SETTINGS.end_weight * np.sum(np.abs(ends), axis=-1)
-        )
-        now = _of_cells(width * series[..., 0], cell, count)
-        most = allowed[:, None] * (past + now)
-        split = np.any(rough > most[:, cell], axis=0)
+        means, rough = _series_of(1 / (excess[cell].T[..., None] + held))
+        parts = width * means
+        most = allowed[:, None] * (past + _of_cells(parts, cell, count))
+        split = np.any(width * rough > most[:, cell], axis=0)
+        split &= level < SETTINGS.depth - 1
         done.append(tuple(column[~split] for column in (cell, left, width)))
-        past += _of_cells((width * series[..., 0])[:, ~split], cell[~split], count)
+        past += _of_cells(parts[:, ~split], cell[~split], count)
         if not split.any():
             break
         half = 0.5 * width[split]
@@ -58,6 +53,15 @@ def halved_panels(
     rows = [_filled(left[cell == c], width[cell == c], sizes[0]) for c in range(count)]
     lefts, widths = (np.stack(column) for column in zip(*rows, strict=True))
     return lefts, widths
+
+
+def _series_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Means over panels, and how rough these are, of values at `_PLACES` of each."""
+    series = values[..., 1:-1] @ TO_LEGENDRE.T
+    missed = values[..., [0, -1]] - series @ np.stack([_LEFT, _LEFT**2]).T
+    last = np.sum(np.abs(series[..., -2:]), axis=-1)
+    at_ends = SETTINGS.end_weight * np.sum(np.abs(missed), axis=-1)
+    return series[..., 0], np.maximum(last, at_ends)
 
 
 def _of_cells(parts: np.ndarray, cell: np.ndarray, count: int) -> np.ndarray:

@@ -28,7 +28,7 @@ def exact(start, width, excess, height=0.1):
     return lower / excess + higher / (excess + height) + 2 * corner
 
 
-@pytest.mark.parametrize("width", [0.05, 1e-3, 1e-5])
+@pytest.mark.parametrize("width", [0.05, 1e-3, 1e-5, 1e-12])
 @pytest.mark.parametrize("starts", [(0.3, 0.61), (0.0, 0.5), (0.25, 1e-4)])
 def test_passages_are_known_to_what_is_allowed(starts, width):
     """A corner where the way starts, or a panel does, lies before the first node."""
