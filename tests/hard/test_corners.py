@@ -100,3 +100,13 @@ def test_slip_maps_over_corners_agree_with_every_slip():
     )
     assert by_map.stats["steps"] < 0.1 * every.stats["steps"]
     assert np.max(np.abs(by_map.z - every.z)) < 1e-3 * eps
+
+
+def test_cells_over_corners_are_what_they_are_alone():
+    """Nodes of slip maps are as many for all cells as for the one that needs most."""
+    eps, gamma = [1e-2, 1e-4, 1e-5], 0.4
+    together = fx.sweep(scene(), eps, [gamma], ts=TS)
+    for one in eps:
+        alone = fx.sweep(scene(), [one], [gamma], ts=TS)
+        off = together.z.sel(eps=one) - alone.z.sel(eps=one)
+        assert float(np.abs(off).max()) < 1e-3 * one

@@ -17,11 +17,11 @@ from .exchange import (
     extrema,
     least_bent_seen,
     least_bent_within,
+    place_of_lowest,
     plain_slopes,
     steepest_surface,
     with_ends_seen,
 )
-from .flattened import place_of_lowest
 from .multistart import StartRuns, best_first
 from .reachable import followed, slopes_asked
 from .settings import SETTINGS

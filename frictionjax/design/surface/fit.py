@@ -28,8 +28,9 @@ from ..common import (
 )
 from .array_surface import fit_to_array, require_plain
 from .barrier import FitShape, FitTask, free_energy
+from .exchange import place_of_lowest
 from .fallback import room_left
-from .flattened import flattened, place_of_lowest
+from .flattened import flattened
 from .least_bent import least_bent
 from .multistart import StartRuns, descended
 from .report import report_fit
@@ -93,12 +94,13 @@ def fit_profile(
     `.identifiability` and `.family` say what is left open. Where no bound is felt it has a
     closed form, or where a slope is flattened is a least distance, taken in one step; where
     the problem is convex, a start whose optimum is proven stands for the others, which do
-    not run. Every iterate
-    is admissible (`1 + a omega > 0`, the bristles' own bounds; free bristles keep 0.1% from
-    the steepest slopes that they follow) and keeps the other bounds with a margin of 0.5%.
-    Where only surfaces nearer to them have the slopes, the least bent of those, by exchange
-    over some places of the lowest slope, is one start more: by hand, it takes
-    1 to 3 s at 16 harmonics, 45 at 40.
+    not run.
+
+    Every iterate is admissible (`1 + a omega > 0`, the bristles' own bounds; free bristles
+    keep 0.1% from the steepest slopes that they follow) and keeps the other bounds with a
+    margin of 0.5%. Where only surfaces nearer to them have the slopes, the least bent of
+    those, by exchange over some places of the lowest slope, is one start more: by hand, it
+    takes 1 to 3 s at 16 harmonics, 45 at 40.
     Targets that no surface meets come back with the best weighted compromise and a
     `.status` and `.message` that say why.
 

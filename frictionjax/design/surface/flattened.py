@@ -2,16 +2,12 @@
 
 In NumPy, as in closed form: nothing to compile. A barrier asks for the lowest slope half a
 period from the highest, where ripples of the optimum need not touch it: it ended up to 7%
-above the optimum (ratio 3.9 of slopes, 4 harmonics), and next to the largest ratio it found
-none.
+above the optimum (ratio 3.9 of slopes, 4 harmonics), and of 2 harmonics it found none next
+to the largest ratio.
 """
 
-from typing import Any
-
-import numpy as np
-
 from .barrier import FitShape, FitTask, kernel_ratio
-from .exchange import bumps, least_bent_seen, plain_slopes
+from .exchange import least_bent_seen, plain_slopes
 from .least_bent import for_all_starts, slopes_agreed, uneven
 from .multistart import StartRuns
 
@@ -29,10 +25,3 @@ def flattened(layout: FitShape, task: FitTask, starts: int) -> StartRuns | None:
     if found is None:
         return None
     return for_all_starts(layout, task, starts, ends, found.waves, found.bound)
-
-
-def place_of_lowest(waves: Any) -> float:
-    """In periods from the highest slope, at most half of one."""
-    places, slopes = bumps(plain_slopes(waves.size // 2), np.asarray(waves))
-    away = float(places[np.argmin(slopes)] - places[np.argmax(slopes)])
-    return abs(away - round(away))

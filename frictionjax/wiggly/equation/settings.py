@@ -55,8 +55,8 @@ class Settings(NamedTuple):
     rounded: float = 2e-11  # over |z|: tolerances times `safety` that are near it
     double_spacing: float = 2.0**-50  # shortest step over the duration: four of floats
     # Times narrower than those on both sides: a branch that is a corner (`landscape.py`).
-    # With corners as branches a polyline took 8 to 160 times as many steps, for the same
-    # states to 1e-5 eps (120 random surfaces against another code, by hand).
+    # With corners as branches a polyline took 8 to 160 times as many steps, for states that
+    # are no nearer to another code's than the accuracy (120 random surfaces, by hand).
     corner: float = 8.0
 
     # Where the load turns at folds (`turns_at_folds.py`).

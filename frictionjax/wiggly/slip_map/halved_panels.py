@@ -8,7 +8,8 @@ from .gauss import GAUSS_NODES, GAUSS_POINTS, TO_LEGENDRE
 from .settings import SETTINGS
 
 _PLACES = 0.5 * (1 + np.concatenate([[-1.0], GAUSS_NODES, [1.0]]))  # of a panel
-_LEFT = (-1.0) ** np.arange(GAUSS_POINTS)  # Legendre polynomials at -1
+# Legendre polynomials at both ends of a panel.
+_AT_ENDS = np.stack([(-1.0) ** np.arange(GAUSS_POINTS), np.ones(GAUSS_POINTS)])
 
 
 def halved_panels(
@@ -19,8 +20,8 @@ def halved_panels(
     """Left ends and widths of panels, shares of each way, (cells, panels) both.
 
     `gaps(cell, shares)`: force in N below the fold's at shares of the way of cells (n,).
-    Of `1/(excess + gap)` under each excess (cells, pulls) the last coefficients, and what
-    series miss at ends of panels, add up to no more than `allowed` (pulls,) of the whole.
+    Of `1/(excess + gap)` under each excess (cells, pulls) the last coefficients of a panel,
+    and what its series misses at its ends, are at most `allowed` (pulls,) of the whole.
     (A corner where the way starts, as fold places do, is between the end and the first
     node.) None where that takes more panels than there may be.
     """
@@ -43,7 +44,7 @@ def halved_panels(
         cell, left = np.repeat(cell[split], 2), np.repeat(left[split], 2)
         width = np.repeat(half, 2)
         left[1::2] += half
-        if cell.size > count * SETTINGS.most_halved:
+        if cell.size > count * SETTINGS.halved_sizes[-1]:
             return None
     cell, left, width = (np.concatenate(column) for column in zip(*done, strict=True))
     most = np.max(np.bincount(cell))
@@ -58,7 +59,7 @@ def halved_panels(
 def _series_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Means over panels, and how rough these are, of values at `_PLACES` of each."""
     series = values[..., 1:-1] @ TO_LEGENDRE.T
-    missed = values[..., [0, -1]] - series @ np.stack([_LEFT, _LEFT**2]).T
+    missed = values[..., [0, -1]] - series @ _AT_ENDS.T
     last = np.sum(np.abs(series[..., -2:]), axis=-1)
     at_ends = SETTINGS.end_weight * np.sum(np.abs(missed), axis=-1)
     return series[..., 0], np.maximum(last, at_ends)

@@ -23,11 +23,10 @@ class Settings(NamedTuple):
     rougher: float = 4.0
     place_sweeps: int = 4  # of Newton's method for the place at an s
     # Corners: panels halved in y (`halved_panels.py`). How much less each may err by, how
-    # much what series miss at their ends counts, and how many there may be.
+    # much what series miss at their ends counts, and to how many they are filled up.
     halved: float = 1e-2
     end_weight: float = 0.03
     halved_sizes: tuple[int, ...] = (32, 64, 128)
-    most_halved: int = 128
     # Sweeps of Newton's method from a guess that keeps the force constant. (Five before
     # others that follow: a slip map takes a seventh longer, and not one of those fewer.)
     first_sweeps: int = 3

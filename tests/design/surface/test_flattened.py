@@ -5,8 +5,9 @@ import pytest
 
 import frictionjax as fx
 from frictionjax.design.surface.barrier import kernel_ratio
+from frictionjax.design.surface.exchange import place_of_lowest
 from frictionjax.design.surface.fit import surface_problem
-from frictionjax.design.surface.flattened import flattened, place_of_lowest
+from frictionjax.design.surface.flattened import flattened
 
 HOMOTHETIC = fx.bristles.Homothetic(1.0)
 SLANTED = fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 0.6)

@@ -4,6 +4,7 @@ from .least_seen import least_bent_seen as least_bent_seen
 from .seen_slopes import SeenSlopes as SeenSlopes
 from .seen_slopes import bumps as bumps
 from .seen_slopes import phases_of as phases_of
+from .seen_slopes import place_of_lowest as place_of_lowest
 from .seen_slopes import plain_slopes as plain_slopes
 from .seen_slopes import shares_seen as shares_seen
 from .seen_slopes import times_shares as times_shares

@@ -77,6 +77,13 @@ def bumps(seen: SeenSlopes, waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return places, seen.at(places) @ waves
 
 
+def place_of_lowest(waves: Any) -> float:
+    """In periods from the highest slope, at most half of one."""
+    places, slopes = bumps(plain_slopes(waves.size // 2), np.asarray(waves))
+    away = float(places[np.argmin(slopes)] - places[np.argmax(slopes)])
+    return abs(away - round(away))
+
+
 def with_ends_seen(seen: SeenSlopes, waves: np.ndarray, ends: Any) -> np.ndarray:
     """The waves changed until the slopes seen are -M at least and P at most, to rounding.
 
