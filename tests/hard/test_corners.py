@@ -92,6 +92,16 @@ def test_fast_slides_over_corners_are_known_by_slip_maps(gamma, eps, most):
     assert found.steps.item() < most
 
 
+@pytest.mark.parametrize(
+    "eps", [[1e-5], pytest.param([1e-3, 1e-4, 1e-6], marks=pytest.mark.slow)]
+)
+def test_balances_close_where_tips_leave_a_corner(eps):
+    """Steps out of a corner are short, but end a hundred times as fast as they are far."""
+    found = fx.sweep(scene(), eps, [1.5, 2.0, 3.0], ts=TS)
+    assert np.all(found.status == int(Status.OK))
+    assert np.all(found.residual < 1e-3 * found.dissipation.isel(time=-1))
+
+
 def test_slip_maps_over_corners_agree_with_every_slip():
     eps, gamma = 1e-4, 0.4
     by_map, every = (

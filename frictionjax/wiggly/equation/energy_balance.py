@@ -35,13 +35,15 @@ def slopes_between(
     """Slopes for interpolating a step over `way` periods, and whether it ends in a rest.
 
     On a step from a slip deep into the rest behind it, the first slope is a spike through
-    which the cubic would swing without bound; where a rest is on a fold, any is. Steps on
-    which the tip turns are steep for their way too, but nearly parabolas. (Taken for
-    spikes: 0.4% of the dissipation of three wells lost behind a kink, at any tolerance.)
+    which the cubic would swing without bound; out of a rest on a corner, the last one is;
+    where a rest is on a fold, any. Steps on which the tip turns are steep for their way
+    too, but nearly parabolas. (Taken for spikes: 0.4% of the dissipation of three wells
+    lost behind a kink, at any tolerance.)
     """
     slope0, _ = _end_slope(start, step)
     slope1, rest = _end_slope(end, step)
-    chord, steepest = way / step, (SETTINGS.steep * jnp.abs(way) + SETTINGS.swing) / step
+    chord = way / step
+    steepest = SETTINGS.steep * jnp.abs(chord)
     size0, size1 = jnp.abs(slope0), jnp.abs(slope1)
     twist = jnp.abs(slope0 + slope1 - 2 * chord)
     spiked = twist > SETTINGS.twist * jnp.maximum(size0, size1)
