@@ -22,9 +22,13 @@ _HEIGHT, _NAP = 1.0, 0.3  # m, rad
 
 def _over(angles: np.ndarray, bristle_of: Callable[[Any], AbstractBristle]) -> Coefficients:
     """Coefficients of the sine at each angle, shape (n,) each."""
-    profile = Sine(jnp.asarray(_OMEGA))
-    law = jax.jit(jax.vmap(lambda angle: friction(profile, bristle_of(angle))))
-    return law(jnp.asarray(angles))
+    return _coefficients(jax.vmap(bristle_of)(jnp.asarray(angles)))
+
+
+@jax.jit
+@jax.vmap
+def _coefficients(bristle: AbstractBristle) -> Coefficients:
+    return friction(Sine(jnp.asarray(_OMEGA)), bristle)
 
 
 def _inside(low: float, high: float) -> np.ndarray:
