@@ -18,6 +18,7 @@ from frictionjax.model import (
     coefficients_jit,
     scene_for,
     scene_of_tables,
+    tabulated,
     tabulated_scene,
 )
 from frictionjax.tables import PiecewiseProfile, SeriesBristle, SeriesProfile, Waves
@@ -142,9 +143,17 @@ def test_scenes_of_all_classes_run_the_same_programs(caplog):
     assert solved("spline", "angular", "points") == set()
 
 
+def sine_by_hand(t):
+    return 6 * jax.numpy.sin(3 * t)
+
+
+def spring_by_hand(z):
+    return z**2
+
+
 def test_scenes_whose_loads_are_functions_are_of_one_kind():
-    kinds, ts = set(), [0.5, 1.0, 2.0]
-    functions = (lambda t: 6 * jax.numpy.sin(3 * t)), (lambda t: 5 * t + t**2)
+    kinds = set()
+    functions = sine_by_hand, (lambda t: 5 * t + t**2)
     scenes = [scene_of().replace(load=L.Custom(fn)) for fn in functions]
     for scene in scenes:
         tables = tabulated_scene(scene, 1e-2)
@@ -152,16 +161,11 @@ def test_scenes_whose_loads_are_functions_are_of_one_kind():
         kinds.add((structure, *(np.shape(leaf) for leaf in leaves)))
         assert tables.untabulated == ""
     assert len(kinds) == 1
-    # As through the load of the library that the first function is.
-    sine = scene_of().replace(load=L.Sine(6.0, 2 * np.pi / 3))
-    found = [fx.solve(s, 1e-2, 1.0, ts, dissipation=False) for s in (scenes[0], sine)]
-    assert all(each.ok for each in found)
-    np.testing.assert_allclose(found[0].z, found[1].z, atol=1e-7 * 1e-2)
 
 
 def test_supports_given_as_functions_are_of_one_kind():
-    kinds, ts = set(), [0.5, 1.0, 2.0]
-    energies = (lambda z: z**2), (lambda z: z**2 + 0.01 * z**4)
+    kinds = set()
+    energies = spring_by_hand, (lambda z: z**2 + 0.01 * z**4)
     scenes = [scene_of().replace(support=fx.supports.Convex(fn)) for fn in energies]
     for scene in scenes:
         tables = tabulated_scene(scene, 1e-2)
@@ -169,8 +173,15 @@ def test_supports_given_as_functions_are_of_one_kind():
         kinds.add((structure, *(np.shape(leaf) for leaf in leaves)))
         assert tables.untabulated == ""
     assert len(kinds) == 1
-    # As on the spring that the first one is.
-    both = [fx.solve(s, 1e-2, 1.0, ts) for s in (scenes[0], scene_of())]
+
+
+def test_functions_are_solved_as_the_parts_that_they_are():
+    """A load and a support at once: one loop for both."""
+    parts = scene_of().replace(load=L.Sine(6.0, 2 * np.pi / 3))
+    support = fx.supports.Convex(spring_by_hand)
+    functions = parts.replace(load=L.Custom(sine_by_hand), support=support)
+    ts = [0.5, 1.0, 2.0]
+    both = [fx.solve(scene, 1e-2, 1.0, ts) for scene in (functions, parts)]
     assert all(each.ok for each in both)
     np.testing.assert_allclose(both[0].z, both[1].z, atol=1e-7 * 1e-2)
     np.testing.assert_allclose(both[0].dissipation, both[1].dissipation, rtol=1e-6)
@@ -274,21 +285,42 @@ def test_sums_of_tips_are_a_surface_of_their_own_at_each_eps():
         np.testing.assert_allclose(found, expected, atol=1e-10)
 
 
-def test_what_no_table_holds_is_told():
+OWN = scene_of().replace(
+    profile=P.Custom(lambda y: 0.02 * jax.numpy.abs(jax.numpy.sin(np.pi * y)) ** 2.5),
+    support=fx.supports.Convex(lambda z: z**2 + 0.01 * jax.numpy.abs(z) ** 3.5),
+    load=BENT,
+)
+FEW_VALUES = {"ts": [1.0], "dissipation": False}
+
+
+def values_told(scene):
+    """What a sweep and a solution say that programs were compiled for."""
+    data = fx.sweep(scene, [0.05], [1.0], suprema=False, **FEW_VALUES)
+    found = fx.solve(scene, 0.05, 1.0, **FEW_VALUES)
+    return data.attrs.get("compiled_for", ""), found.stats["values"]
+
+
+def test_what_no_table_holds_is_told(monkeypatch):
     assert tabulated_scene(scene_of("spline", "angular"), 1e-2).untabulated == ""
-    own = scene_of().replace(
-        profile=P.Custom(lambda y: 0.02 * jax.numpy.abs(jax.numpy.sin(np.pi * y)) ** 2.5),
-        support=fx.supports.Convex(lambda z: z**2 + 0.01 * jax.numpy.abs(z) ** 3.5),
-        load=BENT,
-    )
     said = "support Convex, load Custom, profile Custom"
-    assert tabulated_scene(own, 1e-2).untabulated == said
-    values = {"dissipation": False}
-    data = fx.sweep(own, [0.05], [1.0], [1.0], suprema=False, **values)
-    assert data.attrs["compiled_for"] == said
-    found = fx.solve(own, 0.05, 1.0, [1.0], **values)
-    assert found.stats["values"].endswith(f"compiled for {said}")
-    assert "compiled_for" not in fx.sweep(scene_of(), [0.05], [1.0]).attrs
+    assert tabulated_scene(OWN, 1e-2).untabulated == said
+    of_sweep, of_solution = values_told(scene_of())
+    assert of_sweep == ""
+    assert "compiled for" not in of_solution
+    # As if no table held a spring, whose programs are there.
+    others = tuple(kind for kind in tabulated._KNOWN if kind is not fx.supports.Spring)
+    monkeypatch.setattr(tabulated, "_KNOWN", others)
+    of_sweep, of_solution = values_told(scene_of())
+    assert of_sweep == "support Spring"
+    assert of_solution.endswith("compiled for support Spring")
+
+
+@pytest.mark.slow  # a loop for its parts; wiggly/test_trajectory.py runs one of a given W
+def test_scenes_that_no_table_holds_go_through_lanes():
+    said = "support Convex, load Custom, profile Custom"
+    of_sweep, of_solution = values_told(OWN)
+    assert of_sweep == said
+    assert of_solution.endswith(f"compiled for {said}")
 
 
 def wave(Y):
