@@ -5,7 +5,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from samples import BRISTLES, pair
+from samples import BRISTLES, Formula, pair
 
 import frictionjax as fx
 from frictionjax._checks.arguments import no_more
@@ -37,13 +37,17 @@ def test_alpha_zero_is_named(bristle):
         fx.friction(fx.profiles.Sine(0.1), bristle)
 
 
+def line(slope):
+    return Formula(jnp.multiply, jnp.asarray([slope]))
+
+
 CASES = {
     "slanted, forward": (SINE, fx.bristles.SlantedSpring(1.0, 9.0, 1.0, 1.2)),
     "slanted, mirrored": (SINE, fx.bristles.SlantedSpring(1.0, 9.0, 1.0, -1.2)),
     "angular, the tip jumps": (SINE, fx.bristles.AngularSpring(1.0, 1.05, 1.0, 0.0)),
     "angular, the rod touches": (SINE, fx.bristles.AngularSpring(1.0, 3.0, 1.0, 0.0)),
-    "custom, a > 0": (SINE, fx.bristles.Custom(lambda e: 2.1 * e, lambda e: e)),
-    "custom, a < 0": (SINE, fx.bristles.Custom(lambda e: -2.1 * e, lambda e: e)),
+    "custom, a > 0": (SINE, fx.bristles.Custom(line(2.1), line(1.0))),
+    "custom, a < 0": (SINE, fx.bristles.Custom(line(-2.1), line(1.0))),
 }
 NAMES = {
     "slanted, forward": r"bristle.angle = 1.2: needs omega_plus < cot\(angle\)",
@@ -133,7 +137,7 @@ def test_reach_is_seen_on_a_long_grid():
     surface = fx.profiles.Custom(lambda y: 0.02 * jnp.cos(2 * jnp.pi * y), points=8192)
     rod = fx.bristles.AngularSpring(1.0, 1.05, 1.0, -0.1)
     limit = largest_eps(fx.potential(surface, rod), 50.0)
-    coarse = fx.profiles.Fourier([0.02], [0.0])
+    coarse = fx.profiles.Fourier([0.02, 0.0], [0.0, 0.0])  # programs of the test above
     assert limit == pytest.approx(largest_eps(fx.potential(coarse, rod), 50.0), rel=1e-7)
 
 
@@ -333,62 +337,83 @@ def cosine(Y):
     return 0.2 * jnp.cos(2 * jnp.pi * Y)
 
 
-BY_HAND = {
-    "spring": by_hand(lambda eta: 0.5 * (1 + eta) ** 2, small_sine, 1.0),
-    "exponential": by_hand(lambda eta: jnp.exp(eta), small_sine, 1.0),
-    "root": lambda eps, Y: (jnp.sqrt(1.0 + eps**2 * small_sine(Y) ** 2) - 1.0) / eps**2,
+spring = by_hand(lambda eta: 0.5 * (1 + eta) ** 2, small_sine, 1.0)
+exponential = by_hand(lambda eta: jnp.exp(eta), small_sine, 1.0)
+
+
+def root(eps, Y):
+    return (jnp.sqrt(1.0 + eps**2 * small_sine(Y) ** 2) - 1.0) / eps**2
+
+
+def lost_between(eps, Y, first, last):
+    """Q by hand in a part of the period, without loss elsewhere."""
+    part = (first < Y) & (last > Y)
+    return jnp.where(part, exponential(eps, Y), 0.5 * small_sine(Y) ** 2)
+
+
+def growing(eps, Y, size, power):
+    return size * cosine(Y) / eps**power
+
+
+def leaning(eps, Y, waves, slope):
+    return 0.2 * jnp.cos(2 * jnp.pi * waves * Y) + slope * Y
+
+
+# Functions of eps, Y and two numbers, which most leave.
+MANY = {
+    "spring": lambda eps, Y, *_: spring(eps, Y),
+    "exponential": lambda eps, Y, *_: exponential(eps, Y),
+    "root": lambda eps, Y, *_: root(eps, Y),
+    "lost between": lost_between,
+    "growing": growing,
+    "leaning": leaning,
+    "parabola": lambda eps, Y, *_: Y * (1 - Y),
+    "exact": lambda eps, Y, *_: small_sine(Y) ** 2 / 2 + eps * small_sine(Y) ** 3,
+    "logarithm": lambda eps, Y, *_: cosine(Y) * jnp.log(eps),
+    "bounded": lambda eps, Y, *_: 1e-3 * cosine(Y) / (1e-4 + eps),
+    "bump": lambda eps, Y, *_: jnp.exp(-(((Y - 0.4) / 2e-3) ** 2)),
+    "kinks": lambda eps, Y, *_: jnp.abs(jnp.sin(2 * jnp.pi * Y - 1)),
 }
-
-
-def lost_on(part):
-    """Q by hand where `part(Y)`, without loss elsewhere."""
-    by_loss = BY_HAND["exponential"]
-    return lambda eps, Y: jnp.where(part(Y), by_loss(eps, Y), 0.5 * small_sine(Y) ** 2)
-
-
-LOST = [
-    lost_on(lambda Y: Y < 0.4),
-    lost_on(lambda Y: Y > 0.9),
-    lost_on(lambda Y: jnp.abs(Y - 0.5) < 0.1),
-    lost_on(lambda Y: (Y > 0.2) & (Y < 0.27)),
-]
+LOST = [(-1.0, 0.4), (0.9, 2.0), (0.4, 0.6), (0.2, 0.27)]
 REFUSED = [
-    (lambda eps, Y: 0.2 * jnp.cos(2.2 * jnp.pi * Y), "Q jumps by 0.0382 at the seam"),
-    (lambda eps, Y: cosine(Y) + 1e-4 * Y, "Q jumps by 0.0001 at the seam"),
-    (lambda eps, Y: Y * (1 - Y), "its slope jumps by 2 at the seam"),
-    (lambda eps, Y: cosine(Y) / eps, "126, 8 times as much at eps/8.*bounded as eps"),
-    (lambda eps, Y: cosine(Y) / jnp.sqrt(eps), "2.83 times as much at eps/8"),
-    (lambda eps, Y: 1e-6 * cosine(Y) / eps**2, "64 times as much at eps/8"),
+    (("leaning", 1.1, 0.0), "Q jumps by 0.0382 at the seam"),
+    (("leaning", 1.0, 1e-4), "Q jumps by 0.0001 at the seam"),
+    (("parabola",), "its slope jumps by 2 at the seam"),
+    (("growing", 1.0, 1.0), "126, 8 times as much at eps/8.*bounded as eps"),
+    (("growing", 1.0, 0.5), "2.83 times as much at eps/8"),
+    (("growing", 1e-6, 2.0), "64 times as much at eps/8"),
 ]
 TAKEN = [
-    (lambda eps, Y: small_sine(Y) ** 2 / 2 + eps * small_sine(Y) ** 3, [0.5, 1e-9]),
-    (lambda eps, Y: cosine(Y) * jnp.log(eps), [0.3, 0.01, 1e-10]),
-    (lambda eps, Y: 1e-3 * cosine(Y) / (1e-4 + eps), [0.1]),
-    (lambda eps, Y: 1e-15 * cosine(Y) / eps, [1e-3]),
-    (lambda eps, Y: jnp.exp(-(((Y - 0.4) / 2e-3) ** 2)), [1e-6]),
-    (lambda eps, Y: jnp.abs(jnp.sin(2 * jnp.pi * Y - 1)), [1e-5]),
-    (BY_HAND["exponential"], [1e-4, 1e-5]),
+    (("exact",), [0.5, 1e-9]),
+    (("logarithm",), [0.3, 0.01, 1e-10]),
+    (("bounded",), [0.1]),
+    (("growing", 1e-15, 1.0), [1e-3]),
+    (("bump",), [1e-6]),
+    (("kinks",), [1e-5]),
+    (("exponential",), [1e-4, 1e-5]),
 ]
-MANY = *BY_HAND.values(), *LOST, *(Q for Q, _ in (*REFUSED, *TAKEN[:-1]))
 
 
 class OneOfMany(eqx.Module):
-    """One of `MANY`, by a number: each as it is were a program of its own."""
+    """One of `MANY`, by its place: each as it is were a program of its own."""
 
     which: jax.Array
+    numbers: jax.Array
 
     def __call__(self, eps, Y):
-        return jax.lax.switch(self.which.astype(int), MANY, eps, Y)
+        which = self.which.astype(int)
+        return jax.lax.switch(which, [*MANY.values()], eps, Y, *self.numbers)
 
 
-def given(Q):
+def given(name, *numbers):
     """A sine with that Q of `MANY`."""
-    return fx.GivenPotential(small_sine, OneOfMany(jnp.asarray(MANY.index(Q), float)))
+    which = jnp.asarray(list(MANY).index(name), float)
+    return fx.GivenPotential(small_sine, OneOfMany(which, jnp.array(numbers or (0.0, 0.0))))
 
 
-@pytest.mark.parametrize("case", BY_HAND)
+@pytest.mark.parametrize("case", ["spring", "exponential", "root"])
 def test_a_Q_that_loses_its_digits_is_refused_where_it_does(case):
-    potential = given(BY_HAND[case])
+    potential = given(case)
     require_reach(potential, np.array([0.1, 0.01]))
     with pytest.raises(ValueError, match=r"potential\.Q at eps = 1e-08: noise over"):
         require_reach(potential, np.array([1e-8]))
@@ -415,20 +440,20 @@ def test_a_W_that_loses_its_digits_is_refused(W):
         require_reach(fx.GivenPotential(W), np.array([1e-3]))
 
 
-@pytest.mark.parametrize("Q", LOST)
-def test_digits_lost_on_a_part_of_the_period_are_seen(Q):
+@pytest.mark.parametrize("ends", LOST)
+def test_digits_lost_on_a_part_of_the_period_are_seen(ends):
     with pytest.raises(ValueError, match=r"potential\.Q at eps = 1e-07: noise over"):
-        require_reach(given(Q), np.array([1e-7]))
+        require_reach(given("lost between", *ends), np.array([1e-7]))
 
 
 @pytest.mark.parametrize(("Q", "message"), REFUSED)
 def test_a_Q_that_is_not_periodic_or_not_bounded_is_refused(Q, message):
     with pytest.raises(ValueError, match=rf"potential\.Q at eps = 0\.01 = .*{message}"):
-        require_reach(given(Q), np.array([0.1, 0.01]))
+        require_reach(given(*Q), np.array([0.1, 0.01]))
 
 
 @pytest.mark.parametrize(("Q", "sizes"), TAKEN)
 def test_a_bounded_Q_with_kinks_bumps_or_a_logarithm_is_taken(Q, sizes):
-    potential = given(Q)
+    potential = given(*Q)
     for size in sizes:
         require_reach(potential, np.array([size]))
