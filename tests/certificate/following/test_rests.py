@@ -37,7 +37,7 @@ def distances(z, first=STARTS):
         force=TS - z,
         stretch=np.full(TS.size, EPS),
         pace=np.ones(TS.size),
-        stops=np.array([2.0, 2.0]),
+        stops=np.full(8, 2.0),  # as many as scenes have: one program
     )
     return distances_from_rests(FORCE, VISCOSITY, curve, first)
 
