@@ -20,6 +20,9 @@ from frictionjax.design.surface.report import _series
 from frictionjax.design.surface.settings import SETTINGS
 from frictionjax.design.surface.status import ProfileStatus
 
+# Bounds on surfaces are a program for each number of harmonics: all by one.
+BOUNDED = {"harmonics": 4, "starts": 2}
+
 
 class Rows(NamedTuple):
     """Fourier coefficients of many surfaces."""
@@ -189,7 +192,8 @@ def test_no_surface_bends_less_within_a_bound_on_curvature():
 
 def test_bounds_hold_at_every_iterate():
     target, radius, height = fx.Target(SLANTED, 0.3, -0.2), 0.25, 0.04
-    fit = fx.fit_profile(target, starts=2, smallest_radius=radius, largest_amplitude=height)
+    bounds = {"smallest_radius": radius, "largest_amplitude": height}
+    fit = fx.fit_profile(target, **bounds, **BOUNDED)
     assert fit.success
     known, history = geometry(SLANTED), fit.history
     slopes = slopes_of(history)
@@ -199,11 +203,12 @@ def test_bounds_hold_at_every_iterate():
     heights = slopes_of(history, order=-1)
     assert np.nanmax(np.ptp(heights, axis=-1)) <= height
     assert np.ptp(slopes_of(fit.profile, order=-1)) > 0.97 * height  # this one is felt
-    # Bounds of the extreme slopes are what they say.
+    # Bounds of the extreme slopes are what they say, on rows.
     assert np.nanmax(np.max(slopes, axis=-1) - history.omega_plus) < 1e-2
+    rows = slopes_of(history, points=32 * BOUNDED["harmonics"])
     last = [np.flatnonzero(np.isfinite(row))[-1] for row in history.loss]
     for start, step in enumerate(last):
-        assert history.omega_plus[start, step] >= np.max(slopes[start, step]) - 1e-4
+        assert history.omega_plus[start, step] >= np.max(rows[start, step]) - 1e-8
 
 
 def test_starts_agree_where_theory_says_so():
@@ -227,19 +232,19 @@ def test_starts_agree_where_theory_says_so():
 def test_a_bounded_height_has_local_optima():
     """Several bumps are lower: starts with the lowest slope elsewhere end elsewhere."""
     target = fx.Target(HOMOTHETIC, 0.3, -0.1)
-    bounds = {"largest_amplitude": 0.02, "smallest_radius": 1e-3}
-    fit = fx.fit_profile(target, starts=2, **bounds)
+    bounds = {"largest_amplitude": 0.04, "smallest_radius": 1e-3}
+    fit = fx.fit_profile(target, **bounds, **BOUNDED)
     assert fit.success
     energies = [start.bending_energy for start in fit.starts]
     assert energies == sorted(energies)
     assert energies[-1] > 1.001 * energies[0]
-    assert {start.place for start in fit.starts} == {0.5, 171 / 512}
+    assert {start.place for start in fit.starts} == {0.5, 43 / 128}
 
 
 def test_a_batch_of_starts_equals_each_alone():
     # With bounds that are not felt: by the program of the tests of bounds.
     target, unfelt = fx.Target(ANGULAR, 0.03, -0.1), {"radius": 1e-3, "amplitude": 10.0}
-    problem = surface_problem([target], **unfelt)
+    problem = surface_problem([target], BOUNDED["harmonics"], **unfelt)
     keys, places = jax.random.split(jax.random.PRNGKey(5), 2), np.array([0.5, 0.375])
     known, shares = (problem.layout, SETTINGS.kept, np.asarray(200)), np.zeros((2, 0))
     batch = multistart(*known, problem.task, places, keys, shares)
@@ -353,14 +358,14 @@ def test_units_do_not_matter():
 def test_a_closed_form_is_taken_and_told():
     """The same surface as by descent, to what the barrier leaves; proven to rounding."""
     target = fx.Target(HOMOTHETIC, 0.3, -0.2)
-    fit = fx.fit_profile(target, starts=2)
+    fit = fx.fit_profile(target, **BOUNDED)
     assert fit.success
     assert fit.largest_error < 1e-13
     assert fit.bending_energy == pytest.approx(fit.bending_bound, rel=1e-12)
     assert [(start.steps, start.ran) for start in fit.starts] == [(1, True), (0, False)]
     # With bounds on heights, not felt, the same problem goes through the barrier.
     unfelt = {"largest_amplitude": 10.0, "smallest_radius": 1e-3}
-    other = fx.fit_profile(target, starts=2, **unfelt)
+    other = fx.fit_profile(target, **unfelt, **BOUNDED)
     assert min(start.steps for start in other.starts) > 10
     assert fit.bending_energy <= other.bending_energy <= fit.bending_energy * 1.001
     assert np.max(np.abs(fit.profile.sin - other.profile.sin)) < 1e-3

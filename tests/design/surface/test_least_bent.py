@@ -37,7 +37,9 @@ def waves_of(targets, *args, **bounds):
     return problem.task.slope * found(targets, *args, **bounds).settled.waves
 
 
-@pytest.mark.parametrize("harmonics", [2, 3, 16, 40])
+@pytest.mark.parametrize(  # each number of harmonics is a program of `reach`
+    "harmonics", [2, 16, *(pytest.param(n, marks=pytest.mark.slow) for n in (3, 40))]
+)
 @pytest.mark.parametrize("turned", [False, True])
 def test_is_the_least_energy_there_is(harmonics, turned):
     """Both slopes are reached half a period apart, at the energy of the theorem."""
