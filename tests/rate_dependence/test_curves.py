@@ -168,7 +168,7 @@ def test_temperatures_are_those_of_the_scenes_exponent():
 
 def test_maps_and_curves_are_drawn():
     scene = cosine_scene(fx.effects.Noise(1.0))
-    speeds, warm = [0.01, 0.1, -0.1], [1e-3, 3e-3]
+    speeds, warm = [0.01, 0.1, -0.1], [1e-3, 1.1e-3]  # of one size of box
     found = fx.friction_curve(scene, speeds, EPS, temperatures=warm)
     found["status"][0, 0] = 1
     lines, colours = fx.plot.draw_friction_curve(found).axes[:2]
