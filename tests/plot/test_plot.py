@@ -70,20 +70,20 @@ def test_convergence_shows_points_fits_and_failures():
 def test_every_kind_of_line_that_is_drawn_is_named_and_no_other():
     found = sweep_like(failed=False)
     strip = found.drop_vars(["sup_error", "dissipation_error"])
-    for data in (found, strip):
-        for curves in (None, fx.study(found).curves):
-            figure = fx.plot.draw_convergence(data, fx.study(found).orders, curves)
-            (key,) = figure.legends
-            lines = {
-                t.get_text(): h.get_linestyle()
-                for t, h in zip(key.get_texts(), key.legend_handles, strict=True)
-            }
-            assert lines["fit: its order and 95% interval above"] == "-"
-            axes = drawn(figure)
-            used = {line.get_linestyle() for one in axes for line in one.lines}
-            assert set(lines.values()) == used | {"None"}
-            bottom = min(one.get_legend().get_window_extent().y0 for one in axes)
-            assert 0 <= key.get_window_extent().y0 < key.get_window_extent().y1 <= bottom
+    study = fx.study(found)
+    for data, curves in ((found, None), (strip, study.curves)):
+        figure = fx.plot.draw_convergence(data, study.orders, curves)
+        (key,) = figure.legends
+        lines = {
+            t.get_text(): h.get_linestyle()
+            for t, h in zip(key.get_texts(), key.legend_handles, strict=True)
+        }
+        assert lines["fit: its order and 95% interval above"] == "-"
+        axes = drawn(figure)
+        used = {line.get_linestyle() for one in axes for line in one.lines}
+        assert set(lines.values()) == used | {"None"}
+        bottom = min(one.get_legend().get_window_extent().y0 for one in axes)
+        assert 0 <= key.get_window_extent().y0 < key.get_window_extent().y1 <= bottom
 
 
 def test_names_of_slopes_that_end_together_do_not_touch():

@@ -1,14 +1,17 @@
 """The report of a study: everything in it, nothing taken for a tag."""
 
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 from html_pages import cells_of_table, checked_page
+from matplotlib.figure import Figure
 from sweep_like import sweep_like
 
 import frictionjax as fx
 from frictionjax.io import part_rows
+from frictionjax.report import page
 from frictionjax.report.job import ReportRequest, read_job
 from frictionjax.report.study_results import write_results
 from frictionjax.report.study_words import verdict_sentence
@@ -34,6 +37,13 @@ def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     command = f"frictionjax study '{HOSTILE}.toml' --report"
     return folder, report_of(folder, sweep_like(), [f"Note: {HOSTILE}"], command)
+
+
+@pytest.fixture
+def unpainted(monkeypatch):
+    """Words and files are looked at alone: no picture is painted."""
+    monkeypatch.setattr(page.pictures, "vector_graphic", lambda figure: "<svg></svg>")
+    monkeypatch.setattr(Figure, "savefig", lambda self, path: Path(path).touch())
 
 
 def test_it_needs_nothing_beside_it(written):
@@ -73,6 +83,7 @@ def test_failures_are_told_first_and_by_name(written):
     assert fx.Status.MAX_STEPS.message in text
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_where_none_failed_it_says_so(tmp_path):
     resolved = sweep_like(failed=False).interp(time=np.linspace(0.0, 3.0, 601))
     resolved["status"] = resolved.status.astype(np.int8)
@@ -140,6 +151,7 @@ def test_a_prediction_outside_of_the_interval_is_said():
         assert f"theory predicts {value:.4g}, which lies {where} that interval" in said
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_nothing_is_written_unasked(tmp_path):
     write_results(read_job(None), sweep_like(), tmp_path, 1.0)
     assert not (tmp_path / "report.html").exists()
