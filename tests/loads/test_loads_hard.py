@@ -27,8 +27,8 @@ def opaque(t):
     "fn",
     [
         fast,
-        lambda t: 0.3 * t + 0.1 * fast(t),
-        lambda t: jnp.sin(1e6 * t**2),
+        pytest.param(lambda t: 0.3 * t + 0.1 * fast(t), marks=pytest.mark.slow),
+        pytest.param(lambda t: jnp.sin(1e6 * t**2), marks=pytest.mark.slow),
         lambda t: jnp.mod(jnp.sin(12.9898 * t) * 43758.5453, 1.0),
         lambda t: fast(t) + opaque(t),
     ],
