@@ -213,7 +213,6 @@ def test_supports_of_scenes_with_mass_stay_functions():
 
 @pytest.mark.slow  # two programs of diffrax: 15 s
 def test_solvers_of_diffrax_run_the_same_programs_for_all_classes(caplog):
-    # As many times as sweeps of other tests have, which then share the program.
     ts, method = np.linspace(0.0, 2.0, 61), Rodas5P()
 
     def solved(*names):

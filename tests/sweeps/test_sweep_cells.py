@@ -141,7 +141,9 @@ def test_failed_cells_keep_their_place(data, monkeypatch):
     ts = data.time.values
     said = r"1 of 4 cells failed \(gamma = 5, eps = 0.001: STEP_TOO_SMALL\)"
     with pytest.warns(FailedCells, match=said):
-        mixed = fx.sweep(scene_of(), [0.05, 1e-3], [1.0, 5.0], ts=ts, method=Rodas5P())
+        mixed = fx.sweep(
+            scene_of(), [0.05, 1e-3], [1.0, 5.0], ts, method=Rodas5P(), dissipation=False
+        )
     bad = mixed.sel(gamma=5.0, eps=1e-3)
     assert int(bad.status) == fx.Status.STEP_TOO_SMALL
     assert np.isnan(bad.sup_error)
