@@ -86,6 +86,14 @@ def test_suprema_are_those_of_a_fine_curve(followed):
     assert float(cell.dissipation_error) == pytest.approx(lost, rel=0.05)
 
 
+def dense_points(x, z, gap):
+    """Points of a polyline in a plane, (n, 2), no further apart than `gap`."""
+    counts = np.ceil(np.maximum(np.diff(x), np.abs(np.diff(z))) / gap).astype(int)
+    leg = np.repeat(np.arange(counts.size), counts)
+    share = (np.arange(leg.size) - (np.cumsum(counts) - counts)[leg]) / counts[leg]
+    return np.stack([v[leg] + np.diff(v)[leg] * share for v in (x, z)], axis=1)
+
+
 def test_graphs_are_as_far_as_their_nearest_points(jumping):
     """Of a fine curve and of a limit sampled with its jumps filled, by trees."""
     one, eps = jumping_scene(), EPS[2]
@@ -93,11 +101,8 @@ def test_graphs_are_as_far_as_their_nearest_points(jumping):
     fine, speed = fx.solve(one, eps, 1.0, ts), jumping.attrs["graph_speed"]
     limit = np.asarray(fx.solve_limit(one, ts).z)
     readings = fx.mechanics(one, fx.solve_limit(one, ts))
-    points = []
-    for z in (np.asarray(fine.z), limit):
-        shares = np.arange(50) / 50
-        legs = [v[:-1, None] + np.diff(v)[:, None] * shares for v in (speed * ts, z)]
-        points.append(np.stack([leg.ravel() for leg in legs], axis=1))
+    gap = speed * ts[1] / 4
+    points = [dense_points(speed * ts, z, gap) for z in (np.asarray(fine.z), limit)]
     for time, start, end in zip(
         *(readings[name].values for name in ("jump_time", "jump_from", "jump_to")),
         strict=True,
