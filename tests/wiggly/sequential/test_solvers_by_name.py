@@ -119,6 +119,7 @@ def test_start_may_lie_outside_the_strip():
         fx.solve_limit(scene)
 
 
+@pytest.mark.slow  # as `test_orders` of test_rosenbrock_solvers.py, and down to rounding
 def test_rosenbrock_converges_with_order_five():
     """Fixed steps on a nonlinear, forced equation, above the rounding floor."""
 
