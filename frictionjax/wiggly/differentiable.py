@@ -6,11 +6,11 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from .._compile import Program, hoisted, once_a_scene, strong_arrays
+from .._compile import Program, hoisted, once_a_scene, padded_size, strong_arrays
 from .equation import StepPlan, plan_steps
 from .problem import Problem
 from .reverse_mode import in_reverse_mode, without_derivatives
-from .sequential import Past, integrate
+from .sequential import SETTINGS, Past, integrate
 from .solution import Solution
 
 
@@ -27,6 +27,11 @@ class Options(NamedTuple):
 def _planned(problem: Problem) -> StepPlan:
     scene, eps, gamma, _, accuracy = problem
     return plan_steps(scene, eps, gamma, accuracy)
+
+
+def _plan_of(problem: Problem) -> StepPlan:
+    """Whatever the times."""
+    return _planned(problem._replace(ts=jnp.zeros(0)))
 
 
 def _answered(
@@ -81,12 +86,12 @@ def _differentiable(problem: Problem, options: Options) -> tuple:
 
     Derivatives of one program were traced anew in every process, for 10 s.
     """
-    return _forth(problem, _planned(problem), options)[:2]
+    return _forth(problem, _plan_of(problem), options)[:2]
 
 
 @_differentiable.def_fwd
 def _with_past(perturbed: Any, problem: Problem, options: Options) -> tuple:
-    plan = _planned(problem)
+    plan = _plan_of(problem)
     curve, told, past = _forth(problem, plan, options)
     return (curve, told), (plan, past, curve)
 
@@ -115,10 +120,20 @@ def _of_tips(past: Past) -> Past:
 
 def solve_one_after_the_other(problem: Problem, options: Options) -> Solution:
     problem = strong_arrays(hoisted(problem))
+    ts = problem.ts
     if options.adjoint is None:
-        curve, (status, counts) = _differentiable(in_reverse_mode(problem), options)
+        padded = in_reverse_mode(_with_room(problem))
+        curve, (status, counts) = _differentiable(padded, options)
+        curve = jax.tree_util.tree_map(lambda values: values[: ts.size], curve)
     else:
-        curve, (status, counts), _ = _forth(problem, _planned(problem), options)
+        curve, (status, counts), _ = _forth(problem, _plan_of(problem), options)
     how = f"resolved, every slip, by {type(options.solver).__name__}"
     z, dissipation, residual = curve
-    return Solution(problem.ts, z, dissipation, residual, status, counts, how)
+    return Solution(ts, z, dissipation, residual, status, counts, how)
+
+
+def _with_room(problem: Problem) -> Problem:
+    """The last time again and again, so that other numbers of times compile nothing."""
+    more = padded_size(problem.ts.size, SETTINGS.times) - problem.ts.size
+    again = jnp.broadcast_to(problem.ts[-1:], (more,))
+    return problem._replace(ts=jnp.concatenate([problem.ts, again]))

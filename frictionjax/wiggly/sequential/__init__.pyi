@@ -5,5 +5,6 @@ from .own_methods import MAX_STEPS as MAX_STEPS
 from .own_methods import OURS as OURS
 from .own_methods import is_ours as is_ours
 from .rosenbrock_solvers import Rodas4P2 as Rodas4P2
+from .settings import SETTINGS as SETTINGS
 from .solvers_by_name import solver_of as solver_of
 from .way_adjoint import Past as Past

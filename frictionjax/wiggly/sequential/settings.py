@@ -11,6 +11,8 @@ class Settings(NamedTuple):
     # Of the energy dissipated: residual of a balance that is good. Solutions leave about
     # 1e-6 of it.
     residual: float = 0.05
+    # Times that there is room for in the smallest program; in the next, four times as many.
+    times: int = 64
 
     # Derivatives in reverse mode (`way_adjoint.py`).
     # Steps of a piece, all of which are kept. Memory of all is cleared for each piece: 2^14
