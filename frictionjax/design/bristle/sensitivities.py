@@ -7,7 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from ..._checks import Real, is_concrete
+from ..._checks import Real, call_text, is_concrete
 from ..._compile import once_a_scene, padded_size
 from ...bristles import AbstractBristle
 from ...profiles import AbstractProfile
@@ -36,6 +36,10 @@ class Sensitivities(eqx.Module):
     omega_minus: Real
     bristle: AbstractBristle
     profile: AbstractProfile
+
+    def __repr__(self) -> str:
+        names = [field.name for field in dataclasses.fields(self)]
+        return call_text(type(self).__name__, {n: getattr(self, n) for n in names})
 
 
 def _one(free: FreeParameter, bristle, profile, value, which, again: bool):

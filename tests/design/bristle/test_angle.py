@@ -309,6 +309,7 @@ def test_sensitivities_are_central_differences(free):
     np.testing.assert_allclose(jax.grad(fn)(jnp.asarray(p)), slopes, rtol=1e-7, atol=1e-9)
     surface, part = build(p)
     found = fx.fit_angle(surface, part, ratio=p[0], free=free).sensitivities
+    assert repr(found).startswith(f"Sensitivities(\n  target={float(found.target):.6g},")
     assert found.target == pytest.approx(slopes[0], rel=1e-7)
     own = jnp.concatenate([found.profile.cos, found.profile.sin])
     np.testing.assert_allclose(own, slopes[1:5], rtol=1e-7)
@@ -328,6 +329,7 @@ def test_sensitivities_of_a_batch_are_those_of_its_targets():
     batch = fx.fit_angle(WAVES, SLANTED, ratio=np.array([1.1, 1.3, 1.2]))
     many = batch.sensitivities
     one = batch[1].sensitivities
+    assert "f64[" not in repr(many)
     lane = jax.tree_util.tree_map(lambda leaf: leaf[1], many)
     for found, expected in zip(*map(jax.tree_util.tree_leaves, (lane, one)), strict=True):
         np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
