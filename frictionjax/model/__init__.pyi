@@ -1,4 +1,5 @@
 from .admissibility import is_admitted as is_admitted
+from .admissibility import reaches as reaches
 from .admissibility import require_admissible as require_admissible
 from .admissibility import require_reach as require_reach
 from .admissibility import rounding_of_alpha as rounding_of_alpha

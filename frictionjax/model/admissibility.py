@@ -124,7 +124,8 @@ def _margins(
     return in_chunks(_some_margins, SETTINGS.margins, (near,), (eps,))
 
 
-def _fits(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:
+def reaches(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:
+    """Whether a bristle follows the surface at each eps (m), as `require_reach` asks."""
     if not isinstance(potential, BristlePotential):  # no tip beside z: G = 1
         return np.ones(np.shape(eps), dtype=bool)
     stretch, clear = _margins(potential, eps)
@@ -163,7 +164,7 @@ def require_reach(potential: AbstractPotential, eps: Float[ArrayLike, "*shape"])
     while isinstance(potential, SummedPotential):  # all reach where one does
         potential = potential.single
     sizes = np.unique(np.asarray(eps, dtype=float))
-    fits = _fits(potential, sizes)
+    fits = reaches(potential, sizes)
     if np.all(fits):
         require_given(potential, sizes)
         return
@@ -180,7 +181,7 @@ def largest_eps(potential: AbstractPotential, upper: float) -> float:
     A scan over 12 decades for the first failure, then bisection in log eps.
     """
     grid = np.geomspace(1e-12 * upper, upper, 241)
-    fails = ~_fits(potential, grid)
+    fails = ~reaches(potential, grid)
     if not fails.any():
         return upper
     first = int(np.argmax(fails))

@@ -147,7 +147,8 @@ def tolerance(
     the first-order estimate (delta method), which is right where spreads are small.
 
     Samples that no bristle could follow, or with a number out of its range, are counted,
-    and left out of mean, std and quantiles.
+    and left out of mean, std and quantiles. Those that pull where the nominal part presses
+    (alpha < 0: contact has to be held) are counted as `flipped`, and stay in.
 
     `eps` (m): how the steady slides there spread too, with `gamma`, `rate` and `support` as
     in `steady_slide`, in the same samples: `slide_nominal`, `slide_mean`, `slide_std`,

@@ -11,6 +11,7 @@ from jaxtyping import Array
 
 from ..._checks import (
     checked,
+    kind_of,
     known_numbers,
     require,
     require_flags,
@@ -132,8 +133,8 @@ def design_map(
 
     `progress`: a line on standard error where it takes more than two seconds.
 
-    Raises `ValueError` for unknown names, values that are not finite or positive, a
-    profile that is missing, or too much, and other effects, by name.
+    Raises `ValueError` for what is no bristle, unknown names, values that are not finite or
+    positive, a profile that is missing, or too much, and other effects, by name.
 
     >>> angles, asymmetries = ("angle", [0.5, 1.0]), ("asymmetry", [1.0, 2.0])
     >>> found = fx.design_map(scene.bristle, x=angles, y=asymmetries)
@@ -141,6 +142,8 @@ def design_map(
     [[1.245 1.905]
      [2.512 4.131]]
     """
+    known = isinstance(bristle, AbstractBristle)
+    require(known, "bristle", kind_of(bristle), "a part of frictionjax.bristles")
     require_x64(bristle)
     require_flags(pulling=pulling, progress=progress)
     bristle = checked(bristle)

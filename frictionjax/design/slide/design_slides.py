@@ -8,10 +8,10 @@ from jaxtyping import Float, Int
 
 from ..._checks import as_real, require, require_real
 from ...effects import AbstractEffect, LeadingOrder
-from ...model import BristlePotential, with_effects
+from ...model import BristlePotential, reaches, with_effects
 from ...supports import Spring
 from ...wiggly import Status
-from .slide_friction import spring_of
+from .slide_friction import spring_of, where_found
 from .slide_rows import find_both_ways, slide_table
 
 MEANINGS = {
@@ -98,8 +98,11 @@ def slides_of_designs(
     tables = [slide_table(wiggle, numbers.eps) for wiggle in wiggles]
     eps, *others = numbers
     places, sizes = np.arange(known.size), np.full(known.size, eps)
-    sides, least = find_both_ways(tables, places, sizes, *others)
+    found, least = find_both_ways(tables, places, sizes, *others)
+    sides = where_found(found, np)
+    # Of a rod that is too short at this eps what its series says means nothing.
     follows = least[:, 0] > 0
+    follows &= np.array([reaches(wiggle, np.array([eps]))[0] for wiggle in wiggles], bool)
     kept = known[follows]
     status[kept] = sides.code.max(axis=1)[follows]
     for name in MEANINGS:

@@ -2,6 +2,10 @@
 
 from typing import NamedTuple
 
+from ...tables import SETTINGS as TABLES
+
+_TERMS = tuple(degree + 1 for degree in TABLES.degrees[1:])
+
 
 class Settings(NamedTuple):
     """Of slides at several eps, of searches along a number, of designs."""
@@ -24,7 +28,9 @@ class Settings(NamedTuple):
     # Slides of known parts, rows of one program (`slide_rows.py`).
     rows: int = 2  # of a call
     harmonics: tuple[int, ...] = (8, 16, 64)
-    terms: int = 9  # of the bristle's series: the most that there are
+    # Of the bristle's series: one more than degrees. (One size of 9 left rods near upright,
+    # of 12 degrees, without slides.)
+    terms: tuple[int, ...] = _TERMS
     open: float = 1e-7  # of log D over a period: mean forces right to that
     # Of the force: more than that by a viscosity that floats resolve is told.
     added: float = 1e-5

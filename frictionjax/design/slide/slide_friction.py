@@ -124,13 +124,13 @@ class SlideForces(NamedTuple):
 def slide_at(potential, eps: Real, gamma: Real, rate: Real, stiffness: Real) -> SteadySlide:
     """The steady slide at one eps; without checks, traceable."""
     both = slides_both_ways(potential, gamma, rate, stiffness, eps)[0]
-    return _joined(eps, _where_found(both, jnp))
+    return _joined(eps, where_found(both, jnp))
 
 
 _NOT_FOUND = [int(s) for s in (Status.MAX_STEPS, Status.NOT_FINITE, Status.SOLVER_FAILED)]
 
 
-def _where_found(both: Sides, by: Any) -> Sides:
+def where_found(both: Sides, by: Any) -> Sides:
     """Forces, and derivatives of them, NaN where none is found; `by` NumPy or JAX."""
     found = by.where(by.isin(both.code, by.asarray(_NOT_FOUND)), by.nan, 1.0)
     return both._replace(mean=both.mean * found, peak=both.peak * found)
@@ -271,7 +271,7 @@ def _known_forces(
     if array is not None:
         cells = [(tables[i], float(e)) for i, e in zip(which, eps, strict=True)]
         found = _of_many(found, cells, (gamma, rate, stiffness), np.asarray(array.offsets))
-    return Sides(*(as_jax(column) for column in _where_found(found, np)))
+    return Sides(*(as_jax(column) for column in where_found(found, np)))
 
 
 def _of_many(
@@ -295,5 +295,5 @@ def _forces_of(
     count = eps.shape[0]
     more = padded_size(count, 1, SETTINGS.room) - count
     padded = jnp.pad(eps, (0, more), mode="edge")
-    found = _where_found(differentiable_sides(AskedSlides(wiggle, *numbers, padded)), jnp)
+    found = where_found(differentiable_sides(AskedSlides(wiggle, *numbers, padded)), jnp)
     return jax.tree_util.tree_map(lambda leaf: leaf[:count], found)

@@ -56,20 +56,19 @@ def slide_table(potential: AbstractPotential, highest: float) -> AbstractPotenti
         return table
     profile, bristle = table.profile, table.bristle
     if isinstance(profile, SeriesProfile):
-        count = profile.cos.size
-        size = min((n for n in SETTINGS.harmonics if n >= count), default=count)
-        profile = Waves(
-            profile.mean, *(_filled(c, size) for c in (profile.cos, profile.sin))
-        )
+        waves = (_filled(c, SETTINGS.harmonics) for c in (profile.cos, profile.sin))
+        profile = Waves(profile.mean, *waves)
     if isinstance(bristle, SeriesBristle):
         ahead, climb = (_filled(c, SETTINGS.terms) for c in (bristle.ahead, bristle.climb))
         bristle = SeriesBristle(ahead, climb, bristle.per_height)
     return BristlePotential(profile, bristle)
 
 
-def _filled(terms: Any, count: int) -> Float[Array, " count"]:
-    """Terms of a series, the further ones 0."""
-    return jnp.pad(terms, (0, count - terms.shape[0]))
+def _filled(terms: Any, sizes: tuple[int, ...]) -> Float[Array, " size"]:
+    """Terms of a series, in the smallest size that holds them: the further ones are 0."""
+    count = terms.shape[0]
+    size = min((n for n in sizes if n >= count), default=count)
+    return jnp.pad(terms, (0, size - count))
 
 
 def find_slides(tables: Sequence[AbstractPotential], rows: SlideRows) -> KnownSlides:

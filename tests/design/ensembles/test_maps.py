@@ -176,6 +176,8 @@ def test_a_map_of_slides_says_that_its_picture_is_of_the_limit():
         ({"profile": WAVES}, "profile = 'Fourier': needs none beside asymmetry"),
         ({"y": ("height", [1.0])}, "profile = None: needs a surface, or asymmetry"),
         ({"steepness": -1.0}, "steepness = -1: needs steepness > 0"),
+        ({"bristle": None}, "bristle = .*: needs a part of frictionjax.bristles"),
+        ({"bristle": WAVES}, "bristle = 'Fourier': needs a part of frictionjax.bristles"),
     ],
 )
 def test_wrong_arguments_are_named(change, words):
@@ -201,3 +203,14 @@ def test_maps_at_an_eps_hold_the_slides_of_all_designs():
         assert float(cell[name]) == pytest.approx(float(getattr(alone, name)), rel=1e-7)
     assert int(cell.status) == fx.Status.OK
     assert "mean_plus" not in fx.design_map(bristle, *axes, steepness=0.1)
+
+
+def test_a_rod_too_short_for_an_eps_has_no_slide_there():
+    """Its series goes on where the rod does not: 0 N and -inf, of another status."""
+    rod = fx.bristles.AngularSpring(1.0, 1.01, 1.0, 0.1)
+    axes = ("length", [1.01, 1.3]), ("asymmetry", [2.0])
+    data = fx.design_map(rod, *axes, eps=0.35)
+    assert bool(data.admissible.all())
+    assert data.status.values.ravel().tolist() == [fx.Status.NOT_TRIED, fx.Status.OK]
+    for name in ("mean_plus", "mean_minus", "peak_plus", "peak_minus"):
+        assert np.isfinite(data[name].values.ravel()).tolist() == [False, True]

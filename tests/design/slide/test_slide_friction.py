@@ -8,7 +8,7 @@ from reference import series
 from scipy.integrate import solve_ivp
 
 import frictionjax as fx
-from frictionjax.design.slide.slide_friction import _joined, _where_found
+from frictionjax.design.slide.slide_friction import _joined, where_found
 from frictionjax.design.slide.slide_sides import Sides
 from frictionjax.wiggly.equation.status import Status
 
@@ -60,7 +60,7 @@ def plain_slide(eps, gamma, rate, stiffness, sign, slips=6):
 def test_forces_of_a_slide_that_is_not_found_are_no_numbers(status, by):
     """A slide of a traced bristle that there is not had a mean of 0 N and a status."""
     code, one = by.asarray([int(Status.OK), int(status)]), by.asarray([1.0, -2.0])
-    slide = _joined(by.asarray(0.1), _where_found(Sides(one, one, code, one), by))
+    slide = _joined(by.asarray(0.1), where_found(Sides(one, one, code, one), by))
     lost = status in (Status.MAX_STEPS, Status.NOT_FINITE, Status.SOLVER_FAILED)
     assert slide.mean_plus == slide.peak_plus == 1.0
     assert [np.isnan(f) for f in (slide.mean_minus, slide.peak_minus)] == [lost, lost]
@@ -100,6 +100,19 @@ def test_mean_force_is_what_the_engine_dissipates_in_a_slip():
     np.testing.assert_allclose(
         -np.diff(run.dissipation) / (10 * eps), found.mean_minus, rtol=1e-5
     )
+
+
+def test_a_rod_that_is_hardly_longer_than_high_slides_as_the_engine_says():
+    """Its series has 12 degrees, others 8 at most."""
+    rod = fx.bristles.AngularSpring(1.0, 1.05, 1.0, 0.1)
+    found = fx.steady_slide(SINE, rod, [0.01, 0.2])
+    assert np.all(found.ok)
+    for rate, mean in ((1.0, found.mean_plus[1]), (-1.0, found.mean_minus[1])):
+        load = fx.loads.Ramp(rate)
+        scene = fx.Scene(SINE, rod, fx.supports.Spring(1.0), load, duration=4.2)
+        run = fx.solve(scene, 0.2, 1.0, ts=[4.0, 4.2], accuracy=1e-6)
+        spent = float(np.diff(run.dissipation)[0])
+        assert spent / (0.2 * rate) == pytest.approx(float(mean), rel=1e-5)
 
 
 def test_a_design_for_a_ratio_shows_it_at_small_eps():
