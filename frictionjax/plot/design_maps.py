@@ -71,7 +71,10 @@ def _panel(figure: Any, axes: Any, data: "xr.Dataset", name: str) -> None:
     data = data.sortby([across, up])
     x, y = data[across].values, data[up].values
     edges = _edges(x, False), _edges(y, str(up) == "asymmetry")
-    shown, levels, texts = _shown(name, data[name].values)
+    admissible = data["admissible"].values
+    # Of alpha, which is told where the bristle pulls too.
+    values = np.where(admissible, data[name].values, np.nan)
+    shown, levels, texts = _shown(name, values)
     norm = _norm(name, shown)
     axes.set_facecolor("#f4f4f4")
     colours = "RdBu_r" if name in _SIGNED else "viridis"
@@ -83,7 +86,7 @@ def _panel(figure: Any, axes: Any, data: "xr.Dataset", name: str) -> None:
     alpha = data["alpha"].values
     for side in (alpha > 0, alpha < 0):  # friction jumps from one to the other
         _contours(axes, x, y, np.where(side, shown, np.nan), levels, texts)
-    handles = _left_out(axes, edges, data["admissible"].values, alpha)
+    handles = _left_out(axes, edges, admissible, alpha)
     _key(axes, handles + _sides(axes, x, y, alpha))
     axes.grid(False)
     title = _TITLES[name] + (_LIMIT if "eps" in data.attrs else "")

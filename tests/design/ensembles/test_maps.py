@@ -120,6 +120,16 @@ def test_pictures_show_the_numbers_and_what_is_not_admissible():
         fx.plot.draw_design_map(data, "colour")
 
 
+def test_normal_forces_are_coloured_where_bristles_may_press():
+    """Those of bristles that pull, 12 N and less, took all the colours."""
+    data = fx.design_map(SLANTED, ("angle", np.linspace(-1.5, 1.5, 31)))
+    assert np.isfinite(data.alpha.where(data.pulls)).any()
+    mesh = fx.plot.draw_design_map(data, "alpha").axes[0].collections[0]
+    shown = np.ma.filled(mesh.get_array(), np.nan).reshape(121, 31)
+    np.testing.assert_allclose(shown, data.alpha.where(data.admissible))
+    assert mesh.norm.vmax <= float(data.alpha.max())
+
+
 def mapped_cells(collection):
     """Lowest and highest x and y of each cell."""
     corners = np.array([path.vertices for path in collection.get_paths()])
