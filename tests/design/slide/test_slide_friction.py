@@ -21,7 +21,7 @@ VERTICAL = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
 ANGULAR = fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, 0.3)
 
 
-def plain_slide(eps, gamma, rate, stiffness, sign, slips=12):
+def plain_slide(eps, gamma, rate, stiffness, sign, slips=24):
     """Mean and peak force of one slip after some, by SciPy's Radau in time, by hand."""
     w, lean, cosine = series(COS, SIN), np.tan(ANGLE), np.cos(ANGLE)
 
