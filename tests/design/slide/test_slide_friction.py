@@ -21,7 +21,7 @@ VERTICAL = fx.bristles.VerticalSpring(1.0, 2.0, 1.0)
 ANGULAR = fx.bristles.AngularSpring(1.0, 2**0.5, 1.0, 0.3)
 
 
-def plain_slide(eps, gamma, rate, stiffness, sign, slips=24):
+def plain_slide(eps, gamma, rate, stiffness, sign, slips):
     """Mean and peak force of one slip after some, by SciPy's Radau in time, by hand."""
     w, lean, cosine = series(COS, SIN), np.tan(ANGLE), np.cos(ANGLE)
 
@@ -68,16 +68,16 @@ def test_forces_of_a_slide_that_is_not_found_are_no_numbers(status, by):
 
 
 @pytest.mark.parametrize(
-    ("eps", "gamma", "rate"),
-    [pytest.param(0.05, 1.0, 1.0, marks=pytest.mark.slow), (0.1, 1.5, 0.3)],
+    ("eps", "gamma", "rate", "slips"),  # until SciPy's slide is steady
+    [pytest.param(0.05, 1.0, 1.0, 24, marks=pytest.mark.slow), (0.1, 1.5, 0.3, 6)],
 )
-def test_forces_are_those_of_an_integration_in_time(eps, gamma, rate):
+def test_forces_are_those_of_an_integration_in_time(eps, gamma, rate, slips):
     support = fx.supports.Spring(0.7)
     found = fx.steady_slide(WAVES, SLANTED, eps, gamma, rate, support)
     assert found.ok
     assert found.status == Status.OK
-    right = plain_slide(eps, gamma, rate, 0.7, 1)
-    left = plain_slide(eps, gamma, rate, 0.7, -1)
+    right = plain_slide(eps, gamma, rate, 0.7, 1, slips)
+    left = plain_slide(eps, gamma, rate, 0.7, -1, slips)
     means, peaks = (found.mean_plus, found.mean_minus), (found.peak_plus, found.peak_minus)
     np.testing.assert_allclose(means, (right[0], left[0]), rtol=1e-6)
     # SciPy's is the largest of some 500 samples.
