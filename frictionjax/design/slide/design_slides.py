@@ -90,23 +90,18 @@ def slides_of_designs(
 
     `effects`: those of their scene that `slide_numbers` takes.
     """
-    count = len(designs)
+    count, (eps, *others) = len(designs), numbers
     forces = {name: np.full(count, np.nan) for name in MEANINGS}
     status = np.full(count, int(Status.NOT_TRIED))
-    known = np.array([n for n, design in enumerate(designs) if design is not None], int)
-    wiggles = [with_effects(designs[n], effects) for n in known]
-    tables = [slide_table(wiggle, numbers.eps) for wiggle in wiggles]
-    eps, *others = numbers
-    places, sizes = np.arange(known.size), np.full(known.size, eps)
-    found, least = find_both_ways(tables, places, sizes, *others)
-    sides = where_found(found, np)
-    # Of a rod that is too short at this eps what its series says means nothing.
-    follows = least[:, 0] > 0
-    follows &= np.array([reaches(wiggle, np.array([eps]))[0] for wiggle in wiggles], bool)
-    kept = known[follows]
-    status[kept] = sides.code.max(axis=1)[follows]
+    wiggles = {n: with_effects(one, effects) for n, one in enumerate(designs) if one}
+    known = [n for n, wiggle in wiggles.items() if reaches(wiggle, np.array([eps]))[0]]
+    if not known:
+        return DesignSlides(forces, status)
+    tables = [slide_table(wiggles[n], eps) for n in known]
+    places, sizes = np.arange(len(known)), np.full(len(known), eps)
+    sides = where_found(find_both_ways(tables, places, sizes, *others), np)
+    status[known] = sides.code.max(axis=1)
     for name in MEANINGS:
         force, side = name.split("_")
-        values = getattr(sides, force)[:, 0 if side == "plus" else 1]
-        forces[name][kept] = values[follows]
+        forces[name][known] = getattr(sides, force)[:, 0 if side == "plus" else 1]
     return DesignSlides(forces, status)

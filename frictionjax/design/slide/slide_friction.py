@@ -267,7 +267,7 @@ def _known_forces(
     else:
         tables, which = [slide_table(wiggle, float(eps.max()))], np.zeros(eps.size, int)
     gamma, rate, stiffness = (float(number) for number in numbers)
-    found = find_both_ways(tables, which, eps, gamma, rate, stiffness).sides
+    found = find_both_ways(tables, which, eps, gamma, rate, stiffness)
     if array is not None:
         cells = [(tables[i], float(e)) for i, e in zip(which, eps, strict=True)]
         found = _of_many(found, cells, (gamma, rate, stiffness), np.asarray(array.offsets))

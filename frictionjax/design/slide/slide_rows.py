@@ -12,9 +12,9 @@ from jaxtyping import Array, Float, Int
 from ..._compile import ARRAYS, Program, side_by_side
 from ...model import AbstractPotential, BristlePotential, tabulated_potentials
 from ...tables import SeriesBristle, SeriesProfile, Waves
-from .periodic_orbit import known_slide_forces, survey_ground
+from .periodic_orbit import known_slide_forces
 from .settings import SETTINGS
-from .slide_sides import Sides, one_side, slide_scene
+from .slide_sides import Sides, one_side
 
 
 class SlideRows(NamedTuple):
@@ -27,13 +27,6 @@ class SlideRows(NamedTuple):
     rate: Float[np.ndarray, " n"]
     stiffness: Float[np.ndarray, " n"]
     sign: Float[np.ndarray, " n"]
-
-
-class KnownSlides(NamedTuple):
-    """Slides, arrays (n,), and the smallest `G = dz/dp` on the way of each."""
-
-    sides: Sides
-    least: Float[np.ndarray, " n"]
 
 
 def rows_of_slides(
@@ -71,9 +64,9 @@ def _filled(terms: Any, sizes: tuple[int, ...]) -> Float[Array, " size"]:
     return jnp.pad(terms, (0, size - count))
 
 
-def find_slides(tables: Sequence[AbstractPotential], rows: SlideRows) -> KnownSlides:
+def find_slides(tables: Sequence[AbstractPotential], rows: SlideRows) -> Sides:
     """The slide of each row, about 4 ms of a core each, on all cores that work here."""
-    found = np.full((len(Sides._fields) + 1, rows.eps.size), np.nan)
+    found = np.full((len(Sides._fields), rows.eps.size), np.nan)
 
     def find(some: list[int]) -> list[np.ndarray]:
         filled = some + some[-1:] * (SETTINGS.rows - len(some))
@@ -84,7 +77,7 @@ def find_slides(tables: Sequence[AbstractPotential], rows: SlideRows) -> KnownSl
     calls = _calls([_kind(tables[which]) for which in rows.table])
     for some, part in zip(calls, side_by_side("slides", find, calls), strict=True):
         found[:, some] = part
-    return KnownSlides(Sides(*found[:-1]), found[-1])
+    return Sides(*found)
 
 
 def _calls(kinds: Sequence[tuple]) -> list[list[int]]:
@@ -103,13 +96,12 @@ def find_both_ways(
     gamma: float,
     rate: float,
     stiffness: float,
-) -> KnownSlides:
+) -> Sides:
     """To the right and to the left, arrays (n, 2); arguments as in `SlideRows`."""
     which, both = np.repeat(table, 2), np.repeat(eps, 2)
     signs = np.tile([1.0, -1.0], eps.size)
     rows = rows_of_slides(which, both, gamma, rate, stiffness, signs)
-    sides, least = find_slides(tables, rows)
-    return KnownSlides(Sides(*(c.reshape(-1, 2) for c in sides)), least.reshape(-1, 2))
+    return Sides(*(column.reshape(-1, 2) for column in find_slides(tables, rows)))
 
 
 def _kind(table: AbstractPotential) -> tuple:
@@ -141,7 +133,7 @@ def _sides(
         own, eps, gamma, rate, stiffness, sign = row
         numbers = eqx.combine(own, rest), eps, gamma, rate, stiffness, sign
         sides, _ = one_side(*numbers, known_slide_forces)
-        return *sides, survey_ground(slide_scene(*numbers))[2]
+        return tuple(sides)
 
     # One after the other: side by side they took 9 s to trace and compile for 4.5, and no
     # less time each, as all wait for the slowest.

@@ -29,7 +29,7 @@ def slides_at_speeds(
     rates = stiffness * np.abs(speeds)
     rows = rows_of_slides(0, eps, gamma, rates, stiffness, np.sign(speeds))
     table = slide_table(potential, eps)
-    found = find_slides([table], rows).sides
+    found = find_slides([table], rows)
     if phases is None or np.all(phases == phases[0]):
         return found
     rises, which = np.unique(rates, return_inverse=True)
