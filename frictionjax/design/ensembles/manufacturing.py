@@ -166,7 +166,8 @@ def tolerance(
     shares of these.
 
     Raises `ValueError` as `friction` does for the nominal parts, and for unknown names,
-    spreads that are negative or not finite, counts below 2, and other effects, by name.
+    spreads that are negative or not finite, counts below 2, numbers of a slide without an
+    eps, and other effects, by name.
 
     >>> fx.tolerance(scene.profile, scene.bristle, {"angle": 0.02})
     10000 samples, 0.000% inadmissible and left out
@@ -188,8 +189,7 @@ def tolerance(
     good = levels.ndim == 1 and np.all((levels >= 0) & (levels <= 1))
     require(good, "quantiles", quantiles, "numbers in [0, 1], shape (n,)")
     law = friction(profile, bristle)  # raises where the nominal parts are inadmissible
-    slide = eps, gamma, rate, support, scene.effects
-    asked = None if eps is None else slide_numbers(*slide)
+    asked = slide_numbers(eps, gamma, rate, support, scene.effects)
     with waiting("tolerance", progress) as tell:
         tell(f"{samples} samples")
         found = _dataset(profile, bristle, spread, samples, seed, levels, asked, scene)
@@ -223,30 +223,28 @@ def _dataset(
     side = np.concatenate([np.asarray(p[1]) for p in parts])[: samples + 1]
     slopes = _jacobian(numbers, where, bristle, profile, scene.apart, values[0])
     slopes = share[:, None] * np.asarray(slopes)
-    drawn = np.where(side[1:, None] != 0, found[1:], np.nan)
-    known = drawn[side[1:] != 0]
-    few = len(known) < 2
-    blank = np.full(4, np.nan)
-    cuts = np.full((levels.size, 4), np.nan) if few else np.quantile(known, levels, axis=0)
-    columns = {
-        "nominal": ("quantity", found[0]),
-        "mean": ("quantity", blank if few else known.mean(axis=0)),
-        "std": ("quantity", blank if few else known.std(axis=0, ddof=1)),
-        "first_order": ("quantity", np.sqrt(slopes**2 @ stds**2)),
-        "by_number": (("quantity", "number"), np.abs(slopes) * stds),
-        "quantiles": (("quantile", "quantity"), cuts),
-        "samples": (("sample", "quantity"), drawn),
-        "inadmissible": ((), float(np.mean(side[1:] == 0))),
-        "flipped": ((), float(np.mean(side[1:] * side[0] < 0))),
+    columns = _statistics(np.where(side[:, None] != 0, found, np.nan), levels, "quantity")
+    columns |= {
+        "first_order": (
+            "quantity",
+            np.sqrt(slopes**2 @ stds**2),
+            {"long_name": "standard deviation by the delta method"},
+        ),
+        "by_number": (
+            ("quantity", "number"),
+            np.abs(slopes) * stds,
+            {"long_name": "first-order std that a number alone would cause"},
+        ),
+        "inadmissible": _share(side[1:] == 0, "of samples that cannot follow"),
+        "flipped": _share(side[1:] * side[0] < 0, "of samples of another sign of alpha"),
     }
     coords = {
         "quantity": list(QUANTITIES),
+        "unit": ("quantity", ["1" if name == "ratio" else "N" for name in QUANTITIES]),
         "quantile": levels,
         "number": [s.name for s in spread],
     }
-    told = {"long_name": "first-order std that a number alone would cause"}
     data = xr.Dataset(columns, coords, attrs={"seed": seed})
-    data["by_number"].attrs = told
     if asked is None:
         return data
     designs = [
@@ -269,19 +267,43 @@ def _slide_columns(
     """How the slides of designs spread, the nominal one first."""
     slides = slides_of_designs(designs, asked, effects)
     forces = np.stack([slides.forces[name] for name in MEANINGS], axis=1)
-    drawn = np.where((slides.status == int(Status.OK))[:, None], forces, np.nan)
-    known = drawn[1:][np.isfinite(drawn[1:, 0])]
-    blank, few = np.full(len(MEANINGS), np.nan), len(known) < 2
-    cuts = [blank] * levels.size if few else np.quantile(known, levels, axis=0)
+    good = slides.status == int(Status.OK)
+    spread = _statistics(np.where(good[:, None], forces, np.nan), levels, "force")
+    told = {"long_name": "how the slides ended", **Status.flags()}
     return {
         "force": ("force", list(MEANINGS)),
-        "slide_nominal": ("force", drawn[0]),
-        "slide_mean": ("force", blank if few else known.mean(axis=0)),
-        "slide_std": ("force", blank if few else known.std(axis=0, ddof=1)),
-        "slide_quantiles": (("quantile", "force"), np.asarray(cuts)),
-        "slide_samples": (("sample", "force"), drawn[1:]),
-        "status": ("sample", slides.status[1:].astype(np.int8), Status.flags()),
+        **{
+            f"slide_{name}": (dims, values, meaning | {"units": "N"})
+            for name, (dims, values, meaning) in spread.items()
+        },
+        "status": ("sample", slides.status[1:].astype(np.int8), told),
     }
+
+
+def _statistics(
+    values: Float[np.ndarray, " n m"], levels: Float[np.ndarray, " q"], over: str
+) -> dict[str, tuple]:
+    """Of parts as they are, the first row, and of how the others spread; NaN left out."""
+    drawn = values[1:]
+    known = drawn[~np.isnan(drawn[:, 0])]
+    blank, few = np.full(values.shape[1], np.nan), len(known) < 2
+    cuts = [blank] * levels.size if few else np.quantile(known, levels, axis=0)
+    found: dict[str, tuple] = {
+        "nominal": (over, values[0], "parts as they are"),
+        "mean": (over, blank if few else known.mean(axis=0), "mean of samples"),
+        "std": (
+            over,
+            blank if few else known.std(axis=0, ddof=1),
+            "standard deviation of samples",
+        ),
+        "quantiles": (("quantile", over), np.asarray(cuts), "quantiles of samples"),
+        "samples": (("sample", over), drawn, "samples, NaN where left out"),
+    }
+    return {n: (*column, {"long_name": told}) for n, (*column, told) in found.items()}
+
+
+def _share(there: Bool[np.ndarray, " n"], of_what: str) -> tuple:
+    return (), float(np.mean(there)), {"units": "1", "long_name": f"share {of_what}"}
 
 
 def _spreads(bristle, profile, spreads: Any) -> list[_Spread]:

@@ -97,7 +97,7 @@ def design_map(
     x: tuple[str, Any] | str = "angle",
     y: tuple[str, Any] | str = "asymmetry",
     profile: AbstractProfile | None = None,
-    steepness: float = 0.2,
+    steepness: float = SETTINGS.steepness,
     pulling: bool = False,
     *,
     eps: Any = None,
@@ -114,7 +114,7 @@ def design_map(
     (omega_plus - omega_minus)/2 are the surface's: see `asymmetric_profile`. Angles and
     the surface's numbers have values of their own where none are given. `profile`: the
     surface where neither axis is one of its numbers; `steepness`: where only `asymmetry`
-    is.
+    is, 0.2 where none is given.
 
     Returns an `xarray.Dataset` over y and x: `rho_plus, rho_minus` (N), `ratio` =
     -rho_plus/rho_minus, `difference`, `contrast` = (rho_plus + rho_minus)/(rho_plus -
@@ -134,7 +134,8 @@ def design_map(
     `progress`: a line on standard error where it takes more than two seconds.
 
     Raises `ValueError` for what is no bristle, unknown names, values that are not finite or
-    positive, a profile that is missing, or too much, and other effects, by name.
+    positive, a profile that is missing, or too much, a steepness or numbers of a slide that
+    nothing is asked of, and other effects, by name.
 
     >>> angles, asymmetries = ("angle", [0.5, 1.0]), ("asymmetry", [1.0, 2.0])
     >>> found = fx.design_map(scene.bristle, x=angles, y=asymmetries)
@@ -152,8 +153,7 @@ def design_map(
     names = [axis[0] for axis in axes]
     require(names[0] != names[1], "y", names[1], "another name than x")
     scene = effects_of_scene(effects, Engine.DESIGN_MAP, [bristle])
-    slide = eps, gamma, rate, support, scene.effects
-    asked = None if eps is None else slide_numbers(*slide)
+    asked = slide_numbers(eps, gamma, rate, support, scene.effects)
     slopes = _base(bristle, names, profile, steepness, scene)
     frees = tuple(axis[2] for axis in axes)
     across, up = (axis[1] for axis in axes)
@@ -250,6 +250,10 @@ def _axis(bristle, label: str, given: Any) -> tuple[str, np.ndarray, FreeParamet
 def _base(bristle, names, profile, steepness, scene: SceneEffects) -> np.ndarray:
     """Steepness and asymmetry before the axes change them."""
     own = [name for name in names if name in SURFACE]
+    if profile is not None or "steepness" in names:
+        kept = np.array_equal(steepness, SETTINGS.steepness)
+        needs = "neither a profile nor steepness as an axis beside it"
+        require(kept, "steepness", steepness, needs)
     if own or profile is None:
         require(own, "profile", None, "a surface, or asymmetry or steepness as an axis")
         require(profile is None, "profile", type(profile).__name__, f"none beside {own[0]}")

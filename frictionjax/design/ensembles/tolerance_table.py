@@ -13,8 +13,9 @@ class Tolerance:
 
     `data`: an `xarray.Dataset` over `quantity`: `nominal`, `mean`, `std` of the samples,
     `first_order` (std by the delta method), `quantiles`, all over admissible samples, and
-    `samples` themselves, NaN where inadmissible. `inadmissible`: their share. `flipped`:
-    the share in which alpha, and with it the direction of friction, changed sign.
+    `samples` themselves, NaN where inadmissible; `unit`: of each quantity. `inadmissible`:
+    their share. `flipped`: the share in which alpha, and with it the direction of friction,
+    changed sign.
     """
 
     def __init__(self, data: xr.Dataset):

@@ -62,11 +62,15 @@ def slide_numbers(
     rate: Any,
     support: Spring | None,
     effects: Sequence[AbstractEffect] = (),
-) -> SlideNumbers:
-    """The numbers, checked.
+) -> SlideNumbers | None:
+    """The numbers, checked; None where there is no eps, and so no slide.
 
-    Raises `ValueError` as `steady_slide` does, and for effects but `LeadingOrder`.
+    Raises `ValueError` as `steady_slide` does, for effects but `LeadingOrder`, and for
+    numbers of a slide that nobody asks for.
     """
+    if eps is None:
+        _require_usual(gamma=(gamma, 1.0), rate=(rate, 1.0), support=(support, None))
+        return None
     for effect in effects:
         alone = isinstance(effect, LeadingOrder)
         needs = "LeadingOrder alone where eps is given: steady_slide, of one design"
@@ -79,6 +83,13 @@ def slide_numbers(
         rate=float(as_real(rate)),
         stiffness=float(spring_of(support).stiffness),
     )
+
+
+def _require_usual(**given: tuple[Any, Any]) -> None:
+    """Of each name a value and the one that it has by itself."""
+    for name, (value, usual) in given.items():
+        alone = value is usual or (usual is not None and np.array_equal(value, usual))
+        require(alone, name, value, "eps beside it: friction in the limit has no slide")
 
 
 def slides_of_designs(

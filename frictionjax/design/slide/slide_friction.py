@@ -221,7 +221,7 @@ def steady_slide(
 
     Raises `ValueError` as `friction` does, for an eps above which `G > 0` fails, for
     numbers that are not positive, for other effects, and for tips of an array whose forces
-    cancel. A slide that is not found has its `status`.
+    cancel. A slide that is not found has forces of NaN, and its `status`.
 
     >>> slide = fx.steady_slide(scene.profile, scene.bristle, eps=0.01)
     >>> print(f"{slide.mean_plus:.4f} N, {slide.mean_minus:.4f} N: {slide.status.name}")

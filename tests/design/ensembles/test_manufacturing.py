@@ -70,6 +70,13 @@ def test_inadmissible_and_flipped_samples_are_counted():
     assert short.inadmissible == pytest.approx(np.mean(heights <= 0), abs=1e-12)
 
 
+def test_numbers_have_meanings_and_units():
+    data = fx.tolerance(WAVES, SLANTED, {"angle": 0.01}, samples=10).data
+    assert all("long_name" in data[name].attrs for name in data.data_vars)
+    units = dict(zip(data["quantity"].values, data.unit.values, strict=True))
+    assert units == {"rho_plus": "N", "rho_minus": "N", "ratio": "1", "difference": "N"}
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -84,6 +91,7 @@ def test_inadmissible_and_flipped_samples_are_counted():
         ({"samples": 1}, "samples = 1: needs a whole number"),
         ({"quantiles": [1.5]}, r"quantiles = \[1.5\]: needs numbers in"),
         ({"bristle": fx.bristles.SlantedSpring(1.0, 9.0, 1.0, 1.48)}, "bristle.angle"),
+        ({"gamma": 0.5}, "gamma = 0.5: needs eps beside it"),
     ],
 )
 def test_wrong_arguments_are_named(change, words):
@@ -110,4 +118,6 @@ def test_slides_at_an_eps_spread_with_the_numbers():
     assert np.corrcoef(samples[:, 0], limit)[0, 1] > 0.999
     assert np.all(data.status == int(fx.Status.OK))
     assert "Steady slides at eps = 0.01 m, 0 without one" in repr(found)
+    assert all("long_name" in data[name].attrs for name in data.data_vars)
+    assert data.slide_std.units == data.slide_samples.units == "N"
     assert "slide_mean" not in fx.tolerance(profile, bristle, spreads, samples=10).data

@@ -45,7 +45,6 @@ def test_no_design_has_no_slide(found):
     assert all(np.isnan(forces[1]) for forces in found.forces.values())
 
 
-@pytest.mark.slow
 def test_bristles_without_contact_are_not_tried():
     # Longer than high by 5%: at eps = 1 hills reach higher than that.
     lying = fx.bristles.AngularSpring(1.0, 1.05, 1.0, 0.04)
