@@ -31,11 +31,20 @@ _TITLES = {
     "difference": "Difference $\\rho_+ + \\rho_-$ (N)",
     "alpha": "Normal force without friction $\\alpha$ (N)",
 }
+_SLIDES = {
+    f"{force}_{side}": f"{words} force of a slide to the {way} (N)"
+    for force, words in (("mean", "Mean"), ("peak", "Largest"))
+    for side, way in (("plus", "right"), ("minus", "left"))
+}
 _LIMIT = ", limit $\\epsilon \\to 0$"
 _SIGNED = ("ratio", "contrast", "difference", "alpha")
 _RATIOS = (1 / 10, 1 / 5, 1 / 3, 1 / 2, 2 / 3, 1, 1.5, 2, 3, 5, 10)
 # What is left out of a map, and how it is hatched.
-_LEFT = ("////", "not admissible"), ("....", "$\\alpha$ < 0: the bristle pulls")
+_LEFT = (
+    ("////", "not admissible"),
+    ("....", "$\\alpha$ < 0: the bristle pulls"),
+    ("xxxx", "no slide that can be trusted at this $\\epsilon$"),
+)
 
 
 @styled
@@ -46,8 +55,9 @@ def draw_design_map(data: "xr.Dataset", quantities: Any = ("ratio", "contrast"))
     Ratios are coloured by their logarithm, so that left and right look alike; colours end
     at the 2nd and 98th of a hundred values, and arrows on the bar say so. Each cell lies
     about its design, up to half the way to the next. Hatched: no bristle there can follow
-    the surface; dotted: it would pull, and may not. Of a map with `eps` the limit is drawn,
-    as titles say; its slides are numbers of the data set.
+    the surface; dotted: it would pull, and may not. Of a map with `eps` titles say what is
+    of the limit; `mean_plus`, `mean_minus`, `peak_plus` and `peak_minus` are its slides,
+    crossed where their `status` is not OK.
 
     Raises `ValueError` for a quantity that the data set does not hold.
 
@@ -57,13 +67,25 @@ def draw_design_map(data: "xr.Dataset", quantities: Any = ("ratio", "contrast"))
     angle of the bristle $\theta$ (rad)
     """
     names = [quantities] if isinstance(quantities, str) else list(quantities)
+    titles = _titles(data)
     for name in names:
-        known = ", ".join(_TITLES)
-        require(name in _TITLES and name in data, "quantities", name, f"one of {known}")
+        there = ", ".join(one for one in titles if one in data)
+        good = name in titles and name in data
+        require(good, "quantities", name, f"one of {there}")
     figure, grid = new_figure(1, len(names), 5.6 * len(names), 4.6)
     for axes, name in zip(grid[0], names, strict=True):
         _panel(figure, axes, data, name)
+        axes.set_title(titles[name])
     return figure
+
+
+def _titles(data: "xr.Dataset") -> dict[str, str]:
+    """Of each quantity; of a map with an eps, with what it is told for."""
+    if "eps" not in data.attrs:
+        return _TITLES | _SLIDES
+    limit = {name: title + _LIMIT for name, title in _TITLES.items()}
+    at = f", $\\epsilon$ = {data.attrs['eps']:.3g} m"
+    return limit | {name: title + at for name, title in _SLIDES.items()}
 
 
 def _panel(figure: Any, axes: Any, data: "xr.Dataset", name: str) -> None:
@@ -72,30 +94,39 @@ def _panel(figure: Any, axes: Any, data: "xr.Dataset", name: str) -> None:
     x, y = data[across].values, data[up].values
     edges = _edges(x, False), _edges(y, str(up) == "asymmetry")
     admissible = data["admissible"].values
+    trusted = data["status"].values == 0 if name in _SLIDES else admissible
     # Of alpha, which is told where the bristle pulls too.
-    values = np.where(admissible, data[name].values, np.nan)
-    shown, levels, texts = _shown(name, values)
-    norm = _norm(name, shown)
+    values = np.where(admissible & trusted, data[name].values, np.nan)
     axes.set_facecolor("#f4f4f4")
+    alpha = data["alpha"].values
+    if np.isfinite(values).any():
+        shown, levels, texts = _shown(name, values)
+        _coloured(figure, axes, edges, name, (shown, levels, texts))
+        for side in (alpha > 0, alpha < 0):  # friction jumps from one to the other
+            _contours(axes, x, y, np.where(side, shown, np.nan), levels, texts)
+    pulls = ~admissible & (alpha < 0)  # known, but not asked for
+    outside = ~admissible & ~pulls, pulls, admissible & ~trusted
+    handles = _left_out(axes, edges, outside)
+    _key(axes, handles + _sides(axes, x, y, alpha))
+    axes.grid(False)
+    axes.set(xlabel=number_label(str(across)), ylabel=number_label(str(up)))
+    if str(up) == "asymmetry":
+        axes.set_yscale("log")
+        ticks = [v for v in _RATIOS if y.min() <= v <= y.max()]
+        axes.set_yticks(ticks, labels=[_ratio_text(v) for v in ticks])
+        axes.minorticks_off()
+
+
+def _coloured(figure: Any, axes: Any, edges: Any, name: str, what: tuple) -> None:
+    """Cells and the bar of their colours; `what`: as of `_shown`."""
+    shown, levels, texts = what
+    norm = _norm(name, shown)
     colours = "RdBu_r" if name in _SIGNED else "viridis"
     mesh = axes.pcolormesh(*edges, shown, cmap=colours, norm=norm, rasterized=True)
     bar = figure.colorbar(mesh, ax=axes, extend=_beyond(shown, norm), pad=0.02)
     inside = [v for v in levels if norm.vmin <= v <= norm.vmax]
     bar.set_ticks(inside, labels=[texts[v] for v in inside])
     bar.outline.set_visible(False)
-    alpha = data["alpha"].values
-    for side in (alpha > 0, alpha < 0):  # friction jumps from one to the other
-        _contours(axes, x, y, np.where(side, shown, np.nan), levels, texts)
-    handles = _left_out(axes, edges, admissible, alpha)
-    _key(axes, handles + _sides(axes, x, y, alpha))
-    axes.grid(False)
-    title = _TITLES[name] + (_LIMIT if "eps" in data.attrs else "")
-    axes.set(xlabel=number_label(str(across)), ylabel=number_label(str(up)), title=title)
-    if str(up) == "asymmetry":
-        axes.set_yscale("log")
-        ticks = [v for v in _RATIOS if y.min() <= v <= y.max()]
-        axes.set_yticks(ticks, labels=[_ratio_text(v) for v in ticks])
-        axes.minorticks_off()
 
 
 def _shown(name: str, values: np.ndarray) -> tuple[np.ndarray, list[float], dict]:
@@ -107,7 +138,7 @@ def _shown(name: str, values: np.ndarray) -> tuple[np.ndarray, list[float], dict
     low, high = np.nanpercentile(values, (2, 98))
     ticks = matplotlib.ticker.MaxNLocator(7).tick_values(low, high)
     levels = [float(v) for v in ticks if low <= v <= high]
-    return values, levels, {v: f"{v:.3g}" for v in levels}
+    return values, levels, {v: f"{v:.6g}" for v in levels}
 
 
 def _ratio_text(value: float) -> str:
@@ -162,16 +193,12 @@ def _edges(values: np.ndarray, ratios: bool) -> np.ndarray:
 
 
 def _left_out(
-    axes: Any,
-    edges: tuple[np.ndarray, np.ndarray],
-    admissible: np.ndarray,
-    alpha: np.ndarray,
+    axes: Any, edges: tuple[np.ndarray, np.ndarray], left: tuple[np.ndarray, ...]
 ) -> list[Any]:
-    """Hatch the cells where nothing is admissible; what that is called, for a legend."""
-    pulls = ~admissible & (alpha < 0)  # known, but not asked for
+    """Hatch the cells that are left out; what each kind is called, for a legend."""
     handles = []
     look: Any = {"edgecolor": GUIDE, "linewidth": 0.0}
-    for outside, (hatch, label) in zip((~admissible & ~pulls, pulls), _LEFT, strict=True):
+    for outside, (hatch, label) in zip(left, _LEFT, strict=True):
         if not outside.any():
             continue
         with matplotlib.rc_context({"hatch.linewidth": 0.5}):
@@ -195,7 +222,7 @@ def _corners(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 def _sides(axes: Any, x: np.ndarray, y: np.ndarray, alpha: np.ndarray) -> list[Any]:
     """A dotted line where alpha changes sign; what it is called, for a legend."""
-    if min(alpha.shape) < 2 or not np.nanmin(alpha) < 0 < np.nanmax(alpha):
+    if min(alpha.shape) < 2 or not ((alpha < 0).any() and (alpha > 0).any()):
         return []
     axes.contour(x, y, alpha, levels=[0.0], colors="#222222", linestyles="dotted")
     label = "$\\alpha$ = 0: the bristle presses on one side, pulls on the other"

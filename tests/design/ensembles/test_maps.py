@@ -173,6 +173,30 @@ def test_a_map_of_slides_says_that_its_picture_is_of_the_limit():
     assert [title.endswith("limit $\\epsilon \\to 0$") for title in titles] == [False, True]
 
 
+def test_pictures_of_slides_show_those_that_can_be_trusted():
+    axes = ("angle", [0.2, 0.4, 0.6]), ("asymmetry", [0.5, 1.0])
+    data = fx.design_map(SLANTED, *axes, eps=0.05)
+    data["status"][0, 1] = fx.Status.STEP_TOO_SMALL
+    axes = fx.plot.draw_design_map(data, "mean_plus").axes[0]
+    assert axes.get_title(loc="left").endswith("(N), $\\epsilon$ = 0.05 m")
+    mesh, crossed = axes.collections[0], axes.collections[-1]
+    shown = np.ma.filled(mesh.get_array(), np.nan)
+    expected = data.mean_plus.where(data.status == 0).values
+    np.testing.assert_array_equal(shown, expected)
+    assert crossed.get_hatch() == "xxxx"
+    np.testing.assert_allclose(mapped_cells(crossed), [(0.3, 0.5**1.5, 0.5, 0.5**0.5)])
+    with pytest.raises(ValueError, match="quantities = 'peak': needs one of ratio,"):
+        fx.plot.draw_design_map(data, "peak")
+
+
+def test_a_map_on_which_nothing_is_admissible_is_drawn():
+    steep = ("angle", [-1.4, -1.3]), ("asymmetry", [1.0, 2.0])
+    data = fx.design_map(fx.bristles.SlantedSpring(1.0, 2.4, 1.0, 1.0), *steep)
+    assert not data.admissible.any()
+    axes = fx.plot.draw_design_map(data, "alpha").axes
+    assert [one.get_hatch() for one in axes[0].collections] == ["////", "...."]
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -186,6 +210,10 @@ def test_a_map_of_slides_says_that_its_picture_is_of_the_limit():
         ({"profile": WAVES}, "profile = 'Fourier': needs none beside asymmetry"),
         ({"y": ("height", [1.0])}, "profile = None: needs a surface, or asymmetry"),
         ({"steepness": -1.0}, "steepness = -1: needs steepness > 0"),
+        ({"x": "steepness", "steepness": 0.3}, "steepness = 0.3: needs neither a profile"),
+        ({"gamma": 0.5}, "gamma = 0.5: needs eps beside it"),
+        ({"rate": [2.0]}, r"rate = \[2\.\]: needs eps beside it"),
+        ({"support": fx.supports.Spring(2.0)}, "support = .*: needs eps beside it"),
         ({"bristle": None}, "bristle = .*: needs a part of frictionjax.bristles"),
         ({"bristle": WAVES}, "bristle = 'Fourier': needs a part of frictionjax.bristles"),
     ],
