@@ -58,8 +58,8 @@ def ensemble(
     share `step curvature/viscosity` (at most 0.05; curvature: the largest of Phi + V_eps,
     N/m) of what it moves in the time `viscosity/curvature`. In a well of 1.3 N/m, under a
     load of 1 N and 3 s, at eps = 0.1, gamma = 1, T = 1e-3: 0.012 eps at `step_time`, 0.032
-    beside `time`, where the interval of 20,000 paths is +- 0.0012; the mean of `work` is off
-    by 3e-4 to 9e-4 J (by hand).
+    beside `time`, where the interval of 20,000 paths is +- 0.0012; the mean of `work` is
+    off by 3e-4 to 9e-4 J (by hand).
 
     `progress`: a line on standard error where it takes more than two seconds.
 
