@@ -38,6 +38,8 @@ def times_that_move(
     the period of 0.14 J/s for -0.21, and of a `Sine` a second one of -0.57 J/s^2 for 0.22.
     A clip at the moving corner is made twice, which changes nothing.
     """
+    if not turns.size:  # of a ramp
+        return ts, jnp.zeros(ts.shape, bool)
     last = turns.shape[0] - 1
     after = jnp.searchsorted(turns, ts, method="sort")  # no loop beside that of the clips
     times, beside = ts, jnp.zeros(ts.shape, bool)

@@ -6,7 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Bool, Float, Int
 
 from .._checks import (
     CodedResult,
@@ -28,6 +28,7 @@ from ..effects import Engine, NapFlip, nap_flip_among
 from ..loads import AbstractPull, turning_points_of
 from ..model import (
     Scene,
+    are_times_of,
     coefficients_jit,
     dissipation_potential,
     known_turning_points,
@@ -51,11 +52,14 @@ _COLUMNS = {
 }
 
 
+_ROUNDED = 4 * float(np.finfo(float).eps)  # of a strip's edges
+
+
 class LimitStatus(Outcome):
     """Why a limit solution can or cannot be trusted; `message` says it for people."""
 
     OK = 0, "every number can be trusted"
-    NOT_FINITE = 1, "not finite, or the load turns more often than there is room for"
+    NOT_FINITE = 1, "not finite: traced numbers are out of range, or turns have no room"
 
 
 class LimitSolution(ShownNumbers, SelfDrawn, CodedResult, eqx.Module):
@@ -192,7 +196,10 @@ def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSo
         until = jax.lax.stop_gradient(jnp.asarray(scene.duration))
         corners = turning_points_of(scene.load, until, scene.turns)
         parts = scene.load, scene.support, scene.z0, corners
-        return LimitSolution(ts, *_limit_at(*parts, found, ts))
+        # What known numbers would be refused for is NaN; as a factor: derivatives too.
+        good = are_times_of(scene, ts) & _starts_in_strip(scene, found)
+        columns = _limit_at(*parts, found, ts)
+        return LimitSolution(ts, *(c * jnp.where(good, 1.0, jnp.nan) for c in columns))
     # Known numbers compile nothing, whatever the parts.
     turns = known_turning_points(scene.load, scene.duration, scene.turns)
     grid = np.concatenate([ts, turns])
@@ -205,6 +212,13 @@ def _solve(scene: Scene, found: Coefficients, ts: Float[Array, " n"]) -> LimitSo
     if np.any(np.isnan(turns)):  # more than there is room for
         z, spent = np.full_like(z, np.nan), np.full_like(z, np.nan)
     return LimitSolution(ts, as_jax(z[back]), as_jax(spent[back]))
+
+
+def _starts_in_strip(scene: Scene, found: Coefficients) -> Bool[Array, ""]:
+    """As `require_start_in_strip` asks, of traced numbers."""
+    lower, upper = strip(scene.support, found, scene.load(jnp.zeros(())))
+    slack = _ROUNDED * jnp.maximum(jnp.abs(lower), jnp.abs(upper))
+    return (scene.z0 >= lower - slack) & (scene.z0 <= upper + slack)
 
 
 def require_start_in_strip(scene: Scene) -> None:
@@ -223,7 +237,7 @@ def require_start_in_strip(scene: Scene) -> None:
     found = coefficients_jit(scene.potential)
     strips = strips_at(scene, float(found.rho_plus), float(found.rho_minus), np.zeros(1))
     _, lower, upper = (float(v[0]) for v in strips)
-    slack = 4 * float(np.finfo(float).eps) * max(abs(lower), abs(upper))
+    slack = _ROUNDED * max(abs(lower), abs(upper))
     z0 = float(scene.z0)
     low, high = no_less(lower, 9), no_more(upper, 9)
     needs = f"z_minus(0) <= z0 <= z_plus(0), the interval [{low}, {high}]"
@@ -254,7 +268,8 @@ def solve_limit(scene: Scene, ts: Any = None) -> LimitSolution:
     `.status`.
 
     Raises `ValueError` for bad times, 32 bits, or z0 outside the strip at t = 0 (with the
-    allowed interval). Source: the play operator, see A. Mielke and T. Roubicek,
+    allowed interval); of traced numbers times and z0 of that kind are NaN, and a status.
+    Source: the play operator, see A. Mielke and T. Roubicek,
     Rate-Independent Systems (2015).
 
     With `effects.NapFlip` it is a play operator with modes: between its slides the root

@@ -17,6 +17,7 @@ from .potentials import no_rest as no_rest
 from .potentials import potential as potential
 from .potentials import smallest_stretch as smallest_stretch
 from .scene import Scene as Scene
+from .scene import are_times_of as are_times_of
 from .scene import known_scene as known_scene
 from .scene import require_curve as require_curve
 from .scene import require_instants as require_instants

@@ -7,7 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from .._checks import (
     ByIdentity,
@@ -364,6 +364,14 @@ def require_times(scene: Scene, ts: Any, fallback: int = 201) -> Float[Array, " 
     if known[0] >= 0 and known[-1] <= end:
         return ts
     return jnp.asarray(np.clip(known, 0.0, end))
+
+
+def are_times_of(scene: Scene, ts: Float[Array, " n"]) -> Bool[Array, ""]:
+    """Whether times, traced ones too, are such as `require_times` asks for."""
+    end = jnp.asarray(scene.duration)
+    slack = (SETTINGS.rounded + ts.size) * float(jnp.finfo(float).eps) * end
+    inside = (ts >= -slack) & (ts <= end + slack)
+    return jnp.all(inside) & jnp.all(jnp.diff(ts) >= 0)
 
 
 def _refuse_times(times: Any, needs: str) -> None:

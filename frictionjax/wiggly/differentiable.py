@@ -5,9 +5,11 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+from jaxtyping import Array, Bool
 
 from .._compile import Program, hoisted, once_a_scene, padded_size, strong_arrays
-from .equation import StepPlan, plan_steps
+from ..model import are_times_of
+from .equation import Status, StepPlan, keeps_contact, plan_steps
 from .problem import Problem
 from .reverse_mode import in_reverse_mode, without_derivatives
 from .sequential import SETTINGS, Past, integrate
@@ -23,21 +25,31 @@ class Options(NamedTuple):
     adjoint: Any
 
 
+class Plan(NamedTuple):
+    """Of steps; `good`: whether there is such a motion at all, as known numbers have to say
+    before anything runs."""
+
+    steps: StepPlan
+    good: Bool[Array, ""]
+
+
 @once_a_scene
-def _planned(problem: Problem) -> StepPlan:
+def _planned(problem: Problem) -> Plan:
     scene, eps, gamma, _, accuracy = problem
-    return plan_steps(scene, eps, gamma, accuracy)
+    good = (eps > 0) & (gamma > 0) & keeps_contact(scene.potential, eps)
+    return Plan(plan_steps(scene, eps, gamma, accuracy), good)
 
 
-def _plan_of(problem: Problem) -> StepPlan:
+def _plan_of(problem: Problem) -> Plan:
     """Whatever the times."""
     return _planned(problem._replace(ts=jnp.zeros(0)))
 
 
 def _answered(
-    problem: Problem, plan: StepPlan, options: Options, past: Past | None = None
+    problem: Problem, plans: Plan, options: Options, past: Past | None = None
 ) -> tuple:
     scene, eps, gamma, ts, _ = problem
+    plan = plans.steps
     found = integrate(
         scene,
         eps,
@@ -57,20 +69,24 @@ def _answered(
         "tolerance": plan.tolerance,
         "dissipation_gap": found.dissipation_gap,
     }
+    good = plans.good & are_times_of(scene, ts)
+    # As a factor: derivatives are NaN too.
+    valid = jnp.where(good, 1.0, jnp.nan)
     # What of a `Solution` has derivatives.
-    curve = found.z, found.dissipation, found.residual
-    return curve, (found.status, counts), found.past
+    curve = jax.tree_util.tree_map(
+        lambda values: values * valid, (found.z, found.dissipation, found.residual)
+    )
+    status = jnp.where(good, found.status, int(Status.NOT_FINITE))
+    return curve, (status, counts), found.past
 
 
 @Program
-def _forth(problem: Problem, plan: StepPlan, options: Options) -> tuple:
+def _forth(problem: Problem, plan: Plan, options: Options) -> tuple:
     return _answered(problem, plan, options)
 
 
 @Program
-def _back(
-    problem: Problem, plan: StepPlan, options: Options, past: Past, by: tuple
-) -> Problem:
+def _back(problem: Problem, plan: Plan, options: Options, past: Past, by: tuple) -> Problem:
     """Derivatives by the problem of what has those `by` the curve, or its first part."""
     moving, still = eqx.partition(problem, eqx.is_inexact_array)
 

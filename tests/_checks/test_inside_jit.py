@@ -34,17 +34,28 @@ def test_solve_where_some_arguments_are_traced(name, value):
     assert abs(float(run(value)) - float(_end())) < 1e-3 * 0.05
 
 
-def test_traced_numbers_that_are_none_end_at_once():
-    """Steps of NaN were made until there was room for no more, for minutes."""
+def test_traced_numbers_that_are_none_or_not_allowed_end_at_once():
+    """Steps of NaN were made until there was room for no more, for minutes.
 
-    def run(eps, gamma):
-        return fx.solve(_SCENE, eps, gamma, _TIMES)
+    Of what known numbers are refused for there were values, and status OK.
+    """
 
-    eps, gamma = jnp.array([0.05, -1.0, jnp.nan, 0.0, 0.05]), jnp.ones(5).at[4].set(jnp.nan)
-    found = jax.jit(jax.vmap(run))(eps, gamma)
-    assert found.status.tolist() == [fx.Status.OK] + 4 * [fx.Status.NOT_FINITE]
-    assert found.ok.tolist() == [True] + 4 * [False]
-    assert "batch (5,): 1 of 5 OK, 4 NOT_FINITE; 3 times each" in repr(found)
+    def run(eps, gamma, angle, ts):
+        bristle = fx.bristles.SlantedSpring(1.0, 2.2, 1.0, angle)
+        return fx.solve(_SCENE.replace(bristle=bristle), eps, gamma, ts)
+
+    good = 0.05, 1.0, 0.4, _TIMES
+    wrong = [
+        *({0: eps} for eps in (-1.0, np.nan, 0.0)),
+        *({1: gamma} for gamma in (np.nan, -1.0)),
+        {2: 1.52},  # 1 + a omega < 0
+        *({3: ts} for ts in (_TIMES - 0.2, _TIMES + 0.2, _TIMES[::-1])),
+    ]
+    rows = [good, *([one.get(i, v) for i, v in enumerate(good)] for one in wrong)]
+    found = jax.jit(jax.vmap(run))(*map(jnp.stack, map(list, zip(*rows, strict=True))))
+    assert found.status.tolist() == [fx.Status.OK] + 9 * [fx.Status.NOT_FINITE]
+    assert found.ok.tolist() == [True] + 9 * [False]
+    assert "batch (10,): 1 of 10 OK, 9 NOT_FINITE; 3 times each" in repr(found)
     assert np.all(np.isnan(found.z[1:]))
     assert abs(float(found.z[0, -1] - _end())) < 1e-3 * 0.05
 

@@ -23,7 +23,7 @@ class Status(Outcome):
     OK = 0, "every number can be trusted"
     MAX_STEPS = 1, "the step budget ran out before the last time; raise max_steps"
     STEP_TOO_SMALL = 2, "steps would have to be shorter than the spacing of floats at t"
-    NOT_FINITE = 3, "the trajectory left the range of finite numbers"
+    NOT_FINITE = 3, "the trajectory is not finite, or traced numbers are out of range"
     SOLVER_FAILED = 4, "the solver gave up on a step"
     UNBALANCED = 5, "the energy-dissipation balance does not close"
     TOO_MANY_TURNS = 6, "the load turns more often than the scene has room for"
