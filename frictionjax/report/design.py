@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 
 from .. import plot
 from .._checks import as_text, require, write_whole
@@ -13,6 +14,7 @@ from ..bristles import AbstractBristle
 from ..coefficients import Coefficients
 from ..design import (
     AngleFit,
+    DesignCheck,
     Target,
     check_design,
     design_map,
@@ -24,7 +26,14 @@ from ..design import (
 )
 from ..effects import CompliantArray, Engine, NapFlip, does
 from ..io import load_scene, scene_document, unit_of
-from ..model import Scene, friction
+from ..model import (
+    Scene,
+    SummedPotential,
+    friction,
+    potential,
+    reaches,
+    with_effects,
+)
 from ..profiles import AbstractProfile
 from ..supports import Spring
 from .design_page import DesignFacts, design_page
@@ -35,6 +44,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MAP = 121  # values of an axis
+_EPS = (1e-2, 1e-3, 1e-4)  # m, of slides where the scene's file gives none
 TARGETS = ("ratio", "difference", "rho_plus", "rho_minus")
 
 
@@ -71,6 +81,7 @@ def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
 
     `rho_plus` and `rho_minus` together: the surface (`fit_profile`); one of them, or a
     ratio or difference: one number of the bristle (`fit_angle`); with the scene's effects.
+    Slides show it at a few eps of the scene file's study that the bristle reaches.
 
     Raises `ValueError` for targets that contradict each other or cannot be reached, with
     what can be; nothing is written then.
@@ -83,7 +94,7 @@ def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
         raise ValueError(f"{', '.join(given) or 'no target'}: needs {allowed}")
     design = _surface(job, asked, wanted) if both else _bristle(job, asked, wanted)
     scene = design.scene
-    profile, bristle = _parts(scene)
+    profile, _ = _parts(scene)
     surface_heights(profile, asked.period, asked.samples)  # raises, or fits
     sections = [("", line) for line in job.notes]
     sections.append(("Inverse design", _as_lines(design.told)))
@@ -95,8 +106,9 @@ def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
     check = None
     slides = all(does(Engine.SLIDE, effect) for effect in scene.effects)
     if isinstance(scene.support, Spring) and slides:
-        check = check_design(profile, bristle, support=scene.support, effects=scene.effects)
-        sections.append(("On the dynamics", repr(check)))
+        check = _on_dynamics(job, scene)
+        told = _out_of_reach(job) if check is None else repr(check)
+        sections.append(("On the dynamics", told))
     text = joined(sections)
     toml = scene_document(scene, job.study)
     write_whole(folder / "design.toml", toml)
@@ -126,6 +138,36 @@ def run_design(job: Job, folder: Path, asked: DesignRequest) -> str:
         )
         write_whole(folder / "report.html", design_page(facts, job.report))
     return text
+
+
+def _on_dynamics(job: Job, scene: Scene) -> DesignCheck | None:
+    """Slides at eps of the study that the design's bristle reaches; None where it reaches
+    none."""
+    profile, bristle = _parts(scene)
+    wiggle: Any = with_effects(potential(profile, bristle), scene.effects)
+    while isinstance(wiggle, SummedPotential):  # all reach where one does
+        wiggle = wiggle.single
+    sizes = _eps_of(job)
+    sizes = sizes[reaches(wiggle, sizes)]
+    if not sizes.size:
+        return None
+    # A slide takes seconds: the ends, and what lies between them.
+    few = sizes[np.unique([0, (sizes.size - 1) // 2, sizes.size - 1])]
+    gamma = float(np.atleast_1d(job.study["gamma"])[0]) if "gamma" in job.own else 1.0
+    options: Any = {"support": scene.support, "effects": scene.effects}
+    return check_design(profile, bristle, few, gamma, **options)
+
+
+def _eps_of(job: Job) -> Float[np.ndarray, " n"]:
+    """Decreasing, in m: those of the file, if it gives any."""
+    given = np.atleast_1d(job.study["eps"]) if "eps" in job.own else np.array(_EPS)
+    return np.unique(given.astype(float))[::-1]
+
+
+def _out_of_reach(job: Job) -> str:
+    least = f"eps = {as_text(_eps_of(job)[-1])} m"
+    given = f"{least}, the smallest in [study]" if "eps" in job.own else least
+    return f"No slide: the bristle does not follow the surface, not even at {given}"
 
 
 def _as_lines(told: ResultTable | str) -> str:

@@ -52,7 +52,8 @@ class Job(NamedTuple):
     """A scene, its file, and what is known of the measured surface, where there is one.
 
     `scenes`: one for each row of a map, by its number, where all are asked for. `report`:
-    where a page is to be written too. `seed`: of the path of a scene with noise.
+    where a page is to be written too. `seed`: of the path of a scene with noise. `own`:
+    names of the numbers of the study that the file gives; others are the embedded ones.
     """
 
     scene: Scene
@@ -63,6 +64,7 @@ class Job(NamedTuple):
     scenes: dict[int, Scene] | None = None
     report: ReportRequest | None = None
     seed: int | None = None
+    own: frozenset[str] = frozenset()
 
     @property
     def error(self) -> dict[str, float]:
@@ -142,6 +144,7 @@ def _read_job(
 ) -> Job:
     known = default_study() if path is None else load_study(path)
     study = known.study if path is None else {**default_numbers(), **known.study}
+    own: frozenset[str] = frozenset() if path is None else frozenset(known.study)
     chosen = known.scene.bristle if bristle is None else named_bristle(bristle)
     needs = "[profile] and [bristle], of which commands are: its scene is Python's"
     require(chosen is not None, f"{path}: [potential]", "given", needs)
@@ -153,7 +156,7 @@ def _read_job(
         for name, value in {**file, **fit}.items():
             require(value is None, name, value, "--heights FILE beside it")
         scene = known.scene if bristle is None else known.scene.replace(bristle=chosen)
-        return Job(scene, study, warned, None)
+        return Job(scene, study, warned, None, own=own)
     measured = heights_of(heights, **file)
     harmonics = 8 if harmonics is None else harmonics
     try:
@@ -167,7 +170,7 @@ def _read_job(
     except ValueError as error:
         raise ValueError(f"{heights}: {error}") from None
     notes = warned + _notes(heights, measured, found, row)
-    return Job(scene, study, notes, rows, row)
+    return Job(scene, study, notes, rows, row, own=own)
 
 
 def with_surface(old: Scene, profile: Any, bristle: AbstractBristle) -> Scene:

@@ -180,3 +180,40 @@ def test_scenes_with_effects_that_designs_do_not_do_are_refused(tmp_path):
     line = error_line(run("design", path, "--ratio", 1.5, "--out", folder))
     assert "does not do Noise: needs a design without it, and friction_curve" in line
     assert not (folder / "design.toml").exists()
+
+
+def small_rod(folder, eps):
+    """The embedded scene with a rod of 0.3 mm, which loses a surface of 0.01 m."""
+    rod = fx.bristles.AngularSpring(3.7e-5, 3e-4, 1.5e-4, -0.31)
+    path = folder / "small.toml"
+    scene = default_study().scene.replace(bristle=rod)
+    fx.save_scene(scene, path, None if eps is None else {"eps": eps, "gamma": [1.4, 0.8]})
+    return path
+
+
+@pytest.mark.parametrize(
+    ("eps", "shown", "gamma"),
+    [
+        ([1e-1, 1e-4, 8e-5, 6e-5, 5e-5], ["0.0001", "8e-05", "5e-05"], "1.4"),
+        (None, ["0.001", "0.0001"], "1"),
+    ],
+    ids=["of the file", "of no file"],
+)
+def test_designs_slide_at_eps_that_they_reach(tmp_path, eps, shown, gamma):
+    path = small_rod(tmp_path, eps)
+    result = run("design", path, "--ratio", 0.9, "--out", tmp_path / "made")
+    assert result.exit_code == 0, result.output
+    assert f"Steady slide, gamma = {gamma}, rate" in result.stdout
+    table = result.stdout.partition("Steady slide")[2].splitlines()[2:]
+    assert [line.split()[0] for line in table[: len(shown) + 1]] == [*shown, "limit"]
+    assert (tmp_path / "made" / "design.toml").exists()
+
+
+def test_designs_beyond_every_eps_are_written_without_a_slide(tmp_path):
+    path, made = small_rod(tmp_path, [0.5, 0.3]), tmp_path / "made"
+    result = run("design", path, "--ratio", 0.9, "--report", "--out", made)
+    assert result.exit_code == 0, result.output
+    said = "No slide: the bristle does not follow the surface, not even at eps = 0.3 m"
+    assert said in result.stdout
+    assert (made / "design.toml").exists()
+    assert "No slide was computed" in (made / "report.html").read_text(encoding="utf-8")
