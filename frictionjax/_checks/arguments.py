@@ -268,10 +268,10 @@ def require_real(name: str, value: Any, allowed: str, test: Any = None) -> None:
         require(test(float(array)), name, value, allowed)
 
 
-def require_whole(name: str, value: Any, least: int = 1) -> None:
-    """Check a count, or a seed: a whole number >= `least`."""
+def require_whole(name: str, value: Any, least: int = 1, why: str = "") -> None:
+    """Check a count, or a seed: a whole number >= `least`; `why` it is that much."""
     whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    require(whole and value >= least, name, value, f"a whole number >= {least}")
+    require(whole and value >= least, name, value, f"a whole number >= {least}{why}")
 
 
 def as_plain(value: Any) -> Any:

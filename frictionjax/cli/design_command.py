@@ -35,10 +35,10 @@ from .running import report_asked, start, write_folder
 )
 @click.option(
     "--samples",
-    type=click.IntRange(16),
+    type=int,
     default=1024,
     show_default=True,
-    help="Of heights.csv in a period.",
+    help="Of heights.csv in a period; at least 64, and 16 a harmonic of the surface.",
 )
 @out_option("design")
 @report_option

@@ -132,6 +132,8 @@ def test_what_cannot_be_designed_is_said_in_one_line(tmp_path):
     assert "free = 'colour': needs one of stiffness" in line
     line = error_line(run("design", "--ratio", 1.3, "--period", -1, *out))
     assert "period = -1: needs period > 0" in line
+    line = error_line(run("design", "--ratio", 1.3, "--samples", 15, *out))
+    assert "samples = 15: needs a whole number >= 64 to resolve the surface" in line
     line = error_line(run("design", "--ratio", 1.3, "--bounds", 0.2, 0.1, *out))
     assert "bounds = [0.2 0.1]: needs a pair" in line
     line = error_line(run("design", "--ratio", 1.3, "--smallest-radius", 0.1, *out))

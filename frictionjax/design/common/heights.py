@@ -23,10 +23,11 @@ def surface_heights(
     lowest sample.
 
     Raises `ValueError` for a period that is not positive, or fewer samples than resolve
-    the profile (`profile.points` in a period).
+    the profile (a quarter of `profile.points`, and 16).
     """
     require_real("period", period, "period > 0 in m", lambda v: v > 0)
-    require_whole("samples", samples, max(16, profile.points // 4))
+    least = max(16, profile.points // 4)
+    require_whole("samples", samples, least, " to resolve the surface")
     y = np.arange(samples + 1) / samples
     w = np.asarray(jax.vmap(profile)(jnp.asarray(y)))
     w = w - np.min(w)
