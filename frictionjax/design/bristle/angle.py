@@ -124,7 +124,8 @@ def fit_angle(
 
     Exactly one of `rho_plus` (N, > 0), `rho_minus` (N, < 0), `ratio` = -rho_plus/rho_minus
     (> 0) and `difference` = rho_plus + rho_minus (N; how much harder the right is than the
-    left) is given: a number, or an array of shape (n,), solved as a batch.
+    left) is given: a number, or an array of shape (n,), solved as a batch. It is met to 9
+    digits at least, a difference to 9 digits of the larger force.
 
     `free`: which number: `"angle"`, for `AngularSpring` theta_lim at fixed length, or any
     other of the bristle by name, also a leaf of a `Custom` one or of a bristle of your own

@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float, Int
 from ..._checks import Real
 from ...bristles import AbstractBristle
 from ...numerics import find_root
-from ..common import FreeParameter, OnSlopes, Slopes, on_slopes, quantity_of
+from ..common import QUANTITIES, FreeParameter, OnSlopes, Slopes, on_slopes, quantity_of
 from .admissible import Admissible, first_places
 from .settings import SETTINGS
 from .status import FitStatus
@@ -93,9 +93,8 @@ def solve_targets(
     x, roots = jax.vmap(lambda r, k: _chosen(r, k, now))(roots, known)
     ended = jax.vmap(law)(x)
     achieved = jax.vmap(lambda found: quantity_of(found, which))(ended)
-    code = jax.vmap(lambda *lane: _code(found, *lane))(
-        known, x, roots, jax.lax.stop_gradient(achieved), aims
-    )
+    met = _met(jax.lax.stop_gradient(achieved), aims, jax.lax.stop_gradient(ended), which)
+    code = jax.vmap(lambda *lane: _code(found, *lane))(known, x, roots, met)
     return Solutions(x, roots, achieved, ended.alpha, code)
 
 
@@ -140,11 +139,17 @@ def _chosen(roots: Array, known: RootBrackets, now: Real) -> tuple[Real, Array]:
     return jnp.where(known.constant, known.level, x), roots
 
 
-def _code(
-    found: Admissible, known: RootBrackets, x, roots, achieved, aim
-) -> Int[Array, ""]:
+def _met(
+    achieved: Array, aims: Float[Array, " n"], law: OnSlopes, which: Real
+) -> Bool[Array, " n"]:
+    """Whether targets are met; a difference is known to rounding of the forces."""
+    forces = jnp.maximum(jnp.abs(law.rho_plus), jnp.abs(law.rho_minus))
+    forces = jnp.where(which == QUANTITIES.index("difference"), forces, 0.0)
+    return jnp.abs(achieved - aims) <= SETTINGS.met * jnp.maximum(jnp.abs(aims), forces)
+
+
+def _code(found: Admissible, known: RootBrackets, x, roots, met) -> Int[Array, ""]:
     """The `FitStatus` of one target; the first that holds."""
-    met = jnp.abs(achieved - aim) <= SETTINGS.met * jnp.abs(aim)
     touched = jnp.any((roots == x) & known.there & ~known.simple)
     ways = (
         (jnp.all(jnp.isnan(found.values)), FitStatus.INADMISSIBLE),

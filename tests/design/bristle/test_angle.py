@@ -210,6 +210,15 @@ def test_intervals_narrower_than_the_scan_are_found():
     )
 
 
+def test_differences_next_to_0_are_met_to_rounding_of_the_forces():
+    rod = fx.bristles.AngularSpring(3.7e-4, 0.0043, 0.0022, -0.31)
+    surface = fx.profiles.Fourier([0.004, -0.0013], [-0.011, 0.0021])
+    fits = fx.fit_angle(surface, rod, difference=[0.0, 1e-9, -1e-12, 0.002])
+    assert list(fits.status) == [FitStatus.OK] * 4
+    assert np.all(fits.success)
+    np.testing.assert_allclose(fits.achieved, fits.target, rtol=0, atol=1e-15)
+
+
 def test_a_quantity_that_does_not_depend_on_the_number():
     law = fx.friction(SINE, SLANTED)
     ratio = float(-law.rho_plus / law.rho_minus)
