@@ -127,14 +127,15 @@ def spread_table(spread: xr.Dataset) -> ResultTable:
 def _predicted_cells(spread: xr.Dataset, prefix: str) -> tuple[str, str]:
     """Of one gamma: what laws predict, and in how many rows."""
     count = int(spread[f"{prefix}predicted_scenes"])
-    told = _ranged(spread[f"{prefix}order_predicted"], "{:.3f}") if count else "-"
-    return told, f"{count}"
+    return _ranged(spread[f"{prefix}order_predicted"], "{:.3f}"), f"{count}"
 
 
 def _ranged(quantiles: xr.DataArray, form: str) -> str:
-    low, middle, high = (
-        form.format(float(quantiles.sel(quantile=q))) for q in (0.05, 0.5, 0.95)
-    )
+    """Median and 90%, or a dash where no row has a number."""
+    values = [float(quantiles.sel(quantile=q)) for q in (0.05, 0.5, 0.95)]
+    if not np.all(np.isfinite(values)):
+        return "-"
+    low, middle, high = map(form.format, values)
     return f"{middle} [{low}, {high}]"
 
 

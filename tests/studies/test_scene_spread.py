@@ -72,6 +72,17 @@ def test_scenes_behind_a_prediction_are_counted(found):
     assert cells["dissipation", "2"] == ("-", "0")
 
 
+def test_spreads_that_no_scene_has_an_order_of_are_dashes(found):
+    orders = found.orders.copy(deep=True)
+    for name in ("order", "constant"):
+        orders[name][:, 0] = np.nan
+    cells = {row[:2]: row for row in spread_table(spread_over_scenes(orders)).rows}
+    lost, kept = cells["state", "0.5"], cells["state", "2"]
+    assert (lost[2], lost[5], lost[6]) == ("-", "-", "0")
+    assert kept[2].endswith("]")
+    assert "nan" not in str(spread_table(spread_over_scenes(orders)))
+
+
 def test_scenes_without_an_order_are_left_out_of_its_spread(data):
     gone = data.copy(deep=True)
     gone["status"][0, 1] = int(fx.Status.OPEN_BRACKET)
