@@ -122,7 +122,8 @@ class SlideFit(ShownNumbers, SelfDrawn, DesignResult, eqx.Module):
         others = "" if count < 2 else f" ({count} solutions)"
         pulls = pulling_text(normal_force(self.bristle), self.bristle)
         told = f"; {pulls}" if pulls else ""
-        return f"{asked}: {self.status.message}, {value}{others}{told}"
+        ended = f"{self.status.message}, {value}{others}{told}"
+        return f"{asked}: {ended}{self._in_the_limit}"
 
     @property
     def _in_the_limit(self) -> str:
@@ -216,10 +217,18 @@ def _follows(
     places: Array,
     eps: Any,
 ) -> Array:
-    """Whether bristles at coordinates (n,) follow the surface at this eps: G > 0."""
+    """Whether bristles at coordinates (n,) follow the surface at this eps: G > 0.
+
+    And F' keeps its sign over a period. Next to alpha = 0 it does not, and slides show
+    their drag alone: no difference, a ratio of 1.
+    """
+    heights = eps * profile(jnp.arange(SETTINGS.heights) / SETTINGS.heights)
 
     def one(x: Array) -> Array:
-        return smallest_stretch(BristlePotential(profile, free.at(bristle, x)), eps) > 0
+        part = free.at(bristle, x)
+        alpha = part.with_slopes(jnp.zeros(()))[2]
+        presses = jnp.all(part.with_slopes(heights)[2] * alpha > 0)
+        return presses & (smallest_stretch(BristlePotential(profile, part), eps) > 0)
 
     return jax.vmap(one)(places)
 
@@ -253,10 +262,10 @@ def fit_slide(
     `steady_slide`. `force`: "mean", over time, or "peak", the largest. `wanted`: one target
     (`rho_plus`, `rho_minus`, `ratio` or `difference`, of these forces), `free`, `bounds`
     and `pulling`, as in `fit_angle`. The admissible intervals of the limit are scanned as
-    far as bristles slide at this eps, turns of the quantity are found, and each change of
-    sign is polished by `scipy.optimize.brentq`: 50 to 200 slides, so this takes seconds,
-    not a millisecond. `.status` tells what no bristle reaches from what could not be
-    evaluated (`UNKNOWN`).
+    far as bristles slide at this eps, pressing (or pulling) throughout a period, turns of
+    the quantity are found, and each change of sign is polished by `scipy.optimize.brentq`:
+    50 to 200 slides, so this takes seconds, not a millisecond. `.status` tells what no
+    bristle reaches from what could not be evaluated (`UNKNOWN`).
 
     Returns a `SlideFit`: `.bristle .value .achieved .solutions .slide .limit .success` and
     more; forces in N.
@@ -298,7 +307,8 @@ def _searched(
     asked = _Asked(np.asarray(which), np.asarray(force == "peak"), scene)
     free = free_parameter(limit.bristle, limit.free)
     parts = _sliding_parts(limit, free, profile, scene[0])
-    require(parts, "eps", scene[0], "an eps at which some bristle slides (G > 0)")
+    slides = "an eps at which some bristle slides (G > 0, and F' of one sign)"
+    require(parts, "eps", scene[0], slides)
     target = float(limit.target)
 
     def shown(places: np.ndarray) -> np.ndarray:
@@ -372,7 +382,7 @@ def _rubbing(
 def _sliding_parts(
     limit: AngleFit, free: FreeParameter, profile: AbstractProfile, eps: Any
 ) -> list[tuple[float, float]]:
-    """Intervals of the coordinate that are admissible, and where G > 0 at this eps."""
+    """Admissible intervals of the coordinate in which bristles slide: `_follows`."""
     ends = np.asarray(limit.admissible)
     ends = ends[~np.isnan(ends[:, 0])]
     places = np.sort(np.asarray(_coordinates(free, limit.bristle, ends)), axis=1)

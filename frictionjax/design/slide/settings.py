@@ -59,6 +59,7 @@ class Settings(NamedTuple):
 
     # Bristles (`bristle_fit.py`).
     together: int = 2  # slides of a call
+    heights: int = 256  # of the surface, at which a bristle has to press
 
     # Surfaces (`surface_fit.py`), in log forces.
     settled: float = 1e-6  # slides are right to 1e-7

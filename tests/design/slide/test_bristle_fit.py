@@ -179,3 +179,33 @@ def test_of_several_solutions_one_that_rubs_is_taken(monkeypatch):
     assert found.value == pytest.approx(0.9)
     assert "angle = 0.9 (2 solutions)" in found.message
     assert fit(1.08).value == pytest.approx(1.08)  # presses: the nearest
+
+
+def test_a_bristle_that_pulls_part_of_a_period_is_no_solution(monkeypatch):
+    """At 1.141 alpha is 2.6e-4 N, and F' + F'' eps w is below 0 in the valleys."""
+    waves = fx.profiles.Fourier([0.004, -0.0013], [-0.011, 0.0021])
+    one = np.ones(())
+    known = SteadySlide(np.asarray(EPS), one, -one, one, -one, 0 * one, 0 * one)
+
+    def fit(root):
+        def quantities(free, bristle, profile, asked, places):
+            return places - root
+
+        def alone(free, bristle, profile, asked, x):
+            return slide_fit._Slide(x - root, one, one, x, known)
+
+        monkeypatch.setattr(slide_fit, "_quantities", quantities)
+        monkeypatch.setattr(slide_fit, "_alone", alone)
+        return fx.fit_slide(waves, SLANTED, EPS, difference=0.0)
+
+    almost = fx.friction(waves, leaning(1.141))
+    assert 0 < almost.alpha < 3e-4
+    found = fit(1.141)
+    assert found.status == FitStatus.UNREACHABLE
+    assert found.solutions.size == 0
+    assert "cannot be reached by angle" in found.message
+    assert "in the limit: difference = 0 is reached only by a bristle that" in found.message
+    presses = fit(1.139)
+    assert presses.status == FitStatus.OK
+    assert presses.value == pytest.approx(1.139, rel=1e-12)
+    assert "reached only by a bristle that pulls" in presses.message
