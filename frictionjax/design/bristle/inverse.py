@@ -200,9 +200,14 @@ def _polished(quantity: Callable, targets: Array, known: RootBrackets) -> Array:
 
 
 def _constant(found: Admissible, aim: Real, now: Real) -> tuple[Real, Bool[Array, ""]]:
-    """A coordinate in the intervals where the quantity is the target throughout."""
+    """The nearest coordinate in the intervals where the quantity is the target throughout.
+
+    Not at their ends, where alpha may be 0.
+    """
     same = found.flat & (jnp.abs(found.values[:, 0] - aim) <= SETTINGS.met * jnp.abs(aim))
-    inside = (found.ends[:, 0] <= now) & (now <= found.ends[:, 1])
-    place = jnp.where(inside, now, jnp.mean(found.ends, axis=1))
+    low, high = found.ends.T
+    inset = SETTINGS.inset * (high - low)
+    inside = (low <= now) & (now <= high)
+    place = jnp.where(inside, now, jnp.clip(now, low + inset, high - inset))
     away = jnp.where(same, jnp.abs(place - now), jnp.inf)
     return place[jnp.argmin(away)], jnp.any(same)

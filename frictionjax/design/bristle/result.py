@@ -214,9 +214,10 @@ class AngleFit(ShownNumbers, SelfDrawn, DesignResult, CodedResult, eqx.Module):
 
 def _message(fit: AngleFit) -> str:
     status = FitStatus.of(int(fit.code))
-    asked = f"{fit.quantity} = {as_text(fit.target)}"
     if status in (FitStatus.UNREACHABLE, FitStatus.PULLS):
-        return f"{asked} {_out_of_reach(fit, status)}"
+        target, achieved = _told_apart(float(fit.target), float(fit.achieved))
+        return f"{fit.quantity} = {target} {_out_of_reach(fit, status, achieved)}"
+    asked = f"{fit.quantity} = {as_text(fit.target)}"
     if status == FitStatus.INADMISSIBLE:
         return f"{asked}: {status.message}"
     count = int(np.sum(~np.isnan(fit.roots)))
@@ -225,10 +226,30 @@ def _message(fit: AngleFit) -> str:
     told = f"; {pulls}" if pulls else ""
     if fit.scene.nap_flip is not None:
         told += f"; {fit.nap.message}"
-    return f"{asked}: {status.message}, {fit.free} = {as_text(fit.value)}{others}{told}"
+    ended = status.message
+    if status == FitStatus.INDIFFERENT:
+        ended = _where_indifferent(fit) or ended
+    return f"{asked}: {ended}, {fit.free} = {as_text(fit.value)}{others}{told}"
 
 
-def _out_of_reach(fit: AngleFit, status: FitStatus) -> str:
+def _told_apart(one: float, other: float) -> tuple[str, str]:
+    """Both with as many digits, six or more, as tell them apart."""
+    texts = ((f"{one:.{n}g}", f"{other:.{n}g}") for n in range(6, 17))
+    return next((pair for pair in texts if pair[0] != pair[1]), (repr(one), repr(other)))
+
+
+def _where_indifferent(fit: AngleFit) -> str:
+    """The intervals in which every value gives the target; empty where all do."""
+    ends, target = np.asarray(fit.reachable), float(fit.target)
+    known = ~np.isnan(ends[:, 0])
+    same = np.all(np.abs(ends - target) <= SETTINGS.met * abs(target), axis=1)
+    if np.all(same[known]):
+        return ""
+    where = intervals_text(np.asarray(fit.admissible)[same])
+    return f"every {fit.free} in {where} gives it: the quantity does not depend on it there"
+
+
+def _out_of_reach(fit: AngleFit, status: FitStatus, achieved: str) -> str:
     why, which = f"cannot be reached by {fit.free}:", ""
     if status == FitStatus.PULLS:
         pulled, alpha = map(as_text, fit.pulled)
@@ -242,9 +263,9 @@ def _out_of_reach(fit: AngleFit, status: FitStatus) -> str:
         return f"{why} none that presses is admissible"
     ends = np.asarray(fit.reachable)
     if np.nanmax(ends) - np.nanmin(ends) <= SETTINGS.met * np.nanmax(np.abs(ends)):
-        return f"{why} {which}it is {as_text(fit.achieved)} at every {fit.free} allowed"
+        return f"{why} {which}it is {achieved} at every {fit.free} allowed"
     return (
-        f"{why} {which}{fit.quantity} is in {known}; nearest: {as_text(fit.achieved)} at "
+        f"{why} {which}{fit.quantity} is in {known}; nearest: {achieved} at "
         f"{fit.free} = {as_text(fit.value)}"
     )
 

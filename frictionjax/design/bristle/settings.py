@@ -29,6 +29,7 @@ class Settings(NamedTuple):
     roots: int = 8  # of one target that are kept
     touch: float = 64 * _ULP  # of the target: an extremum that near it is a solution
     met: float = 1e-9  # of it, of a difference of the larger force if that is more
+    inset: float = 1e-5  # of an interval that gives it throughout: from its ends
 
     # Batches (`angle.py`, `sensitivities.py`).
     # The smallest piece, and by how much the next size is larger: batches come in few

@@ -229,6 +229,31 @@ def test_a_quantity_that_does_not_depend_on_the_number():
     other = fx.fit_angle(SINE, SLANTED, ratio=1.1 * ratio, free="stiffness")
     assert other.status == FitStatus.UNREACHABLE
     np.testing.assert_allclose(other.reachable[0], ratio, rtol=1e-12)
+    assert "every admissible value gives it" in same.message
+    near = fx.fit_angle(SINE, SLANTED, ratio=ratio * (1 + 1e-8), free="stiffness")
+    assert near.status == FitStatus.UNREACHABLE
+    asked, _, given = near.message.removeprefix("ratio = ").partition(" cannot be")
+    shown = given.partition("it is ")[2].partition(" at every")[0]
+    assert float(asked) > float(shown)
+
+
+def test_where_a_number_changes_nothing_but_on_the_other_side_of_alpha_0():
+    """At the height 1.7 cos(0.4) = 1.566 the bristle stops pressing, and pulls beyond."""
+    waves = fx.profiles.Fourier([0.01, 0.0], [0.005, 0.004])
+    bristle = fx.bristles.SlantedSpring(3.0, 1.7, 1.0, 0.4)
+    edge = 1.7 * np.cos(0.4)
+    ways = {"free": "height", "pulling": True}
+    presses = fx.fit_angle(waves, bristle, ratio=fx.friction(waves, bristle).ratio, **ways)
+    assert presses.status == FitStatus.INDIFFERENT
+    assert presses.value == 1.0
+    assert "every height in (0.0001, 1.5658) gives it: the quantity" in presses.message
+    beyond = fx.friction(waves, bristle.replace(height=2.0))
+    pulls = fx.fit_angle(waves, bristle, ratio=beyond.ratio, **ways)
+    assert pulls.status == FitStatus.INDIFFERENT
+    assert edge < pulls.value < edge * (1 + 2e-4)
+    assert pulls.alpha < 0
+    assert float(pulls.achieved) == pytest.approx(float(beyond.ratio), rel=1e-9)
+    assert "every height in (1.5658, 10000) gives it: the quantity" in pulls.message
 
 
 def test_a_batch_equals_its_lanes_alone():
