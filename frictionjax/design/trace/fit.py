@@ -75,7 +75,14 @@ def fit_trace(
     for the most part a shift of the surface, which residuals hardly show. So is the
     bristle: another one may explain the trace as well, with other slopes. Where the
     uncertainty is not known, residuals that hang together along the surface, or in time, as
-    of a sensor that drifts, are a misfit.
+    of a sensor that drifts, are a misfit. Little drift may pass: of one that comes to 0.5%
+    of rho_plus - rho_minus at the end, with 0.5% noise and 801 samples, 2 of 6 fits were
+    FITTED, slopes up to 8 stated errors off, 0.006 of 0.14; three times that drift never
+    was (by hand).
+
+    Errors are linearised. At gamma = 0.5 with samples next to slips they are too small in
+    some fits: of 14, three had a slope more than 3 errors off, at most 4.4. At gamma from
+    0.8 to 2, 95% intervals held 98 to 100% (by hand).
 
     Returns a `TraceFit`: `.profile .achieved .residuals` (N or m, shape (n,)) `.status` and
     more.
