@@ -264,7 +264,8 @@ def fit_slide(
     and `pulling`, as in `fit_angle`. The admissible intervals of the limit are scanned as
     far as bristles slide at this eps, pressing (or pulling) throughout a period, turns of
     the quantity are found, and each change of sign is polished by `scipy.optimize.brentq`:
-    50 to 200 slides, so this takes seconds, not a millisecond. `.status` tells what no
+    50 to 200 slides, so this takes seconds, not a millisecond. A ratio of 1, or no
+    difference, of drag alone next to alpha = 0 is no solution. `.status` tells what no
     bristle reaches from what could not be evaluated (`UNKNOWN`).
 
     Returns a `SlideFit`: `.bristle .value .achieved .solutions .slide .limit .success` and
@@ -307,8 +308,8 @@ def _searched(
     asked = _Asked(np.asarray(which), np.asarray(force == "peak"), scene)
     free = free_parameter(limit.bristle, limit.free)
     parts = _sliding_parts(limit, free, profile, scene[0])
-    slides = "an eps at which some bristle slides (G > 0, and F' of one sign)"
-    require(parts, "eps", scene[0], slides)
+    allowed = "an eps at which some bristle slides (G > 0, and F' of one sign)"
+    require(parts, "eps", scene[0], allowed)
     target = float(limit.target)
 
     def shown(places: np.ndarray) -> np.ndarray:
@@ -333,6 +334,8 @@ def _searched(
     found = roots if roots.size else turns
     good = np.array([alone(x).slide.ok for x in found], dtype=bool)
     failed, found = np.concatenate([failed, found[~good]]), found[good]
+    slides = [alone(x).slide for x in found]
+    found = _with_friction(free, limit, found, parts, scene, slides)
 
     def values(places: np.ndarray) -> Array:
         return _values(free, limit.bristle, places)
@@ -361,6 +364,32 @@ def _searched(
         status,
         force,
     )
+
+
+def _with_friction(
+    free: FreeParameter,
+    limit: AngleFit,
+    found: np.ndarray,
+    parts: list[tuple[float, float]],
+    scene: tuple,
+    slides: list[SteadySlide],
+) -> np.ndarray:
+    """Without those that hardly press and show the ratio 1, or no difference, of drag."""
+    eps, gamma, rate, stiffness = (float(number) for number in scene)
+    drag = eps**gamma * rate / stiffness
+    own = {"ratio": 1.0, "difference": 0.0}.get(limit.quantity, np.nan)
+    unit = 1.0 if limit.quantity == "ratio" else drag
+    means = np.array([0.5 * float(one.mean_plus - one.mean_minus) for one in slides])
+    drags = means < 2 * drag
+    if not abs(float(limit.target) - own) <= SETTINGS.no_friction * unit or not drags.any():
+        return found
+
+    def presses(places: np.ndarray) -> np.ndarray:
+        laws = [on_slopes(free.at(limit.bristle, x), limit.slopes) for x in places]
+        return np.array([abs(float(law.alpha)) for law in laws])
+
+    most = presses(np.concatenate([np.linspace(*ends, 9) for ends in parts])).max()
+    return found[~drags | (presses(found) >= SETTINGS.pressing * most)]
 
 
 def _rubbing(

@@ -59,6 +59,8 @@ class Settings(NamedTuple):
 
     # Bristles (`bristle_fit.py`).
     together: int = 2  # slides of a call
+    no_friction: float = 1e-6  # of drag: a target that drag alone meets
+    pressing: float = 1e-3  # of the largest alpha: less hardly presses
     heights: int = 256  # of the surface, at which a bristle has to press
 
     # Surfaces (`surface_fit.py`), in log forces.

@@ -209,3 +209,26 @@ def test_a_bristle_that_pulls_part_of_a_period_is_no_solution(monkeypatch):
     assert presses.status == FitStatus.OK
     assert presses.value == pytest.approx(1.139, rel=1e-12)
     assert "reached only by a bristle that pulls" in presses.message
+
+
+def test_a_slide_of_drag_alone_has_no_ratio_of_its_own(monkeypatch):
+    """Next to alpha = 0 signs of rounding change, and a slide's forces are eps rate/k_h."""
+    one = np.ones(())
+
+    def fit(root, force):
+        known = SteadySlide(np.asarray(1e-3), force, -force, one, -one, 0 * one, 0 * one)
+
+        def quantities(free, bristle, profile, asked, places):
+            return 1 + places - root
+
+        def alone(free, bristle, profile, asked, x):
+            return slide_fit._Slide(1 + x - root, one, one, x, known)
+
+        monkeypatch.setattr(slide_fit, "_quantities", quantities)
+        monkeypatch.setattr(slide_fit, "_alone", alone)
+        return fx.fit_slide(WAVES, SLANTED, 1e-3, ratio=1.0, bounds=(0.2, 1.4))
+
+    drag = 1e-3 * one
+    assert fit(1.141, 1.03 * drag).status == FitStatus.UNREACHABLE
+    assert fit(1.141, 3 * drag).status == FitStatus.OK  # more than drag
+    assert fit(0.9, 1.03 * drag).status == FitStatus.OK  # presses: drag is large there
