@@ -8,6 +8,7 @@ from .ensembles import design_map as design_map
 from .ensembles import tolerance as tolerance
 from .measured_trace import Trace as Trace
 from .measured_trace import simulate_trace as simulate_trace
+from .slide import CHECKED_EPS as CHECKED_EPS
 from .slide import DesignCheck as DesignCheck
 from .slide import check_design as check_design
 from .slide import fit_slide as fit_slide

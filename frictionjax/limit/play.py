@@ -50,8 +50,6 @@ _COLUMNS = {
     "tip": ("m", "tip p of the rod"),
     "mode": ("1", "1: the rod as it stands at first; -1: turned over; 0: in between"),
 }
-
-
 _ROUNDED = 4 * float(np.finfo(float).eps)  # of a strip's edges
 
 

@@ -124,8 +124,16 @@ def _margins(
     return in_chunks(_some_margins, SETTINGS.margins, (near,), (eps,))
 
 
+def _one_of(potential: AbstractPotential) -> AbstractPotential:
+    """A potential of one tip: of several all reach where one does."""
+    while isinstance(potential, SummedPotential):
+        potential = potential.single
+    return potential
+
+
 def reaches(potential: AbstractPotential, eps: np.ndarray) -> np.ndarray:
     """Whether a bristle follows the surface at each eps (m), as `require_reach` asks."""
+    potential = _one_of(potential)
     if not isinstance(potential, BristlePotential):  # no tip beside z: G = 1
         return np.ones(np.shape(eps), dtype=bool)
     stretch, clear = _margins(potential, eps)
@@ -161,8 +169,7 @@ def require_reach(potential: AbstractPotential, eps: Float[ArrayLike, "*shape"])
     """
     if not is_concrete(potential, eps):
         return
-    while isinstance(potential, SummedPotential):  # all reach where one does
-        potential = potential.single
+    potential = _one_of(potential)
     sizes = np.unique(np.asarray(eps, dtype=float))
     fits = reaches(potential, sizes)
     if np.all(fits):

@@ -82,7 +82,7 @@ def draw_design_map(data: "xr.Dataset", quantities: Any = ("ratio", "contrast"))
 def _titles(data: "xr.Dataset") -> dict[str, str]:
     """Of each quantity; of a map with an eps, with what it is told for."""
     if "eps" not in data.attrs:
-        return _TITLES | _SLIDES
+        return _TITLES
     limit = {name: title + _LIMIT for name, title in _TITLES.items()}
     at = f", $\\epsilon$ = {data.attrs['eps']:.3g} m"
     return limit | {name: title + at for name, title in _SLIDES.items()}

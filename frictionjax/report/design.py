@@ -13,6 +13,7 @@ from .._text import ResultTable
 from ..bristles import AbstractBristle
 from ..coefficients import Coefficients
 from ..design import (
+    CHECKED_EPS,
     AngleFit,
     DesignCheck,
     Target,
@@ -28,7 +29,6 @@ from ..effects import CompliantArray, Engine, NapFlip, does
 from ..io import load_scene, scene_document, unit_of
 from ..model import (
     Scene,
-    SummedPotential,
     friction,
     potential,
     reaches,
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MAP = 121  # values of an axis
-_EPS = (1e-2, 1e-3, 1e-4)  # m, of slides where the scene's file gives none
 TARGETS = ("ratio", "difference", "rho_plus", "rho_minus")
 
 
@@ -144,11 +143,8 @@ def _on_dynamics(job: Job, scene: Scene) -> DesignCheck | None:
     """Slides at eps of the study that the design's bristle reaches; None where it reaches
     none."""
     profile, bristle = _parts(scene)
-    wiggle: Any = with_effects(potential(profile, bristle), scene.effects)
-    while isinstance(wiggle, SummedPotential):  # all reach where one does
-        wiggle = wiggle.single
     sizes = _eps_of(job)
-    sizes = sizes[reaches(wiggle, sizes)]
+    sizes = sizes[reaches(with_effects(potential(profile, bristle), scene.effects), sizes)]
     if not sizes.size:
         return None
     # A slide takes seconds: the ends, and what lies between them.
@@ -160,7 +156,7 @@ def _on_dynamics(job: Job, scene: Scene) -> DesignCheck | None:
 
 def _eps_of(job: Job) -> Float[np.ndarray, " n"]:
     """Decreasing, in m: those of the file, if it gives any."""
-    given = np.atleast_1d(job.study["eps"]) if "eps" in job.own else np.array(_EPS)
+    given = np.atleast_1d(job.study["eps"]) if "eps" in job.own else np.array(CHECKED_EPS)
     return np.unique(given.astype(float))[::-1]
 
 

@@ -8,8 +8,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool
 
 from .._compile import Program, hoisted, once_a_scene, padded_size, strong_arrays
-from ..model import are_times_of
-from .equation import Status, StepPlan, keeps_contact, plan_steps
+from ..model import are_times_of, smallest_stretch
+from .equation import Status, StepPlan, plan_steps
 from .problem import Problem
 from .reverse_mode import in_reverse_mode, without_derivatives
 from .sequential import SETTINGS, Past, integrate
@@ -36,7 +36,7 @@ class Plan(NamedTuple):
 @once_a_scene
 def _planned(problem: Problem) -> Plan:
     scene, eps, gamma, _, accuracy = problem
-    good = (eps > 0) & (gamma > 0) & keeps_contact(scene.potential, eps)
+    good = (eps > 0) & (gamma > 0) & (smallest_stretch(scene.potential, eps) > 0)
     return Plan(plan_steps(scene, eps, gamma, accuracy), good)
 
 

@@ -1,4 +1,5 @@
 from .bristle_fit import fit_slide as fit_slide
+from .check import CHECKED_EPS as CHECKED_EPS
 from .check import DesignCheck as DesignCheck
 from .check import check_design as check_design
 from .design_slides import MEANINGS as MEANINGS

@@ -31,6 +31,7 @@ from ..common import (
     QUANTITIES,
     DesignResult,
     FreeParameter,
+    OnSlopes,
     free_parameter,
     on_slopes,
     quantity_of,
@@ -222,7 +223,7 @@ def _follows(
     And F' keeps its sign over a period. Next to alpha = 0 it does not, and slides show
     their drag alone: no difference, a ratio of 1.
     """
-    heights = eps * profile(jnp.arange(SETTINGS.heights) / SETTINGS.heights)
+    heights = eps * profile(jnp.arange(profile.points) / profile.points)
 
     def one(x: Array) -> Array:
         part = free.at(bristle, x)
@@ -375,8 +376,7 @@ def _with_friction(
     slides: list[SteadySlide],
 ) -> np.ndarray:
     """Without those that hardly press and show the ratio 1, or no difference, of drag."""
-    eps, gamma, rate, stiffness = (float(number) for number in scene)
-    drag = eps**gamma * rate / stiffness
+    drag = _drag_of(scene)
     own = {"ratio": 1.0, "difference": 0.0}.get(limit.quantity, np.nan)
     unit = 1.0 if limit.quantity == "ratio" else drag
     means = np.array([0.5 * float(one.mean_plus - one.mean_minus) for one in slides])
@@ -385,8 +385,7 @@ def _with_friction(
         return found
 
     def presses(places: np.ndarray) -> np.ndarray:
-        laws = [on_slopes(free.at(limit.bristle, x), limit.slopes) for x in places]
-        return np.array([abs(float(law.alpha)) for law in laws])
+        return np.array([abs(float(law.alpha)) for law in _laws_at(free, limit, places)])
 
     most = presses(np.concatenate([np.linspace(*ends, 9) for ends in parts])).max()
     return found[~drags | (presses(found) >= SETTINGS.pressing * most)]
@@ -401,11 +400,20 @@ def _rubbing(
     """
     if found.size < 2:
         return found
-    eps, gamma, rate, stiffness = (float(number) for number in scene)
-    laws = [on_slopes(free.at(limit.bristle, x), limit.slopes) for x in found]
+    laws = _laws_at(free, limit, found)
     means = np.array([0.5 * float(abs(law.rho_plus - law.rho_minus)) for law in laws])
-    rubs = means > 2 * eps**gamma * rate / stiffness
+    rubs = means > 2 * _drag_of(scene)
     return found[rubs] if np.any(rubs) else found
+
+
+def _drag_of(scene: tuple) -> float:
+    """Mean force of viscosity in a slide, N."""
+    eps, gamma, rate, stiffness = (float(number) for number in scene)
+    return eps**gamma * rate / stiffness
+
+
+def _laws_at(free: FreeParameter, limit: AngleFit, places: np.ndarray) -> list[OnSlopes]:
+    return [on_slopes(free.at(limit.bristle, x), limit.slopes) for x in places]
 
 
 def _sliding_parts(

@@ -19,6 +19,7 @@ from ...wiggly import Status
 from ..common import coefficients_in_scene, compliant_count, effects_of_scene
 from .slide_friction import SteadySlide, steady_slide
 
+CHECKED_EPS = (1e-2, 1e-3, 1e-4)  # m
 _FORCES = ("mean_plus", "mean_minus", "peak_plus", "peak_minus")
 _MEANS = ("eps/m", "mean +/N", "gap", "mean -/N", "gap", "ratio", "gap")
 _HEADER = (*_MEANS, "peak +/N", "peak -/N", "status")
@@ -112,7 +113,7 @@ class DesignCheck(CodedResult, eqx.Module):
 def check_design(
     profile: AbstractProfile,
     bristle: AbstractBristle,
-    eps: Any = (1e-2, 1e-3, 1e-4),
+    eps: Any = CHECKED_EPS,
     gamma: float = 1.0,
     rate: float = 1.0,
     support: Spring | None = None,

@@ -61,7 +61,6 @@ class Settings(NamedTuple):
     together: int = 2  # slides of a call
     no_friction: float = 1e-6  # of drag: a target that drag alone meets
     pressing: float = 1e-3  # of the largest alpha: less hardly presses
-    heights: int = 256  # of the surface, at which a bristle has to press
 
     # Surfaces (`surface_fit.py`), in log forces.
     settled: float = 1e-6  # slides are right to 1e-7

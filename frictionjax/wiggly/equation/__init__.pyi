@@ -10,7 +10,6 @@ from .field import Driven as Driven
 from .field import Point as Point
 from .field import TipField as TipField
 from .landscape import WiggleFolds as WiggleFolds
-from .landscape import keeps_contact as keeps_contact
 from .settings import SETTINGS as SETTINGS
 from .status import ENDED as ENDED
 from .status import FailedCells as FailedCells

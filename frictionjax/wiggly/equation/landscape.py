@@ -90,13 +90,6 @@ def landscape(potential: AbstractPotential, eps: Real) -> Landscape:
     )
 
 
-def keeps_contact(potential: AbstractPotential, eps: Real) -> Bool[Array, ""]:
-    """Whether `G = dz/dp > 0` over a period, at the samples of a landscape."""
-    grid = (jnp.arange(potential.points) + 0.5) / potential.points
-    _, stretches = jax.vmap(lambda y: potential.tip_force(y, eps))(grid)
-    return jnp.min(stretches) > 0
-
-
 def _narrowest_run(slopes: Float[Array, " n"]) -> Int[Array, ""]:
     """Samples in the shortest run of one sign of the 1-periodic `slopes`, at least 2.
 
